@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/admissible_space.h>
+#include <viscoplastic_contact/face_matrix.h>
+
+#include <memory>
+#include <string>
+
+namespace Viscoplastic
+{
+  /**
+   * The constant elastic operator as solvers of contact see it: the energy
+   * 1/2 a(u,u) - l(u) with everything but friction. It is set up once a mesh;
+   * only the truncation of the face changes from solve to solve.
+   *
+   * The displacement stays inside. A contact solver moves it by the calls below
+   * and sees only its values on the face, so it needs neither a mesh nor
+   * distributed vectors, and a new way to solve linear systems (a multigrid
+   * with masks on all levels) is a new derived class and nothing else.
+   *
+   * All calls are collective; results are the same on all ranks.
+   */
+  class BulkSolver
+  {
+  public:
+    virtual ~BulkSolver() = default;
+
+    /// For the user: "direct (CHOLMOD)".
+    virtual std::string
+    name() const = 0;
+
+    /**
+     * Solve a(u,v) = l(v) without friction. @p u brings the prescribed values
+     * and a start, and takes the solution up; @p load and @p u are in frames.
+     * Stops at the relative energy error @p tolerance. Returns the number of
+     * linear iterations (1 for a direct solver). Throws ExcMessage.
+     */
+    virtual unsigned int
+    solve(const DistributedVector &load,
+          DistributedVector       &u,
+          const double             tolerance) = 0;
+
+    /**
+     * Begin a frictional solve at @p u; both vectors stay in use until
+     * finish().
+     */
+    virtual void
+    begin(const DistributedVector &load, DistributedVector &u) = 0;
+
+    /// The matrix for Gauss-Seidel sweeps whose effect move_face() has.
+    virtual const FaceMatrix &
+    face_matrix() const = 0;
+
+    /// l - A u on the face.
+    virtual void
+    face_residual(Vector<double> &r) = 0;
+
+    /// Change the displacement of the face.
+    virtual void
+    move_face(const Vector<double> &change) = 0;
+
+    /// How the calls below treat the face.
+    virtual void
+    set_truncation(const FaceTruncation &truncation) = 0;
+
+    /**
+     * The norm of l - A u - force in the dual of the energy norm; @p force is a
+     * face vector. This bounds the algebraic error. Exact for direct solvers,
+     * an estimate by the preconditioner otherwise.
+     */
+    virtual double
+    dual_norm(const Vector<double> &force) = 0;
+
+    /// A norm of the solution to compare dual_norm() with.
+    virtual double
+    energy_norm() const = 0;
+
+    /**
+     * Solve (A + springs) w = l - A u - force on the truncated space to the
+     * relative accuracy @p tolerance; returns the face part in @p w and the
+     * number of linear iterations.
+     */
+    virtual unsigned int
+    correct(const Vector<double> &force,
+            const double          tolerance,
+            Vector<double>       &w) = 0;
+
+    /// (l - A u) . w and w . A w of a correction.
+    struct SearchTerms
+    {
+      double slope, curvature;
+    };
+
+    /// Replace the face part of the correction by @p w and prepare its use.
+    virtual SearchTerms
+    search_terms(const Vector<double> &w) = 0;
+
+    /// u := u + step w.
+    virtual void
+    take_step(const double step) = 0;
+
+    /// Complete the displacement given to begin(). Returns the linear
+    /// iterations this took.
+    virtual unsigned int
+    finish() = 0;
+  };
+
+
+  /**
+   * Choose and set up a solver. @p choice is `automatic', `direct' or
+   * `multigrid'; @p face_dofs are the global indices of the face vector's
+   * entries (empty without friction); @p n_solves is how often it will be used
+   * at least. Throws ExcMessage for a choice that cannot be had.
+   */
+  template <int dim>
+  std::unique_ptr<BulkSolver>
+  make_bulk_solver(const AdmissibleSpace<dim>                 &space,
+                   const DistributedMatrix                    &matrix,
+                   const FrictionFace                         &face,
+                   const std::vector<types::global_dof_index> &face_dofs,
+                   const std::string                          &choice,
+                   const double       max_poissons_ratio,
+                   const unsigned int n_solves);
+} // namespace Viscoplastic

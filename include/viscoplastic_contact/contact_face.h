@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/admissible_space.h>
+#include <viscoplastic_contact/friction_face.h>
+
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Gamma_3 on the mesh: makes the friction points of a FrictionFace from the
+   * nodes with friction, and their bounds rho_c(t) = int rho(x,t) phi_c, with
+   * phi_c the basis functions that hanging nodes leave. All ranks hold the
+   * whole face, in an order that does not depend on the partition.
+   */
+  template <int dim>
+  class ContactFace
+  {
+  public:
+    /// Collective.
+    explicit ContactFace(const AdmissibleSpace<dim> &space);
+
+    const FrictionFace &
+    layout() const
+    {
+      return face;
+    }
+
+    /// Global index of each entry of a face vector.
+    const std::vector<types::global_dof_index> &
+    dofs() const
+    {
+      return global_dofs;
+    }
+
+    /// rho_c of each point. Throws ExcMessage for negative bounds. Collective.
+    std::vector<double>
+    bounds(const double t) const;
+
+    /// int phi_c over the pieces of each point: the area it stands for.
+    const std::vector<double> &
+    weights() const
+    {
+      return point_weights;
+    }
+
+    const Point<dim> &
+    position(const unsigned int node) const
+    {
+      return nodes[node].position;
+    }
+
+    /// Cartesian force of a multiplier (lambda; the body feels its negative).
+    Tensor<1, dim>
+    cartesian(const unsigned int point, const Tensor<1, 2> &multiplier) const;
+
+    /// sum_c lambda_c.
+    Tensor<1, dim>
+    resultant(const FrictionState &state) const;
+
+    /// Owned entries of a vector in frames as a face vector, the same on all
+    /// ranks. Collective.
+    Vector<double>
+    face_vector(const DistributedVector &in_frames) const;
+
+    /// The slip that a change of the displacement (in frames, owned entries)
+    /// means at each point. Collective.
+    std::vector<Tensor<1, 2>>
+    slips(const DistributedVector &change) const;
+
+    /**
+     * The multiplier as a nodal density lambda_c/m_c, Cartesian and with
+     * ghosts; zero off Gamma_3. Collective.
+     */
+    DistributedVector
+    density(const FrictionState &state) const;
+
+    /// The inverse: multipliers m_c * density, for a face on a new mesh.
+    /// @p ghosted_density is Cartesian. Collective.
+    std::vector<Tensor<1, 2>>
+    multipliers(const DistributedVector &ghosted_density) const;
+
+    /// A value a point as a nodal field, with ghosts: at the first component of
+    /// each node, the mean over its points. Collective.
+    DistributedVector
+    nodal_field(const std::vector<double> &values) const;
+
+  private:
+    struct Node
+    {
+      types::global_dof_index       first_dof;
+      Point<dim>                    position;
+      Tensor<2, dim>                directions; // of the nodal frame
+      std::array<unsigned int, dim> components; // of its face entries
+    };
+
+    /// A quadrature point of an owned face of Gamma_3.
+    struct Sample
+    {
+      Point<dim>                    x;
+      const BoundaryCondition<dim> *condition;
+    };
+
+    /// value is added to the point for each unit of rho at the sample.
+    struct Share
+    {
+      unsigned int sample, point;
+      double       value;
+    };
+
+    void
+    make_nodes();
+    void
+    make_shares();
+
+    const AdmissibleSpace<dim>          &space;
+    FrictionFace                         face;
+    std::vector<Node>                    nodes;
+    std::vector<types::global_dof_index> global_dofs;
+    /// Boundary ids of each point.
+    std::vector<std::vector<types::boundary_id>> boundary_ids;
+    std::vector<Sample>                          samples;
+    std::vector<Share>                           shares;
+    std::vector<double>                          point_weights;
+    bool                                         bounds_vary;
+    mutable std::vector<double>                  constant_bounds;
+  };
+} // namespace Viscoplastic

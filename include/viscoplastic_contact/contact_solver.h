@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/bulk_solver.h>
+#include <viscoplastic_contact/friction_face.h>
+
+namespace Viscoplastic
+{
+  /// How a frictional solve went.
+  struct ContactReport
+  {
+    /// Corrections of the active set iteration.
+    unsigned int iterations = 0;
+    /// Linear iterations of all of them.
+    unsigned int linear_iterations = 0;
+    /// Primal minus dual energy, a bound on half the squared energy error.
+    double duality_gap = 0.;
+    /// sqrt(2 gap) over the energy norm of the solution.
+    double relative_error = 0.;
+  };
+
+
+  /**
+   * Minimises the energy of one step,
+   *
+   *     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev),
+   *
+   * by a primal-dual active set iteration that cannot cycle: (1) nonlinear
+   * Gauss-Seidel over the face nodes, which minimises J node by node, decides
+   * who sticks and in which direction who slips; (2) a linear solve on the
+   * truncated space with the tangent stiffness of turning slip is a semismooth
+   * Newton step; (3) increments that would reverse a slip stop at stick, and a
+   * line search minimises J along the rest. J never increases, and (1) alone
+   * converges (Kornhuber; Graeser, Sander), so sets may change arbitrarily
+   * without a danger to the result.
+   *
+   * The iteration stops when the duality gap bounds the error: with
+   * multipliers in their balls that satisfy the friction law exactly and the
+   * remaining residual R, gap = 1/2 |R|^2 in the dual energy norm.
+   */
+  class ContactSolver
+  {
+  public:
+    ContactSolver(const double tolerance, const unsigned int max_iterations);
+
+    /**
+     * @p bounds: rho_c >= 0 of each point (infinite for glued ones);
+     * @p increment: face part of u - u_prev at the start given to
+     * bulk.begin(), and of the solution on return; @p state: the sets and
+     * multipliers to start from and those of the solution.
+     *
+     * Throws ExcMessage when the iteration is exhausted or a value is not
+     * finite: there is no unconverged result.
+     */
+    ContactReport
+    solve(BulkSolver                &bulk,
+          const FrictionFace        &face,
+          const std::vector<double> &bounds,
+          Vector<double>            &increment,
+          FrictionState             &state) const;
+
+  private:
+    const double       tolerance;
+    const unsigned int max_iterations;
+  };
+
+
+  /**
+   * The frictional problem of a single point: the multiplier that minimises
+   * 1/2 lambda . C lambda - q . lambda over |lambda| <= rho, with C the
+   * symmetric flexibility seen by the point and q its slip at lambda = 0.
+   * |lambda| < rho (or C lambda = q) means stick, otherwise the slip
+   * q - C lambda is parallel to lambda.
+   */
+  struct PointSolution
+  {
+    Tensor<1, 2> multiplier;
+    bool         sticks;
+  };
+
+  PointSolution
+  solve_friction_point(const Tensor<2, 2> &flexibility,
+                       const Tensor<1, 2> &free_slip,
+                       const unsigned int  n_tangents,
+                       const double        bound);
+
+  /**
+   * Multipliers inside their balls that fit @p residual = l - A u on the face
+   * best and obey the friction law exactly: rho s/|s| where slipping, the
+   * residual clipped where sticking. Where pieces meet, the fit may leave a
+   * choice: the one of least norm is taken. Gives the face vector of their
+   * forces, too.
+   */
+  void
+  fit_multipliers(const FrictionFace        &face,
+                  const std::vector<double> &bounds,
+                  const Vector<double>      &residual,
+                  FrictionState             &state,
+                  Vector<double>            &force);
+} // namespace Viscoplastic

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /**
+   * A scalar datum of the scene: a muParser expression of x, y, (z,) t given
+   * in the parameter file. It knows what it does not depend on, so that its
+   * users need not evaluate what cannot change.
+   */
+  template <int dim>
+  class Expression
+  {
+  public:
+    /**
+     * @p entry names the parameter in error messages.
+     * Throws ExcMessage when @p text cannot be parsed.
+     */
+    Expression(const std::string &text, const std::string &entry);
+
+    /// Throws ExcMessage naming entry, place and time if not finite.
+    double
+    value(const Point<dim> &x, const double t) const;
+
+    /// By central differences of the expression.
+    Tensor<1, dim>
+    gradient(const Point<dim> &x, const double t) const;
+
+    bool
+    depends_on_time() const
+    {
+      return time_dependent;
+    }
+
+    bool
+    depends_on_position() const
+    {
+      return position_dependent;
+    }
+
+    /// True for a constant expression of value zero.
+    bool
+    is_zero() const
+    {
+      return !time_dependent && !position_dependent && constant == 0.;
+    }
+
+  private:
+    std::string                          text, entry;
+    bool                                 time_dependent, position_dependent;
+    double                               constant;
+    std::unique_ptr<FunctionParser<dim>> parser;
+  };
+
+
+  /// Expressions, one a component, separated by semicolons in the file.
+  template <int dim>
+  class VectorExpression
+  {
+  public:
+    VectorExpression(const std::string &text,
+                     const unsigned int n_components,
+                     const std::string &entry);
+
+    double
+    value(const Point<dim> &x, const double t, const unsigned int c) const
+    {
+      return components[c].value(x, t);
+    }
+
+    /// The first dim components.
+    Tensor<1, dim>
+    vector(const Point<dim> &x, const double t) const;
+
+    bool
+    depends_on_time() const;
+
+    bool
+    is_zero() const;
+
+    const Expression<dim> &
+    operator[](const unsigned int c) const
+    {
+      return components[c];
+    }
+
+  private:
+    std::vector<Expression<dim>> components;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/tensor.h>
+#include <deal.II/lac/vector.h>
+
+#include <array>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /**
+   * The friction points of Gamma_3 without finite elements: which unknowns of
+   * the face they see, and how. The same on all ranks.
+   *
+   * A face vector holds, node by node, the displacement components that some
+   * friction point at the node sees (1 to 3). Blocks of a node are padded to
+   * size 3.
+   */
+  struct FrictionFace
+  {
+    struct Point
+    {
+      unsigned int node;
+      /// Independent slip directions, 1 or 2.
+      unsigned int n_tangents;
+      /// slip_i = map[i] . x over the face components of the node.
+      std::array<Tensor<1, 3>, 2> map;
+    };
+
+    /// Position of each node's first component in face vectors, and the end.
+    std::vector<unsigned int> first_dof{0};
+    /// The points node by node, and each node's first one, and the end.
+    std::vector<Point>        points;
+    std::vector<unsigned int> first_point{0};
+
+    unsigned int
+    n_nodes() const
+    {
+      return first_dof.size() - 1;
+    }
+
+    unsigned int
+    n_dofs() const
+    {
+      return first_dof.back();
+    }
+
+    unsigned int
+    n_node_dofs(const unsigned int node) const
+    {
+      return first_dof[node + 1] - first_dof[node];
+    }
+
+    unsigned int
+    n_node_points(const unsigned int node) const
+    {
+      return first_point[node + 1] - first_point[node];
+    }
+
+    /// The entries of a node, padded by zeros.
+    Tensor<1, 3>
+    node_values(const Vector<double> &x, const unsigned int node) const
+    {
+      Tensor<1, 3> result;
+      for (unsigned int i = 0; i < n_node_dofs(node); ++i)
+        result[i] = x[first_dof[node] + i];
+      return result;
+    }
+
+    void
+    set_node_values(const Tensor<1, 3> &values,
+                    const unsigned int  node,
+                    Vector<double>     &x) const
+    {
+      for (unsigned int i = 0; i < n_node_dofs(node); ++i)
+        x[first_dof[node] + i] = values[i];
+    }
+  };
+
+
+  /// slip = map x of one point; the second entry is zero for one tangent.
+  Tensor<1, 2>
+  slip(const FrictionFace::Point &point, const Tensor<1, 3> &x);
+
+  /// map^T multiplier: the node force that balances a point's multiplier.
+  Tensor<1, 3>
+  node_force(const FrictionFace::Point &point, const Tensor<1, 2> &multiplier);
+
+
+  /**
+   * What friction is doing, point by point: the slip increment s of the step,
+   * the multiplier lambda (minus the tangential force on the body), and whether
+   * the point sticks.
+   */
+  struct FrictionState
+  {
+    std::vector<Tensor<1, 2>> slip, multiplier;
+    std::vector<bool>         sticks;
+
+    explicit FrictionState(const unsigned int n_points = 0)
+      : slip(n_points)
+      , multiplier(n_points)
+      , sticks(n_points, true)
+    {}
+  };
+
+
+  /**
+   * How the truncated system treats the face: at each node the projector onto
+   * the directions that no sticking point blocks, and the stiffness against
+   * turning the slip direction of slipping points (zero for one tangent).
+   */
+  struct FaceTruncation
+  {
+    std::vector<Tensor<2, 3>> projector, spring;
+
+    bool
+    operator==(const FaceTruncation &other) const
+    {
+      return projector == other.projector;
+    }
+
+    /// x := projector x, node by node.
+    void
+    project(const FrictionFace &face, Vector<double> &x) const;
+  };
+} // namespace Viscoplastic

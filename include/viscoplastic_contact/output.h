@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact_face.h>
+#include <viscoplastic_contact/state.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Results in one directory: fields of the body (solution.pvd) and of Gamma_3
+   * (contact.pvd) as VTU series, and what is needed to reproduce the run
+   * (parameters.prm, run.json).
+   */
+  template <int dim>
+  class Output
+  {
+  public:
+    /**
+     * Makes the directory and writes the record of the run. Collective. Throws
+     * ExcMessage if the directory cannot be written.
+     */
+    Output(const Scene<dim> &scene, const MPI_Comm communicator);
+
+    const std::string &
+    directory() const
+    {
+      return path;
+    }
+
+    /// Whether the fields of step @p n, from t_old to t, are to be written.
+    bool
+    is_due(const TimeStep &step) const;
+
+    /**
+     * Write the fields of a state. @p face is null without friction,
+     * @p squared_estimate without an estimator. Collective.
+     */
+    void
+    write_fields(const StressSampling<dim> &sampling,
+                 const State<dim>          &state,
+                 const ContactFace<dim>    *face,
+                 const Vector<double>      *squared_estimate);
+
+  private:
+    void
+    write_body(const StressSampling<dim> &sampling,
+               const State<dim>          &state,
+               const Vector<double>      *squared_estimate);
+    void
+    write_contact(const AdmissibleSpace<dim> &space,
+                  const State<dim>           &state,
+                  const ContactFace<dim>     *face);
+    void
+    write_pvd(const std::string &name) const;
+
+    const Scene<dim>   &scene;
+    const MPI_Comm      communicator;
+    std::string         path; // ends with a slash
+    std::vector<double> times;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/distributed/tria.h>
+
+#include <viscoplastic_contact/expression.h>
+#include <viscoplastic_contact/parameters.h>
+#include <viscoplastic_contact/time_schedule.h>
+#include <viscoplastic_contact/viscoplastic_law.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  enum class BoundaryRole
+  {
+    clamped,
+    displacement,
+    traction,
+    free,
+    symmetry,
+    contact
+  };
+
+  enum class FrictionLaw
+  {
+    none,
+    tresca, // bilateral, (5.22)
+    coulomb // given normal stress, (5.6)
+  };
+
+
+  /// What happens on one boundary id, with its data as functions of x and t.
+  template <int dim>
+  struct BoundaryCondition
+  {
+    BoundaryCondition(const types::boundary_id  id,
+                      const BoundaryParameters &parameters);
+
+    types::boundary_id id;
+    BoundaryRole       role;
+    FrictionLaw        friction_law = FrictionLaw::none;
+
+    /// Role displacement: the given components; empty ones are free.
+    std::array<std::optional<Expression<dim>>, dim> displacement;
+    /// F, role traction.
+    std::optional<VectorExpression<dim>> traction;
+    /// d of bilateral contact; absent where identically zero.
+    std::optional<Expression<dim>> foundation_displacement;
+    /// g of the law tresca.
+    std::optional<Expression<dim>> friction_bound;
+    /// mu and S of the law coulomb.
+    std::optional<Expression<dim>> friction_coefficient, normal_stress;
+    /// Outward unit normal of a symmetry or contact piece, which is flat.
+    Tensor<1, dim> normal;
+
+    /// Whether u_nu is prescribed here.
+    bool
+    is_bilateral() const
+    {
+      return role == BoundaryRole::symmetry ||
+             (role == BoundaryRole::contact &&
+              friction_law != FrictionLaw::coulomb);
+    }
+
+    bool
+    has_friction() const
+    {
+      return friction_law != FrictionLaw::none;
+    }
+
+    /// Whether some displacement component is prescribed here.
+    bool
+    constrains() const
+    {
+      return role == BoundaryRole::clamped ||
+             role == BoundaryRole::displacement || is_bilateral();
+    }
+
+    /**
+     * The friction bound rho(x,t): g, or mu |S|. Throws ExcMessage where it is
+     * negative.
+     */
+    double
+    bound(const Point<dim> &x, const double t) const;
+
+    /// Whether bound() depends on time.
+    bool
+    bound_depends_on_time() const;
+  };
+
+
+  /**
+   * What is simulated: the body, its material, the roles of its boundary, the
+   * loads and the time steps, as functions of x and t and free of any
+   * discretisation. The members that a scene does not need are empty.
+   */
+  template <int dim>
+  class Scene
+  {
+  public:
+    /// Throws ExcMessage with a sentence for the user.
+    explicit Scene(const Parameters &parameters);
+
+    /// Coarse mesh with its global refinements.
+    void
+    make_mesh(parallel::distributed::Triangulation<dim> &triangulation) const;
+
+    /**
+     * Check the roles against the mesh: each boundary id has a role and exists,
+     * symmetry and contact pieces are flat. Sets their normals. Collective.
+     */
+    void
+    inspect_boundary(
+      const parallel::distributed::Triangulation<dim> &triangulation);
+
+    /// The effects that this scene has, for the user.
+    std::vector<std::string>
+    effects() const;
+
+    bool
+    has_viscosity() const
+    {
+      return law != nullptr;
+    }
+
+    /// Whether there is z = sigma - E eps(u): from viscosity, or from initial
+    /// data.
+    bool
+    has_irreversible_stress() const
+    {
+      return has_viscosity() || initial_displacement || initial_stress;
+    }
+
+    bool
+    has_friction() const;
+
+    bool
+    has_contact() const;
+
+    bool
+    is_adaptive() const
+    {
+      return parameters.refinement.strategy != "none";
+    }
+
+    const Parameters                                    &parameters;
+    std::map<types::boundary_id, BoundaryCondition<dim>> boundary;
+    Expression<dim>                        youngs_modulus, poissons_ratio;
+    std::unique_ptr<const ViscoplasticLaw> law; // null: elastic
+    /// b, u0, sigma0; absent where identically zero.
+    std::optional<VectorExpression<dim>> body_force;
+    std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
+    TimeSchedule                         schedule;
+    /// Points whose displacement is recorded.
+    std::vector<Point<dim>> output_points;
+  };
+
+
+  /// The six (four in plane strain) stress components in the order of the
+  /// parameter file: xx, yy, zz, xy (, xz, yz).
+  template <int dim>
+  constexpr std::array<std::pair<unsigned int, unsigned int>, dim == 2 ? 4 : 6>
+  stress_components()
+  {
+    if constexpr (dim == 2)
+      return {{{0, 0}, {1, 1}, {2, 2}, {0, 1}}};
+    else
+      return {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/friction_face.h>
+#include <viscoplastic_contact/stress_history.h>
+#include <viscoplastic_contact/types.h>
+
+namespace Viscoplastic
+{
+  /**
+   * All that a step changes. A step is a pure function of an accepted state, a
+   * time and a step size: it makes a new State and leaves the old one alone.
+   */
+  template <int dim>
+  struct State
+  {
+    /// Number of the step that led here, and its time.
+    unsigned int n = 0;
+    double       t = 0.;
+
+    /// u_n and delta u_n = (u_n - u_{n-1})/k_n: Cartesian, with ghosts.
+    DistributedVector u, velocity;
+
+    /// z_n at the samples of the owned cells; empty in elastic bodies without
+    /// initial stress.
+    IrreversibleStress z;
+
+    /// Of the step that led here; no points without friction.
+    FrictionState friction;
+
+    /// u_0, Cartesian with ghosts; empty where zero.
+    DistributedVector initial_u;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * A table written row by row as comma separated values: the first row fixes
+   * the columns. Each row is flushed, so a run that is killed leaves what it
+   * has computed.
+   */
+  class Statistics
+  {
+  public:
+    /// Throws ExcMessage if @p file cannot be written.
+    explicit Statistics(const std::string &file);
+
+    /// Append a value to the present row; integers print as such.
+    void
+    add(const std::string &column, const double value);
+
+    /// Append a vector as column_x, column_y (, column_z).
+    template <typename VectorType>
+    void
+    add_vector(const std::string &column,
+               const VectorType  &value,
+               const unsigned int dim)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        add(column + "_" + "xyz"[d], value[d]);
+    }
+
+    /// Write the row. Throws ExcMessage if that fails, e.g. on a full disk.
+    void
+    end_row();
+
+  private:
+    std::string                                 name;
+    std::ofstream                               file;
+    std::vector<std::string>                    columns;
+    std::vector<std::pair<std::string, double>> row;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+#ifndef viscoplastic_contact_stiffness_h
+#define viscoplastic_contact_stiffness_h
+
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /**
+   * The elastic tensor E of one cell, stress = E strain.
+   *
+   * Stress and strain are always symmetric tensors of three dimensions. A
+   * plane-strain computation passes eps_zz = eps_xz = eps_yz = 0 and keeps
+   * sigma_zz, so everything that works on stresses is written once.
+   *
+   * Everything is inline: these calls are made for each cell at each step.
+   */
+  class Stiffness
+  {
+  public:
+    /**
+     * E eps = 2 mu dev eps + K tr(eps) I. Young's modulus (unit of stress)
+     * must be positive and finite, Poisson's ratio inside (-1, 1/2): this is
+     * what makes E elliptic. Throws the exceptions below otherwise.
+     */
+    static Stiffness
+    isotropic(const double youngs_modulus, const double poissons_ratio);
+
+    /// E strain.
+    SymmetricTensor<2, 3>
+    stress(const SymmetricTensor<2, 3> &strain) const;
+
+    /// E^-1 stress.
+    SymmetricTensor<2, 3>
+    strain(const SymmetricTensor<2, 3> &stress) const;
+
+    /// mu, unit of stress.
+    double
+    shear_modulus() const;
+
+    /// K = lambda + 2 mu/3, unit of stress.
+    double
+    bulk_modulus() const;
+
+    /**
+     * The largest eigenvalue of P E P, where P takes the deviator: 2 mu here.
+     * It turns the viscosity of a deviatoric flow into its relaxation rate.
+     */
+    double
+    largest_deviatoric_eigenvalue() const;
+
+    /// E itself, for linearisations; stress() is the cheaper way to apply it.
+    SymmetricTensor<4, 3>
+    tensor() const;
+
+    DeclException1(ExcYoungsModulus,
+                   double,
+                   << "Young's modulus is " << arg1
+                   << "; it must be positive and finite.");
+    DeclException1(ExcPoissonsRatio,
+                   double,
+                   << "Poisson's ratio is " << arg1
+                   << "; it must be larger than -1 and smaller than 0.5.");
+
+  private:
+    Stiffness(const double shear_modulus, const double bulk_modulus);
+
+    double mu;
+    double bulk;
+  };
+
+
+
+  /**
+   * The von Mises stress sqrt(3/2) |dev stress|; it is the axial stress under
+   * uniaxial tension.
+   */
+  inline double
+  von_mises(const SymmetricTensor<2, 3> &stress)
+  {
+    return std::sqrt(1.5) * deviator(stress).norm();
+  }
+
+
+
+  inline Stiffness::Stiffness(const double shear_modulus,
+                              const double bulk_modulus)
+    : mu(shear_modulus)
+    , bulk(bulk_modulus)
+  {}
+
+
+
+  inline Stiffness
+  Stiffness::isotropic(const double youngs_modulus, const double poissons_ratio)
+  {
+    // Written so that NaN is refused, too.
+    AssertThrow(youngs_modulus > 0 && std::isfinite(youngs_modulus),
+                ExcYoungsModulus(youngs_modulus));
+    AssertThrow(poissons_ratio > -1 && poissons_ratio < 0.5,
+                ExcPoissonsRatio(poissons_ratio));
+
+    return Stiffness(youngs_modulus / (2 * (1 + poissons_ratio)),
+                     youngs_modulus / (3 * (1 - 2 * poissons_ratio)));
+  }
+
+
+
+  inline SymmetricTensor<2, 3>
+  Stiffness::stress(const SymmetricTensor<2, 3> &strain) const
+  {
+    SymmetricTensor<2, 3> result   = 2 * mu * strain;
+    const double          pressure = (bulk - 2. / 3. * mu) * trace(strain);
+    for (unsigned int i = 0; i < 3; ++i)
+      result[i][i] += pressure;
+    return result;
+  }
+
+
+
+  inline SymmetricTensor<2, 3>
+  Stiffness::strain(const SymmetricTensor<2, 3> &stress) const
+  {
+    // The deviator is formed first: with 1/(9K) - 1/(6 mu) in one factor, the
+    // small strain of a nearly incompressible body under high pressure would
+    // be the difference of large numbers.
+    SymmetricTensor<2, 3> result      = deviator(stress) / (2 * mu);
+    const double          dilatation3 = trace(stress) / (9 * bulk);
+    for (unsigned int i = 0; i < 3; ++i)
+      result[i][i] += dilatation3;
+    return result;
+  }
+
+
+
+  inline double
+  Stiffness::shear_modulus() const
+  {
+    return mu;
+  }
+
+
+
+  inline double
+  Stiffness::bulk_modulus() const
+  {
+    return bulk;
+  }
+
+
+
+  inline double
+  Stiffness::largest_deviatoric_eigenvalue() const
+  {
+    return 2 * mu;
+  }
+
+
+
+  inline SymmetricTensor<4, 3>
+  Stiffness::tensor() const
+  {
+    const SymmetricTensor<2, 3> identity = unit_symmetric_tensor<3>();
+    return 2 * mu * deviator_tensor<3>() +
+           bulk * outer_product(identity, identity);
+  }
+} // namespace Viscoplastic
+
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// One step of the partition 0 = t_0 < ... < t_N = T.
+  struct TimeStep
+  {
+    /// 1 for the first step.
+    unsigned int n;
+    /// t_{n-1}, t_n and k_n = t_n - t_{n-1}.
+    double t_old, t, k;
+  };
+
+
+  /// Phases of equal steps, ending exactly on the listed times.
+  class TimeSchedule
+  {
+  public:
+    /// @p phases as `end time: number of steps, ...'; throws ExcMessage.
+    explicit TimeSchedule(const std::string &phases);
+
+    unsigned int
+    n_steps() const;
+
+    /// 1 <= n <= n_steps().
+    TimeStep
+    step(const unsigned int n) const;
+
+    double
+    end_time() const
+    {
+      return phases.back().end;
+    }
+
+  private:
+    struct Phase
+    {
+      double       start, end;
+      unsigned int n_steps;
+    };
+    std::vector<Phase> phases;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/conditional_ostream.h>
+#include <deal.II/base/timer.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/fe_system.h>
+
+#include <viscoplastic_contact/contact_face.h>
+#include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/force_balance.h>
+#include <viscoplastic_contact/loads.h>
+#include <viscoplastic_contact/output.h>
+#include <viscoplastic_contact/point_probe.h>
+#include <viscoplastic_contact/state.h>
+#include <viscoplastic_contact/statistics.h>
+
+#include <memory>
+#include <optional>
+
+namespace Viscoplastic
+{
+  /**
+   * The fully discrete problem P^hk (3.18)-(3.20) in total form, for one scene.
+   * This class owns the mesh, the spaces, the matrix and the state, and decides
+   * the order in which its collaborators work:
+   *
+   *     state at t_{n-1} -> rate of z -> load -> contact solver
+   *                      -> statistics, output -> mesh adaptation
+   *
+   * Displacements are FE_Q(1). Stresses and z are FE_DGQ(0), or live at the
+   * quadrature points: tensors for each owned cell (see StressSampling), whose
+   * cell means are what is reported.
+   */
+  template <int dim>
+  class ViscoplasticContact
+  {
+  public:
+    /// Throws ExcMessage with a sentence for the user, as run() does.
+    explicit ViscoplasticContact(const Parameters &parameters);
+
+    void
+    run();
+
+  private:
+    /// Everything that depends on the mesh, in the order of dependence.
+    struct Discretisation
+    {
+      Discretisation(const DoFHandler<dim> &dof_handler,
+                     const Scene<dim>      &scene);
+
+      AdmissibleSpace<dim> space;
+      ElasticModuli<dim>   moduli;
+      bool                 mean_dilatation;
+      StressSampling<dim>  sampling;
+      DistributedMatrix    matrix;
+      Loads<dim>           loads;
+      /// Null without friction.
+      std::unique_ptr<ContactFace<dim>> face;
+      FrictionFace                      no_face;
+      std::unique_ptr<BulkSolver>       solver;
+    };
+
+    /// What a step gives.
+    struct Step
+    {
+      State<dim>          state;
+      Forces<dim>         forces;
+      ContactReport       report;
+      std::vector<double> bounds;
+      /// 2/r; infinite without viscosity.
+      double step_limit;
+    };
+
+    /// What adds up over the steps.
+    struct Accounts
+    {
+      double initial_energy = 0., external_work = 0., viscous_dissipation = 0.,
+             friction_dissipation = 0.;
+      /// What changes of the mesh did to the stored energy.
+      double       adaptation_energy  = 0.;
+      unsigned int contact_iterations = 0, linear_iterations = 0;
+    };
+
+    void
+    set_up();
+
+    void
+    set_initial_state();
+
+    /// One step: a pure function of the state, its forces and the time step.
+    Step
+    advance(const State<dim>  &old_state,
+            const Forces<dim> &old_forces,
+            const TimeStep    &time_step);
+
+    /// u, multipliers and sets for a given z.
+    ContactReport
+    solve(const State<dim>          &old_state,
+          const Forces<dim>         &old_forces,
+          const double               t,
+          const double               k,
+          const Load<dim>           &load,
+          const std::vector<double> &bounds,
+          State<dim>                &state);
+
+    /// Estimate the error of a state, in scenes that use it.
+    void
+    estimate(const State<dim> &of);
+
+    void
+    adapt_mesh();
+
+    /// 1/2 int E^-1 sigma : sigma.
+    double
+    stored_energy(const State<dim> &of, const Forces<dim> &its_forces) const;
+
+    // Reporting: source/reporting.cc.
+
+    void
+    announce() const;
+
+    /// Add a row to statistics.csv. Time step 0 is the initial state.
+    void
+    record(const State<dim> &old_state,
+           const Step       &step,
+           const TimeStep   &time_step);
+
+    void
+    write_fields();
+
+    void
+    close();
+
+    const MPI_Comm                            communicator;
+    const Parameters                         &parameters;
+    ConditionalOStream                        out;
+    Scene<dim>                                scene;
+    parallel::distributed::Triangulation<dim> triangulation;
+    const FESystem<dim>                       fe;
+    DoFHandler<dim>                           dof_handler;
+    std::unique_ptr<Discretisation>           discretisation;
+    ContactSolver                             contact_solver;
+
+    State<dim>     state;
+    Forces<dim>    forces; // of the state
+    ContactReport  initial_report;
+    Accounts       accounts;
+    Vector<double> squared_estimate; // eta_K^2, only in adaptive scenes
+
+    std::optional<Output<dim>>   output;
+    std::unique_ptr<Statistics>  statistics; // on rank 0
+    std::vector<PointProbe<dim>> probes;
+    /// Wall time by phase over the run, and what it was a step ago.
+    TimerOutput                   timer;
+    std::map<std::string, double> last_seconds;
+    Timer                         run_timer;
+  };
+} // namespace Viscoplastic

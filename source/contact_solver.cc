@@ -1,0 +1,499 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/contact_solver.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    double
+    square(const double a)
+    {
+      return a * a;
+    }
+
+
+
+    /// Solve (C + shift I) x = q for the leading n x n block, n = 1 or 2.
+    Tensor<1, 2>
+    solve_block(const Tensor<2, 2> &C,
+                const double        shift,
+                const Tensor<1, 2> &q,
+                const unsigned int  n)
+    {
+      Tensor<1, 2> x;
+      if (n == 1)
+        x[0] = q[0] / (C[0][0] + shift);
+      else
+        {
+          const double a = C[0][0] + shift, b = C[0][1], d = C[1][1] + shift;
+          const double determinant = a * d - b * b;
+          x[0]                     = (d * q[0] - b * q[1]) / determinant;
+          x[1]                     = (a * q[1] - b * q[0]) / determinant;
+        }
+      return x;
+    }
+
+
+
+    /**
+     * The nonlinear Gauss-Seidel step at one node: minimise J over the node's
+     * components. By duality, block by block over the node's points; exact at
+     * once for a single point, i.e. away from corners.
+     */
+    Tensor<1, 3>
+    relax_node(const FrictionFace        &face,
+               const unsigned int         node,
+               const Tensor<2, 3>        &inverse_diagonal,
+               const Tensor<1, 3>        &force, // residual + D x
+               const std::vector<double> &bounds,
+               FrictionState             &state)
+    {
+      const unsigned int     begin      = face.first_point[node];
+      const unsigned int     end        = face.first_point[node + 1];
+      constexpr unsigned int max_sweeps = 1000;
+
+      Tensor<1, 3> remaining = force;
+      for (unsigned int p = begin; p < end; ++p)
+        remaining -= node_force(face.points[p], state.multiplier[p]);
+      for (unsigned int sweep = 0; sweep < max_sweeps; ++sweep)
+        {
+          double change = 0., size = 0.;
+          for (unsigned int p = begin; p < end; ++p)
+            {
+              const FrictionFace::Point &point = face.points[p];
+              remaining += node_force(point, state.multiplier[p]);
+              Tensor<2, 2> flexibility;
+              for (unsigned int i = 0; i < point.n_tangents; ++i)
+                for (unsigned int j = 0; j < point.n_tangents; ++j)
+                  flexibility[i][j] =
+                    point.map[i] * (inverse_diagonal * point.map[j]);
+              const PointSolution solution =
+                solve_friction_point(flexibility,
+                                     slip(point, inverse_diagonal * remaining),
+                                     point.n_tangents,
+                                     bounds[p]);
+              change += (solution.multiplier - state.multiplier[p]).norm();
+              size += solution.multiplier.norm();
+              state.multiplier[p] = solution.multiplier;
+              state.sticks[p]     = solution.sticks;
+              remaining -= node_force(point, solution.multiplier);
+            }
+          if (end - begin == 1 || change <= 1e-14 * size)
+            break;
+        }
+
+      // A node whose only point holds all its components does not move at all,
+      // not even by rounding.
+      if (end - begin == 1 && state.sticks[begin] &&
+          face.points[begin].n_tangents == face.n_node_dofs(node))
+        return Tensor<1, 3>();
+      return inverse_diagonal * remaining;
+    }
+
+
+
+    /// The force of slipping points at the current slip: rho s/|s|.
+    Tensor<1, 2>
+    slipping_multiplier(const double bound, const Tensor<1, 2> &s)
+    {
+      return bound == 0. ? Tensor<1, 2>() : s * (bound / s.norm());
+    }
+
+
+
+    /// Update slips from the increment; a slipping point that does not move
+    /// sticks.
+    void
+    update_slips(const FrictionFace        &face,
+                 const std::vector<double> &bounds,
+                 const Vector<double>      &x,
+                 FrictionState             &state)
+    {
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        {
+          state.slip[p] = Tensor<1, 2>();
+          if (!state.sticks[p])
+            state.slip[p] =
+              slip(face.points[p], face.node_values(x, face.points[p].node));
+          if (bounds[p] > 0. && state.slip[p].norm() == 0.)
+            state.sticks[p] = true;
+        }
+    }
+
+
+
+    FaceTruncation
+    make_truncation(const FrictionFace              &face,
+                    const std::vector<double>       &bounds,
+                    const FrictionState             &state,
+                    const std::vector<Tensor<2, 3>> &inverse_diagonal)
+    {
+      FaceTruncation truncation;
+      truncation.projector.resize(face.n_nodes());
+      truncation.spring.resize(face.n_nodes());
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        {
+          Tensor<2, 3> &projector = truncation.projector[node];
+          for (unsigned int d = 0; d < 3; ++d)
+            projector[d][d] = 1.;
+          for (unsigned int p = face.first_point[node];
+               p < face.first_point[node + 1];
+               ++p)
+            {
+              const FrictionFace::Point &point = face.points[p];
+              if (state.sticks[p])
+                for (unsigned int i = 0; i < point.n_tangents; ++i)
+                  {
+                    // Remove what is left of this direction.
+                    Tensor<1, 3> q = projector * point.map[i];
+                    if (q.norm() > 1e-8 * point.map[i].norm())
+                      {
+                        q /= q.norm();
+                        projector -= outer_product(q, q);
+                      }
+                  }
+              else if (point.n_tangents == 2 && bounds[p] > 0.)
+                {
+                  // kappa P_e with kappa = rho/|s|, which tends to infinity as
+                  // a point comes to rest; 1e10 times the diagonal is stick.
+                  const double kappa =
+                    std::min(bounds[p] / state.slip[p].norm(),
+                             1e10 / inverse_diagonal[node].norm());
+                  const Tensor<1, 2> e = state.slip[p] / state.slip[p].norm();
+                  const Tensor<1, 3> across =
+                    -e[1] * point.map[0] + e[0] * point.map[1];
+                  truncation.spring[node] +=
+                    kappa * outer_product(across, across);
+                }
+            }
+          // Remove rounding, so that equal sets compare equal.
+          for (unsigned int i = 0; i < 3; ++i)
+            for (unsigned int j = 0; j < 3; ++j)
+              if (std::abs(projector[i][j]) < 1e-14)
+                projector[i][j] = 0.;
+        }
+      return truncation;
+    }
+
+
+
+    /// J(u + step w) - J(u) and its derivative to the right, without the bulk
+    /// terms: the sum over the points.
+    struct FrictionAlongLine
+    {
+      struct Term
+      {
+        double       bound;
+        Tensor<1, 2> slip, change;
+      };
+      std::vector<Term> terms;
+
+      double
+      value(const double step) const
+      {
+        double sum = 0.;
+        for (const Term &term : terms)
+          sum += term.bound *
+                 ((term.slip + step * term.change).norm() - term.slip.norm());
+        return sum;
+      }
+
+      double
+      derivative(const double step) const
+      {
+        double sum = 0.;
+        for (const Term &term : terms)
+          {
+            const Tensor<1, 2> s    = term.slip + step * term.change;
+            const double       size = s.norm();
+            sum += term.bound * (size > 1e-14 * term.change.norm() ?
+                                   (s * term.change) / size :
+                                   term.change.norm());
+          }
+        return sum;
+      }
+    };
+
+
+
+    /**
+     * The step in (0, 2] that minimises J along the correction; 1 if that is as
+     * good up to inexact linear solves, 0 if there is no descent.
+     */
+    double
+    line_search(const BulkSolver::SearchTerms &bulk,
+                const FrictionAlongLine       &friction)
+    {
+      const auto derivative = [&](const double step) {
+        return bulk.curvature * step - bulk.slope + friction.derivative(step);
+      };
+      const double initial = derivative(0.);
+      if (!(initial < 0.) || !(bulk.curvature > 0.))
+        return 0.;
+      if (std::abs(derivative(1.)) <= 0.1 * std::abs(initial) &&
+          0.5 * bulk.curvature - bulk.slope + friction.value(1.) <= 0.)
+        return 1.;
+      double left = 0., right = 1.;
+      if (derivative(1.) < 0.)
+        {
+          left  = 1.;
+          right = 2.;
+          if (derivative(2.) < 0.)
+            return 2.;
+        }
+      for (unsigned int bisection = 0; bisection < 60; ++bisection)
+        {
+          const double middle                      = 0.5 * (left + right);
+          (derivative(middle) < 0. ? left : right) = middle;
+        }
+      return left;
+    }
+  } // namespace
+
+
+
+  PointSolution
+  solve_friction_point(const Tensor<2, 2> &flexibility,
+                       const Tensor<1, 2> &free_slip,
+                       const unsigned int  n_tangents,
+                       const double        bound)
+  {
+    const Tensor<1, 2> stick =
+      solve_block(flexibility, 0., free_slip, n_tangents);
+    const double stick_size = stick.norm();
+    // A zero bound is no friction: the point moves, even if by nothing.
+    if (bound == 0.)
+      return {Tensor<1, 2>(), false};
+    if (!(stick_size > bound * (1. + 1e-14)))
+      return {stick, true};
+    if (n_tangents == 1)
+      {
+        Tensor<1, 2> multiplier;
+        multiplier[0] = std::copysign(bound, free_slip[0]);
+        return {multiplier, false};
+      }
+
+    // |(C + m I)^{-1} q| = rho for m = |s|/rho > 0: Newton's method on the
+    // reciprocal of the norm is monotone from m = 0 (More, Sorensen).
+    double       m          = 0.;
+    Tensor<1, 2> multiplier = stick;
+    for (unsigned int iteration = 0; iteration < 100; ++iteration)
+      {
+        const double size = multiplier.norm();
+        if (std::abs(size - bound) <= 1e-15 * bound)
+          break;
+        const double slope =
+          multiplier * solve_block(flexibility, m, multiplier, n_tangents);
+        const double change = (size / bound - 1.) * square(size) / slope;
+        if (!(m + change > m))
+          break;
+        m += change;
+        multiplier = solve_block(flexibility, m, free_slip, n_tangents);
+      }
+    return {multiplier * (bound / multiplier.norm()), false};
+  }
+
+
+
+  void
+  fit_multipliers(const FrictionFace        &face,
+                  const std::vector<double> &bounds,
+                  const Vector<double>      &residual,
+                  FrictionState             &state,
+                  Vector<double>            &force)
+  {
+    const auto clip = [](const Tensor<1, 2> &multiplier, const double bound) {
+      const double size = multiplier.norm();
+      return size <= bound ? multiplier : multiplier * (bound / size);
+    };
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        const unsigned int begin   = face.first_point[node];
+        const unsigned int end     = face.first_point[node + 1];
+        unsigned int       n_stick = 0;
+        Tensor<1, 3>       missing = face.node_values(residual, node);
+        for (unsigned int p = begin; p < end; ++p)
+          {
+            if (state.sticks[p])
+              {
+                state.multiplier[p] = Tensor<1, 2>();
+                ++n_stick;
+              }
+            else
+              state.multiplier[p] =
+                slipping_multiplier(bounds[p], state.slip[p]);
+            missing -= node_force(face.points[p], state.multiplier[p]);
+          }
+        // The maps have rows of norm at most one, so 1/(points) is a stable
+        // step; with one point of orthonormal rows the first is exact.
+        const unsigned int n_steps = n_stick == 0                       ? 0 :
+                                     (n_stick == 1 && end - begin == 1) ? 1 :
+                                                                          200;
+        for (unsigned int step = 0; step < n_steps; ++step)
+          {
+            Tensor<1, 3> new_missing = missing;
+            for (unsigned int p = begin; p < end; ++p)
+              if (state.sticks[p])
+                {
+                  const Tensor<1, 2> fitted =
+                    clip(state.multiplier[p] +
+                           slip(face.points[p], missing) / (1. * n_stick),
+                         bounds[p]);
+                  new_missing -=
+                    node_force(face.points[p], fitted - state.multiplier[p]);
+                  state.multiplier[p] = fitted;
+                }
+            const double change = (new_missing - missing).norm();
+            missing             = new_missing;
+            if (change <= 1e-15 * face.node_values(residual, node).norm())
+              break;
+          }
+        face.set_node_values(face.node_values(residual, node) - missing,
+                             node,
+                             force);
+      }
+  }
+
+
+
+  ContactSolver::ContactSolver(const double       tolerance,
+                               const unsigned int max_iterations)
+    : tolerance(tolerance)
+    , max_iterations(max_iterations)
+  {}
+
+
+
+  ContactReport
+  ContactSolver::solve(BulkSolver                &bulk,
+                       const FrictionFace        &face,
+                       const std::vector<double> &bounds,
+                       Vector<double>            &x,
+                       FrictionState             &state) const
+  {
+    AssertDimension(bounds.size(), face.points.size());
+    AssertDimension(x.size(), face.n_dofs());
+    AssertDimension(state.sticks.size(), face.points.size());
+
+    const FaceMatrix         &matrix = bulk.face_matrix();
+    std::vector<Tensor<2, 3>> diagonal(face.n_nodes()), inverse(face.n_nodes());
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        diagonal[node] = matrix.diagonal_block(node);
+        inverse[node]  = invert(diagonal[node]);
+      }
+
+    ContactReport  report;
+    Vector<double> residual(face.n_dofs()), force(face.n_dofs()),
+      change(face.n_dofs()), w(face.n_dofs());
+    FaceTruncation last_truncation;
+    double         best_error = std::numeric_limits<double>::max();
+    for (unsigned int iteration = 0;; ++iteration)
+      {
+        // (1) Gauss-Seidel; more sweeps when the corrections do not finish.
+        const unsigned int n_sweeps = iteration < 10 ? 1 :
+                                      iteration < 30 ? 5 :
+                                                       50;
+        bulk.face_residual(residual);
+        AssertThrow(std::isfinite(residual.l2_norm()),
+                    ExcMessage("The contact solver met a residual that is not "
+                               "finite."));
+        change           = 0.;
+        const auto relax = [&](const unsigned int node) {
+          const Tensor<1, 3> old = face.node_values(x, node);
+          const Tensor<1, 3> r   = face.node_values(residual, node);
+          const Tensor<1, 3> now = relax_node(
+            face, node, inverse[node], r + diagonal[node] * old, bounds, state);
+          const Tensor<1, 3> step = now - old;
+          if (step.norm() == 0.)
+            return;
+          face.set_node_values(now, node, x);
+          face.set_node_values(face.node_values(change, node) + step,
+                               node,
+                               change);
+          matrix.subtract(node, step, residual);
+        };
+        for (unsigned int sweep = 0; sweep < n_sweeps; ++sweep)
+          {
+            for (unsigned int node = 0; node < face.n_nodes(); ++node)
+              relax(node);
+            for (unsigned int node = face.n_nodes(); node-- > 0;)
+              relax(node);
+          }
+        bulk.move_face(change);
+        bulk.face_residual(residual);
+        update_slips(face, bounds, x, state);
+
+        // Where does that leave the error?
+        fit_multipliers(face, bounds, residual, state, force);
+        const FaceTruncation truncation =
+          make_truncation(face, bounds, state, inverse);
+        bulk.set_truncation(truncation);
+        const double error    = bulk.dual_norm(force);
+        const double size     = bulk.energy_norm();
+        report.duality_gap    = 0.5 * square(error);
+        report.relative_error = size > 0. ? error / size : 0.;
+        AssertThrow(std::isfinite(error),
+                    ExcMessage("The contact solver met a value that is not "
+                               "finite."));
+        if (error <= tolerance * size)
+          break;
+        best_error = std::min(best_error, report.relative_error);
+        if (iteration == max_iterations)
+          {
+            std::ostringstream message;
+            message << "The active set iteration did not converge in "
+                    << max_iterations
+                    << " iterations: the relative error bound is " << best_error
+                    << " at best, and 'Solver/Contact tolerance' is "
+                    << tolerance
+                    << "; raise 'Solver/Maximal contact iterations' or the "
+                       "tolerance.";
+            AssertThrow(false, ExcMessage(message.str()));
+          }
+
+        // (2) Solve loosely while the sets still change, and as far as needed
+        // once they do not.
+        const bool same_sets = iteration > 0 && truncation == last_truncation;
+        last_truncation      = truncation;
+        report.linear_iterations +=
+          bulk.correct(force,
+                       same_sets ?
+                         std::min(0.05, 0.3 * tolerance * size / error) :
+                         0.05,
+                       w);
+
+        // (3) A slip that would reverse stops at stick.
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          if (face.n_node_points(node) == 1)
+            {
+              const unsigned int p = face.first_point[node];
+              if (state.sticks[p] || bounds[p] == 0.)
+                continue;
+              const Tensor<1, 2> s = state.slip[p];
+              const Tensor<1, 2> ds =
+                slip(face.points[p], face.node_values(w, node));
+              if (s * (s + ds) < 0.)
+                face.set_node_values(-1. * face.node_values(x, node), node, w);
+            }
+        FrictionAlongLine friction;
+        for (unsigned int p = 0; p < face.points.size(); ++p)
+          if (!state.sticks[p] && bounds[p] > 0.)
+            friction.terms.push_back(
+              {bounds[p],
+               state.slip[p],
+               slip(face.points[p], face.node_values(w, face.points[p].node))});
+        const double step = line_search(bulk.search_terms(w), friction);
+        bulk.take_step(step);
+        x.add(step, w);
+        ++report.iterations;
+      }
+    report.linear_iterations += bulk.finish();
+
+    return report;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/energy.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    double
+    square(const SymmetricTensor<2, 3> &tensor)
+    {
+      return tensor * tensor;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  StressSummary
+  summarise_stress(const StressSampling<dim> &sampling,
+                   const State<dim>          &old_state,
+                   const State<dim>          &state)
+  {
+    const unsigned int                 n = sampling.n_samples;
+    std::vector<SymmetricTensor<2, 3>> strain(n), old_strain(n);
+    const bool                         has_z = !state.z.empty();
+    StressSummary                      result;
+    double                             volume = 0.;
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      {
+        const Stiffness &stiffness = sampling.moduli(c);
+        sampling.strains(c, state.u.begin(), strain.data());
+        SymmetricTensor<2, 3> mean =
+          stiffness.stress(sampling.mean(c, strain.data()));
+        if (has_z)
+          {
+            mean += sampling.mean(c, &state.z[c * n]);
+            sampling.strains(c, old_state.u.begin(), old_strain.data());
+            for (unsigned int s = 0; s < n; ++s)
+              {
+                const auto  &z         = state.z[c * n + s];
+                const auto  &old_z     = old_state.z[c * n + s];
+                const double weight    = sampling.weight(c, s);
+                const auto   inverse_z = stiffness.strain(z);
+                result.irreversible_energy += 0.5 * weight * (inverse_z * z);
+                const SymmetricTensor<2, 3> middle =
+                  0.5 *
+                  (stiffness.stress(strain[s] + old_strain[s]) + z + old_z);
+                result.viscous_dissipation -=
+                  weight * (stiffness.strain(z - old_z) * middle);
+              }
+          }
+        const double mises   = von_mises(mean);
+        result.max_von_mises = std::max(result.max_von_mises, mises);
+        result.mean_von_mises += mises * sampling.volume(c);
+        result.stress_norm += (mean * mean) * sampling.volume(c);
+        volume += sampling.volume(c);
+      }
+
+    const MPI_Comm      comm = sampling.space.communicator;
+    std::vector<double> sums{result.mean_von_mises,
+                             result.stress_norm,
+                             result.irreversible_energy,
+                             result.viscous_dissipation,
+                             volume};
+    Utilities::MPI::sum(sums, comm, sums);
+    result.max_von_mises  = Utilities::MPI::max(result.max_von_mises, comm);
+    result.mean_von_mises = sums[0] / sums[4];
+    result.stress_norm    = std::sqrt(sums[1]);
+    result.irreversible_energy = sums[2];
+    result.viscous_dissipation = sums[3];
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  relative_stress_fluctuation(const StressSampling<dim> &sampling,
+                              const State<dim>          &state)
+  {
+    // The strain within cells, which a sampling of cell means does not keep.
+    const StressSampling<dim>          points(sampling.space,
+                                     sampling.moduli,
+                                     /* at_quadrature_points = */ true,
+                                     sampling.mean_dilatation);
+    std::vector<SymmetricTensor<2, 3>> stress(points.n_samples);
+    std::vector<double>                sums(2, 0.);
+    for (std::size_t c = 0; c < points.n_cells(); ++c)
+      {
+        points.strains(c, state.u.begin(), stress.data());
+        for (unsigned int s = 0; s < points.n_samples; ++s)
+          {
+            stress[s] = sampling.moduli(c).stress(stress[s]);
+            if (!state.z.empty())
+              stress[s] += state.z[c * sampling.n_samples +
+                                   (sampling.n_samples == 1 ? 0 : s)];
+          }
+        const SymmetricTensor<2, 3> mean = points.mean(c, stress.data());
+        for (unsigned int s = 0; s < points.n_samples; ++s)
+          {
+            sums[0] += square(stress[s] - mean) * points.weight(c, s);
+            sums[1] += square(stress[s]) * points.weight(c, s);
+          }
+      }
+    Utilities::MPI::sum(sums, sampling.space.communicator, sums);
+    return sums[1] > 0. ? std::sqrt(sums[0] / sums[1]) : 0.;
+  }
+
+
+
+  template StressSummary
+  summarise_stress<2>(const StressSampling<2> &,
+                      const State<2> &,
+                      const State<2> &);
+  template StressSummary
+  summarise_stress<3>(const StressSampling<3> &,
+                      const State<3> &,
+                      const State<3> &);
+  template double
+  relative_stress_fluctuation<2>(const StressSampling<2> &, const State<2> &);
+  template double
+  relative_stress_fluctuation<3>(const StressSampling<3> &, const State<3> &);
+} // namespace Viscoplastic

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/expression.h>
+#include <viscoplastic_contact/messages.h>
+
+#include <cmath>
+#include <regex>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Whether the identifier @p name stands in @p text.
+    bool
+    mentions(const std::string &text, const std::string &name)
+    {
+      return std::regex_search(text, std::regex("\\b" + name + "\\b"));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Expression<dim>::Expression(const std::string &text_,
+                              const std::string &entry_)
+    : text(Utilities::trim(text_))
+    , entry(entry_)
+    , time_dependent(mentions(text, "t"))
+    , position_dependent(mentions(text, "x") || mentions(text, "y") ||
+                         (dim == 3 && mentions(text, "z")))
+    , constant(0.)
+    , parser(std::make_unique<FunctionParser<dim>>(1))
+  {
+    AssertThrow(!text.empty(),
+                ExcMessage("The expression of '" + entry + "' is empty."));
+    try
+      {
+        parser->initialize(FunctionParser<dim>::default_variable_names() + ",t",
+                           text,
+                           {{"pi", numbers::PI}, {"Pi", numbers::PI}},
+                           /* time_dependent = */ true);
+        constant = parser->value(Point<dim>());
+      }
+    catch (const std::exception &exception)
+      {
+        AssertThrow(false,
+                    ExcMessage("The expression '" + text + "' of '" + entry +
+                               "' cannot be parsed: " + reason(exception)));
+      }
+  }
+
+
+
+  template <int dim>
+  double
+  Expression<dim>::value(const Point<dim> &x, const double t) const
+  {
+    double result = constant;
+    if (time_dependent || position_dependent)
+      {
+        parser->set_time(t);
+        result = parser->value(x);
+      }
+    if (!std::isfinite(result))
+      {
+        std::ostringstream message;
+        message << "The expression '" << text << "' of '" << entry
+                << "' has the value " << result << " at x = (" << x
+                << "), t = " << t << "; it must be finite.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  Expression<dim>::gradient(const Point<dim> &x, const double t) const
+  {
+    if (!position_dependent)
+      return {};
+    // The step balances truncation and rounding of a central difference.
+    Tensor<1, dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double h = 1e-5 * std::max(1e-3, std::abs(x[d]));
+        Point<dim>   left(x), right(x);
+        left[d] -= h;
+        right[d] += h;
+        result[d] = (value(right, t) - value(left, t)) / (right[d] - left[d]);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  VectorExpression<dim>::VectorExpression(const std::string &text,
+                                          const unsigned int n_components,
+                                          const std::string &entry)
+  {
+    const auto parts = Utilities::split_string_list(text, ';');
+    AssertThrow(parts.size() == n_components,
+                ExcMessage("'" + entry + "' needs " +
+                           std::to_string(n_components) +
+                           " components separated by semicolons, but '" + text +
+                           "' has " + std::to_string(parts.size()) + "."));
+    for (const std::string &part : parts)
+      components.emplace_back(part, entry);
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  VectorExpression<dim>::vector(const Point<dim> &x, const double t) const
+  {
+    Tensor<1, dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      result[d] = value(x, t, d);
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  VectorExpression<dim>::depends_on_time() const
+  {
+    for (const auto &component : components)
+      if (component.depends_on_time())
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  VectorExpression<dim>::is_zero() const
+  {
+    for (const auto &component : components)
+      if (!component.is_zero())
+        return false;
+    return true;
+  }
+
+
+
+  template class Expression<2>;
+  template class Expression<3>;
+  template class VectorExpression<2>;
+  template class VectorExpression<3>;
+} // namespace Viscoplastic

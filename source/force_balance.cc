@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/force_balance.h>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Call visit(boundary id, local position, direction) for each prescribed
+    /// component of the owned nodes.
+    template <int dim, typename Visitor>
+    void
+    for_each_prescribed(const AdmissibleSpace<dim> &space, const Visitor &visit)
+    {
+      for (const auto &node : space.boundary_nodes())
+        {
+          const NodalFrame<dim> &frame = space.frame(node.frame);
+          for (unsigned int i = 0; i < frame.n_fixed; ++i)
+            {
+              Tensor<1, dim> direction;
+              for (unsigned int d = 0; d < dim; ++d)
+                direction[d] = frame.directions[d][frame.fixed[i]];
+              visit(frame.condition_boundary[i],
+                    space.owned.index_within_set(node.first_dof) +
+                      frame.fixed[i],
+                    direction);
+            }
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Forces<dim>
+  evaluate_forces(const StressSampling<dim> &sampling,
+                  const DistributedMatrix   &matrix,
+                  Load<dim>                  load,
+                  const State<dim>          &state)
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    Forces<dim>                 forces{
+      space.owned_vector(), std::move(load), space.owned_vector(), 0., 0.};
+    space.to_frames(state.u, forces.u);
+    matrix.vmult(forces.internal, forces.u);
+    forces.strain_energy = 0.5 * (forces.u * forces.internal);
+    if (!state.z.empty())
+      {
+        DistributedVector irreversible = space.owned_vector();
+        add_irreversible_load(sampling, state.z, irreversible);
+        forces.irreversible_work = -(forces.u * irreversible);
+        forces.internal -= irreversible;
+      }
+    return forces;
+  }
+
+
+
+  template <int dim>
+  std::map<types::boundary_id, Tensor<1, dim>>
+  reactions(const AdmissibleSpace<dim> &space, const Forces<dim> &forces)
+  {
+    std::map<types::boundary_id, Tensor<1, dim>> result;
+    for (const auto &pair : space.scene.boundary)
+      if (pair.second.constrains())
+        result[pair.first]; // the same entries on all ranks
+    for_each_prescribed(space,
+                        [&](const types::boundary_id id,
+                            const std::size_t        i,
+                            const Tensor<1, dim>    &direction) {
+                          result[id] += (forces.internal.begin()[i] -
+                                         forces.load.values.begin()[i]) *
+                                        direction;
+                        });
+    for (auto &pair : result)
+      pair.second = Utilities::MPI::sum(pair.second, space.communicator);
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  external_work(const AdmissibleSpace<dim> &space,
+                const Forces<dim>          &old_forces,
+                const Forces<dim>          &forces)
+  {
+    DistributedVector change = forces.u;
+    change -= old_forces.u;
+    // Loads everywhere; at prescribed components the reaction adds what is
+    // missing to the internal force.
+    double work =
+      0.5 * (change * old_forces.load.values + change * forces.load.values);
+    double reaction_work = 0.;
+    for_each_prescribed(space,
+                        [&](const types::boundary_id,
+                            const std::size_t i,
+                            const Tensor<1, dim> &) {
+                          const auto reaction = [i](const Forces<dim> &f) {
+                            return f.internal.begin()[i] -
+                                   f.load.values.begin()[i];
+                          };
+                          reaction_work +=
+                            0.5 * (reaction(old_forces) + reaction(forces)) *
+                            change.begin()[i];
+                        });
+    return work + Utilities::MPI::sum(reaction_work, space.communicator);
+  }
+
+
+
+  template <int dim>
+  FrictionIdentities
+  check_friction(const ContactFace<dim>    &face,
+                 const FrictionState       &state,
+                 const std::vector<double> &bounds,
+                 const DistributedVector   &change,
+                 const double               max_displacement)
+  {
+    FrictionIdentities              result;
+    const std::vector<Tensor<1, 2>> slips = face.slips(change);
+    for (unsigned int p = 0; p < slips.size(); ++p)
+      {
+        const double size = slips[p].norm(), weight = face.weights()[p];
+        const double force = state.multiplier[p].norm();
+        if (bounds[p] > 0.)
+          result.max_utilisation =
+            std::max(result.max_utilisation, force / bounds[p]);
+        if (state.sticks[p])
+          {
+            result.stick_area += weight;
+            result.max_stick_slip = std::max(result.max_stick_slip, size);
+          }
+        else
+          {
+            result.slip_area += weight;
+            // Below this, the direction is rounding.
+            if (bounds[p] > 0. && size > 1e-7 * max_displacement)
+              result.slip_misalignment = std::max(
+                result.slip_misalignment,
+                (state.multiplier[p] - slips[p] * (bounds[p] / size)).norm() /
+                  bounds[p]);
+            result.dissipation += state.multiplier[p] * slips[p];
+          }
+      }
+    return result;
+  }
+
+
+
+#define INSTANTIATE(dim)                                                       \
+  template Forces<dim> evaluate_forces<dim>(const StressSampling<dim> &,       \
+                                            const DistributedMatrix &,         \
+                                            Load<dim>,                         \
+                                            const State<dim> &);               \
+  template std::map<types::boundary_id, Tensor<1, dim>> reactions<dim>(        \
+    const AdmissibleSpace<dim> &, const Forces<dim> &);                        \
+  template double             external_work<dim>(const AdmissibleSpace<dim> &, \
+                                     const Forces<dim> &,          \
+                                     const Forces<dim> &);         \
+  template FrictionIdentities check_friction<dim>(const ContactFace<dim> &,    \
+                                                  const FrictionState &,       \
+                                                  const std::vector<double> &, \
+                                                  const DistributedVector &,   \
+                                                  const double);
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+} // namespace Viscoplastic

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+#include <viscoplastic_contact/viscoplastic_law.h>
+
+namespace Viscoplastic
+{
+  LawDescription
+  maxwell_description();
+
+  namespace
+  {
+    /**
+     * G = -E dev sigma/(2 eta): an elastic spring in series with a dashpot
+     * whose strain rate is dev sigma/(2 eta).
+     */
+    class Maxwell : public ViscoplasticLaw
+    {
+    public:
+      explicit Maxwell(const double viscosity)
+        : viscosity(viscosity)
+      {}
+
+      SymmetricTensor<2, 3>
+      rate(const SymmetricTensor<2, 3> &stress,
+           const SymmetricTensor<2, 3> & /*strain*/,
+           const Stiffness &stiffness,
+           const LawPoint & /*point*/) const override
+      {
+        return stiffness.stress(deviator(stress) / (-2 * viscosity));
+      }
+
+      Tangents
+      tangents(const SymmetricTensor<2, 3> & /*stress*/,
+               const SymmetricTensor<2, 3> & /*strain*/,
+               const Stiffness &stiffness,
+               const LawPoint & /*point*/) const override
+      {
+        Tangents tangents;
+        tangents.stress =
+          stiffness.tensor() * deviator_tensor<3>() / (-2 * viscosity);
+        return tangents;
+      }
+
+      double
+      relaxation_rate(const SymmetricTensor<2, 3> & /*stress*/,
+                      const SymmetricTensor<2, 3> & /*strain*/,
+                      const Stiffness &stiffness,
+                      const LawPoint & /*point*/) const override
+      {
+        return stiffness.largest_deviatoric_eigenvalue() / (2 * viscosity);
+      }
+
+      bool
+      deviatoric_flow() const override
+      {
+        return true;
+      }
+
+    private:
+      const double viscosity;
+    };
+  } // namespace
+
+
+
+  LawDescription
+  maxwell_description()
+  {
+    LawDescription law;
+    law.name = "maxwell";
+    law.help =
+      "G = -E dev(sigma)/(2 eta), for an isotropic body -(mu/eta) "
+      "dev(sigma): a linear viscoelastic fluid, elastic under pressure and "
+      "creeping under any shear stress. The deviator of a stress held at "
+      "fixed strain decays like exp(-t/theta) with theta = eta/mu, and a "
+      "constant stress makes the body flow at the strain rate "
+      "dev(sigma)/(2 eta). eta is the `Viscosity' in Pa s (in general stress "
+      "times time, as for a Newtonian fluid). Reference: W. N. Findley, J. S. "
+      "Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic "
+      "Materials, North-Holland 1976, chapter 5.";
+    law.declare = [](ParameterHandler &prm) {
+      prm.declare_entry("Viscosity",
+                        "0.5",
+                        Patterns::Double(),
+                        "The shear viscosity eta, stress times time; "
+                        "positive.");
+    };
+    law.make = [name = law.name](ParameterHandler &prm) {
+      return std::make_unique<Maxwell>(get_positive(prm, name, "Viscosity"));
+    };
+    return law;
+  }
+} // namespace Viscoplastic

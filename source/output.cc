@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/numerics/data_out.h>
+
+#include <viscoplastic_contact/output.h>
+#include <viscoplastic_contact/version.h>
+
+#include <boost/property_tree/json_parser.hpp>
+#include <boost/property_tree/ptree.hpp>
+
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Faces of Gamma_3 with nodal data, in the form that DataOut writes.
+    template <int dim>
+    class FaceOutput : public DataOutInterface<dim - 1, dim>
+    {
+    public:
+      std::vector<DataOutBase::Patch<dim - 1, dim>> patches;
+      std::vector<std::string>                      names;
+      std::vector<
+        std::tuple<unsigned int,
+                   unsigned int,
+                   std::string,
+                   DataComponentInterpretation::DataComponentInterpretation>>
+        vectors;
+
+    protected:
+      const std::vector<DataOutBase::Patch<dim - 1, dim>> &
+      get_patches() const override
+      {
+        return patches;
+      }
+
+      std::vector<std::string>
+      get_dataset_names() const override
+      {
+        return names;
+      }
+
+      std::vector<
+        std::tuple<unsigned int,
+                   unsigned int,
+                   std::string,
+                   DataComponentInterpretation::DataComponentInterpretation>>
+      get_nonscalar_data_ranges() const override
+      {
+        return vectors;
+      }
+    };
+
+
+
+    template <int dim>
+    void
+    write_record(const Scene<dim>  &scene,
+                 const std::string &path,
+                 const unsigned int n_ranks)
+    {
+      std::ofstream parameters(path + "parameters.prm");
+      scene.parameters.handler.print_parameters(parameters,
+                                                ParameterHandler::Text);
+      parameters.close();
+      AssertThrow(parameters,
+                  ExcMessage("The results directory '" + path +
+                             "' cannot be written."));
+
+      boost::property_tree::ptree record, effects;
+      record.put("program", "viscoplastic_contact");
+      record.put("version", VISCOPLASTIC_CONTACT_VERSION);
+      record.put("git_revision", VISCOPLASTIC_CONTACT_GIT_REVISION);
+      record.put("dealii_version", DEAL_II_PACKAGE_VERSION);
+      record.put("n_mpi_ranks", n_ranks);
+      record.put("dimension", dim);
+      for (const std::string &effect : scene.effects())
+        {
+          boost::property_tree::ptree item;
+          item.put("", effect);
+          effects.push_back({"", item});
+        }
+      record.add_child("effects", effects);
+      const std::time_t now = std::time(nullptr);
+      char              date[32];
+      std::strftime(date, sizeof(date), "%FT%TZ", std::gmtime(&now));
+      record.put("date", date);
+      std::ofstream json(path + "run.json");
+      boost::property_tree::write_json(json, record);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Output<dim>::Output(const Scene<dim> &scene, const MPI_Comm communicator)
+    : scene(scene)
+    , communicator(communicator)
+    , path(scene.parameters.output.directory)
+  {
+    if (path.empty())
+      path = "output/" +
+             std::filesystem::path(scene.parameters.file).stem().string();
+    if (path.back() != '/')
+      path += '/';
+
+    // Rank 0 writes; all learn whether that worked.
+    std::string failure;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        try
+          {
+            std::filesystem::create_directories(path);
+            write_record(scene,
+                         path,
+                         Utilities::MPI::n_mpi_processes(communicator));
+          }
+        catch (const std::exception &)
+          {
+            failure = "The results directory '" + path +
+                      "' cannot be written; change 'Output/Directory' or its "
+                      "permissions.";
+          }
+      }
+    failure = Utilities::MPI::broadcast(communicator, failure);
+    AssertThrow(failure.empty(), ExcMessage(failure));
+  }
+
+
+
+  template <int dim>
+  bool
+  Output<dim>::is_due(const TimeStep &step) const
+  {
+    if (step.n == scene.schedule.n_steps())
+      return true;
+    const OutputParameters &parameters = scene.parameters.output;
+    if (parameters.fields_interval > 0.)
+      {
+        // Has a multiple of the interval been passed? Times carry rounding.
+        const double slack = 1e-9 * scene.schedule.end_time();
+        return std::floor((step.t + slack) / parameters.fields_interval) >
+               std::floor((step.t_old + slack) / parameters.fields_interval);
+      }
+    return parameters.fields_every > 0 && step.n % parameters.fields_every == 0;
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::write_fields(const StressSampling<dim> &sampling,
+                            const State<dim>          &state,
+                            const ContactFace<dim>    *face,
+                            const Vector<double>      *squared_estimate)
+  {
+    times.push_back(state.t);
+    write_body(sampling, state, squared_estimate);
+    write_pvd("solution");
+    if (scene.has_contact())
+      {
+        write_contact(sampling.space, state, face);
+        write_pvd("contact");
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::write_pvd(const std::string &name) const
+  {
+    if (Utilities::MPI::this_mpi_process(communicator) != 0)
+      return;
+    std::vector<std::pair<double, std::string>> records;
+    for (unsigned int i = 0; i < times.size(); ++i)
+      records.emplace_back(times[i],
+                           name + "_" + Utilities::int_to_string(i, 5) +
+                             ".pvtu");
+    std::ofstream file(path + name + ".pvd");
+    file << std::setprecision(15);
+    DataOutBase::write_pvd_record(file, records);
+    AssertThrow(file,
+                ExcMessage("Writing to '" + path + name +
+                           ".pvd' failed; is the disk full?"));
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::write_body(const StressSampling<dim> &sampling,
+                          const State<dim>          &state,
+                          const Vector<double>      *squared_estimate)
+  {
+    const DoFHandler<dim> &dof_handler = sampling.space.dof_handler;
+    const auto            &tria        = dof_handler.get_triangulation();
+    DataOut<dim>           data_out;
+    data_out.attach_dof_handler(dof_handler);
+    const std::vector<DataComponentInterpretation::DataComponentInterpretation>
+      is_vector(dim, DataComponentInterpretation::component_is_part_of_vector);
+    data_out.add_data_vector(state.u,
+                             std::vector<std::string>(dim, "displacement"),
+                             DataOut<dim>::type_dof_data,
+                             is_vector);
+    data_out.add_data_vector(state.velocity,
+                             std::vector<std::string>(dim, "velocity"),
+                             DataOut<dim>::type_dof_data,
+                             is_vector);
+
+    constexpr auto     components = stress_components<dim>();
+    const unsigned int n          = components.size();
+    const std::vector<SymmetricTensor<2, 3>> stress =
+      sampling.mean_stress(state.u, state.z);
+    std::vector<Vector<double>> stresses(n,
+                                         Vector<double>(tria.n_active_cells()));
+    std::vector<Vector<double>> irreversible(
+      state.z.empty() ? 0 : n, Vector<double>(tria.n_active_cells()));
+    Vector<double> mises(tria.n_active_cells());
+    Vector<double> subdomain(tria.n_active_cells());
+    std::size_t    owned_cell = 0;
+    for (const auto &cell : tria.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const unsigned int i = cell->active_cell_index();
+          subdomain[i]         = cell->subdomain_id();
+          mises[i]             = von_mises(stress[owned_cell]);
+          for (unsigned int c = 0; c < n; ++c)
+            stresses[c][i] =
+              stress[owned_cell][components[c].first][components[c].second];
+          if (!state.z.empty())
+            {
+              const auto z =
+                sampling.mean(owned_cell,
+                              &state.z[owned_cell * sampling.n_samples]);
+              for (unsigned int c = 0; c < n; ++c)
+                irreversible[c][i] =
+                  z[components[c].first][components[c].second];
+            }
+          ++owned_cell;
+        }
+    const std::string xyz = "xyz";
+    for (unsigned int c = 0; c < n; ++c)
+      {
+        const std::string suffix = std::string("_") + xyz[components[c].first] +
+                                   xyz[components[c].second];
+        data_out.add_data_vector(stresses[c], "stress" + suffix);
+        if (!state.z.empty())
+          data_out.add_data_vector(irreversible[c],
+                                   "irreversible_stress" + suffix);
+      }
+    data_out.add_data_vector(mises, "von_mises");
+    data_out.add_data_vector(subdomain, "subdomain");
+    Vector<double> estimator;
+    if (squared_estimate != nullptr)
+      {
+        estimator = *squared_estimate;
+        for (double &value : estimator)
+          value = std::sqrt(value);
+        data_out.add_data_vector(estimator, "estimator");
+      }
+    data_out.build_patches();
+    data_out.write_vtu_with_pvtu_record(
+      path, "solution", times.size() - 1, communicator, 5);
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::write_contact(const AdmissibleSpace<dim> &space,
+                             const State<dim>           &state,
+                             const ContactFace<dim>     *face)
+  {
+    FaceOutput<dim> output;
+    const auto      add_vector = [&output](const std::string &name) {
+      output.vectors.emplace_back(
+        output.names.size(),
+        output.names.size() + dim - 1,
+        name,
+        DataComponentInterpretation::component_is_part_of_vector);
+      output.names.insert(output.names.end(), dim, name);
+    };
+    add_vector("displacement");
+    add_vector("slip");
+    add_vector("slip_rate");
+
+    // Tractions and sets live at the nodes of friction points.
+    DistributedVector density, bound, utilisation, stick;
+    if (face != nullptr)
+      {
+        add_vector("traction");
+        for (const char *name : {"bound", "utilisation", "stick"})
+          output.names.push_back(name);
+        const std::vector<double> bounds = face->bounds(state.t);
+        std::vector<double>       values(bounds.size());
+        for (unsigned int p = 0; p < values.size(); ++p)
+          values[p] = bounds[p] / face->weights()[p];
+        bound = face->nodal_field(values);
+        for (unsigned int p = 0; p < values.size(); ++p)
+          values[p] = bounds[p] > 0. ?
+                        state.friction.multiplier[p].norm() / bounds[p] :
+                        0.;
+        utilisation = face->nodal_field(values);
+        for (unsigned int p = 0; p < values.size(); ++p)
+          values[p] = state.friction.sticks[p] ? 1. : 0.;
+        stick   = face->nodal_field(values);
+        density = face->density(state.friction);
+      }
+
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int f : cell->face_indices())
+          {
+            const auto cell_face = cell->face(f);
+            if (!cell_face->at_boundary())
+              continue;
+            const auto &condition =
+              space.scene.boundary.at(cell_face->boundary_id());
+            if (condition.role != BoundaryRole::contact)
+              continue;
+            DataOutBase::Patch<dim - 1, dim> patch;
+            patch.patch_index = output.patches.size();
+            patch.data.reinit(output.names.size(), cell_face->n_vertices());
+            for (const unsigned int v : cell_face->vertex_indices())
+              {
+                patch.vertices[v] = cell_face->vertex(v);
+                const auto node   = space.relevant.index_within_set(
+                  cell_face->vertex_dof_index(v, 0));
+                unsigned int row    = 0;
+                const auto   vector = [&](const DistributedVector &field) {
+                  Tensor<1, dim> value;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    value[d] = field.begin()[node + d];
+                  return value;
+                };
+                const auto store = [&](const Tensor<1, dim> &value) {
+                  for (unsigned int d = 0; d < dim; ++d)
+                    patch.data(row++, v) = value[d];
+                };
+                const auto tangential = [&](const Tensor<1, dim> &value) {
+                  return value - (value * condition.normal) * condition.normal;
+                };
+                const Tensor<1, dim> u = vector(state.u);
+                store(u);
+                store(tangential(state.initial_u.size() > 0 ?
+                                   u - vector(state.initial_u) :
+                                   u));
+                store(tangential(vector(state.velocity)));
+                if (face != nullptr)
+                  {
+                    // On the body: minus the multiplier.
+                    store(condition.has_friction() ?
+                            -1. * tangential(vector(density)) :
+                            Tensor<1, dim>());
+                    for (const auto *field : {&bound, &utilisation, &stick})
+                      patch.data(row++, v) = field->begin()[node];
+                  }
+              }
+            output.patches.push_back(patch);
+          }
+    output.write_vtu_with_pvtu_record(
+      path, "contact", times.size() - 1, communicator, 5);
+  }
+
+
+
+  template class Output<2>;
+  template class Output<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/patterns.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/parameters.h>
+#include <viscoplastic_contact/viscoplastic_law.h>
+
+#include <fstream>
+#include <regex>
+
+namespace Viscoplastic
+{
+  void
+  GeometryParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Generator",
+                      generator,
+                      "Name of a function of deal.II's namespace GridGenerator "
+                      "that makes the coarse mesh.");
+    prm.add_parameter("Arguments",
+                      arguments,
+                      "Its arguments as "
+                      "GridGenerator::generate_from_name_and_arguments() reads "
+                      "them: separated by colons, e.g. numbers of cells, lower "
+                      "and upper corner, colorize.");
+    prm.add_parameter("Rotation angle",
+                      rotation_angle,
+                      "Rotation of the generated mesh about the origin, in "
+                      "degrees.");
+    prm.add_parameter("Rotation axis",
+                      rotation_axis,
+                      "Axis of that rotation in 3D; in 2D it is always z.",
+                      Patterns::List(Patterns::Double(), 3, 3));
+    prm.add_parameter("Translation",
+                      translation,
+                      "Shift of the mesh after the rotation, one number a "
+                      "direction; empty for none.",
+                      Patterns::List(Patterns::Double()));
+    prm.add_parameter("Global refinements",
+                      global_refinements,
+                      "How often every cell is halved in each direction.");
+  }
+
+
+
+  void
+  MaterialParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Young's modulus",
+                      youngs_modulus,
+                      "E > 0 as an expression of position; taken at the centre "
+                      "of each cell. Unit: stress.");
+    prm.add_parameter("Poisson's ratio",
+                      poissons_ratio,
+                      "nu in (-1, 1/2) as an expression of position; taken at "
+                      "the centre of each cell.");
+    prm.add_parameter("Law",
+                      law,
+                      "The function G of (1.1). " + viscoplastic_law_help(),
+                      Patterns::Selection(viscoplastic_law_names()));
+    prm.add_parameter(
+      "Volumetric integration",
+      volumetric_integration,
+      "`full' integrates the elastic form fully; `mean dilatation' takes the "
+      "mean of the volumetric strain over each cell, which prevents "
+      "volumetric locking; `automatic' chooses it for laws whose flow is "
+      "deviatoric and for nu > 0.4.",
+      Patterns::Selection("automatic|full|mean dilatation"));
+    prm.add_parameter(
+      "Stress history",
+      stress_history,
+      "Where the irreversible stress z lives. `cell means' is the paper's "
+      "piecewise constant stress; `quadrature points' keeps z at each "
+      "quadrature point, which long creep on coarse meshes needs.",
+      Patterns::Selection("cell means|quadrature points"));
+    declare_viscoplastic_law_parameters(prm);
+  }
+
+
+
+  void
+  LoadParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Body force",
+                      body_force,
+                      "b(x,t), components separated by semicolons; empty for "
+                      "none. Unit: force per volume.");
+  }
+
+
+
+  void
+  InitialStateParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Displacement",
+                      displacement,
+                      "u0(x), components separated by semicolons; empty for "
+                      "zero.");
+    prm.add_parameter("Stress",
+                      stress,
+                      "sigma0(x) as xx; yy; zz; xy in 2D and "
+                      "xx; yy; zz; xy; xz; yz in 3D; empty for zero.");
+    prm.add_parameter("Equilibrate",
+                      equilibrate,
+                      "Whether to put the body into equilibrium with the loads "
+                      "at t = 0 by an elastic step with friction, instead of "
+                      "refusing initial data that violate (2.12).");
+    prm.add_parameter("Compatibility tolerance",
+                      compatibility_tolerance,
+                      "Violation of (2.12), relative to the loads, up to which "
+                      "initial data are accepted.",
+                      Patterns::Double(0.));
+  }
+
+
+
+  void
+  BoundaryParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+      "Role",
+      role,
+      "`clamped': u = 0; `displacement': given components of u; `traction': "
+      "sigma nu = F; `free': sigma nu = 0; `symmetry': u_nu = 0 without "
+      "friction on a flat piece; `contact': a flat piece of Gamma_3 with a "
+      "friction law.",
+      Patterns::Selection("not given|clamped|displacement|traction|free|"
+                          "symmetry|contact"));
+    prm.add_parameter("Displacement",
+                      displacement,
+                      "For the role displacement: components as expressions of "
+                      "position and t separated by semicolons; the word `free' "
+                      "leaves a component free.");
+    prm.add_parameter("Traction",
+                      traction,
+                      "For the role traction: F(x,t), components separated by "
+                      "semicolons. Unit: stress.");
+    prm.add_parameter(
+      "Friction law",
+      friction_law,
+      "For the role contact: `tresca' is bilateral contact with a given "
+      "friction bound (5.22); `coulomb' has a given normal stress and the "
+      "bound mu |S| (5.6); `none' is bilateral contact without friction.",
+      Patterns::Selection("none|tresca|coulomb"));
+    prm.add_parameter("Friction bound",
+                      friction_bound,
+                      "g(x,t) >= 0 of the law tresca. Unit: stress.");
+    prm.add_parameter("Friction coefficient",
+                      friction_coefficient,
+                      "mu(x,t) >= 0 of the law coulomb.");
+    prm.add_parameter("Normal stress",
+                      normal_stress,
+                      "S(x,t) of the law coulomb, negative in compression. "
+                      "Unit: stress.");
+    prm.add_parameter("Foundation displacement",
+                      foundation_displacement,
+                      "d(x,t) of bilateral contact: u_nu = d, nu pointing out "
+                      "of the body, so that d < 0 presses. Unit: length.");
+  }
+
+
+
+  void
+  TimeParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Phases",
+                      phases,
+                      "Phases of equal time steps as `end time: number of "
+                      "steps', separated by commas, starting at t = 0.");
+  }
+
+
+
+  void
+  SolverParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+      "Linear solver",
+      linear_solver,
+      "`direct': sparse Cholesky (CHOLMOD) with the contact face condensed, "
+      "on one MPI rank; `multigrid': conjugate gradients with algebraic "
+      "multigrid (ML), on any number; `automatic' chooses.",
+      Patterns::Selection("automatic|direct|multigrid"));
+    prm.add_parameter(
+      "Contact tolerance",
+      contact_tolerance,
+      "Bound on the algebraic error of each step in the energy norm, relative "
+      "to the solution, at which the active set iteration stops.",
+      Patterns::Double(1e-14, 0.1));
+    prm.add_parameter("Maximal contact iterations",
+                      maximal_iterations,
+                      "The run ends with an error when a step needs more.",
+                      Patterns::Integer(1));
+  }
+
+
+
+  void
+  RefinementParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Strategy",
+                      strategy,
+                      "`none' keeps the mesh; `residual' refines by the "
+                      "residual estimator of the friction inequality, `kelly' "
+                      "by jumps of the displacement gradient.",
+                      Patterns::Selection("none|residual|kelly"));
+    prm.add_parameter("Every n steps",
+                      every_n_steps,
+                      "Steps between changes of the mesh.",
+                      Patterns::Integer(1));
+    prm.add_parameter("Refinement fraction",
+                      refinement_fraction,
+                      "The cells with the largest contributions that make up "
+                      "this fraction of the squared estimate are refined.",
+                      Patterns::Double(0., 1.));
+    prm.add_parameter("Coarsening fraction",
+                      coarsening_fraction,
+                      "The same with the smallest contributions, coarsened.",
+                      Patterns::Double(0., 1.));
+    prm.add_parameter("Minimal level",
+                      minimal_level,
+                      "No cell is coarsened below this level.");
+    prm.add_parameter("Maximal level",
+                      maximal_level,
+                      "No cell is refined above this level.");
+    prm.add_parameter("Cell budget",
+                      cell_budget,
+                      "Number of cells beyond which refinement only keeps pace "
+                      "with coarsening.",
+                      Patterns::Integer(1));
+  }
+
+
+
+  void
+  RefinementParameters::check() const
+  {
+    AssertThrow(minimal_level <= maximal_level,
+                ExcMessage("'Mesh refinement/Minimal level' = " +
+                           std::to_string(minimal_level) +
+                           " must not exceed 'Maximal level' = " +
+                           std::to_string(maximal_level) + "."));
+    AssertThrow(refinement_fraction + coarsening_fraction <= 1.,
+                ExcMessage("'Mesh refinement/Refinement fraction' and "
+                           "'Coarsening fraction' must add up to at most 1."));
+  }
+
+
+
+  void
+  OutputParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Directory",
+                      directory,
+                      "Where results go; empty for output/<name of the "
+                      "parameter file> in the working directory.");
+    prm.add_parameter("Fields every",
+                      fields_every,
+                      "Steps between outputs of fields; 0 writes only the "
+                      "first and the last state.");
+    prm.add_parameter("Fields interval",
+                      fields_interval,
+                      "Time between outputs of fields; where positive, it "
+                      "replaces the entry above.",
+                      Patterns::Double(0.));
+    prm.add_parameter("Points",
+                      points,
+                      "Points of the body, coordinates separated by commas and "
+                      "points by semicolons, whose displacement goes into "
+                      "statistics.csv.");
+  }
+
+
+
+  void
+  Parameters::declare()
+  {
+    const auto in_subsection = [this](const std::string &name, auto &struct_) {
+      handler.enter_subsection(name);
+      struct_.declare(handler);
+      handler.leave_subsection();
+    };
+    handler.add_parameter("Dimension",
+                          dimension,
+                          "2 (plane strain) or 3.",
+                          Patterns::Integer(2, 3));
+    in_subsection("Geometry", geometry);
+    in_subsection("Material", material);
+    in_subsection("Loads", loads);
+    in_subsection("Initial state", initial_state);
+    for (auto &[id, boundary] : boundaries)
+      in_subsection("Boundary " + std::to_string(id), boundary);
+    in_subsection("Time", time);
+    in_subsection("Solver", solver);
+    in_subsection("Mesh refinement", refinement);
+    in_subsection("Output", output);
+  }
+
+
+
+  Parameters::Parameters(const std::string &file)
+    : file(file)
+  {
+    // The ids of `subsection Boundary <id>' decide what is declared.
+    std::ifstream input(file);
+    AssertThrow(input,
+                ExcMessage("The parameter file '" + file +
+                           "' cannot be opened."));
+    const std::regex boundary("^\\s*subsection\\s+Boundary\\s+(\\d{1,9})\\s*"
+                              "(#.*)?$");
+    std::string      line;
+    std::smatch      match;
+    while (std::getline(input, line))
+      if (std::regex_match(line, match, boundary))
+        boundaries[std::stoul(match[1])];
+
+    declare();
+    handler.parse_input(file);
+    refinement.check();
+  }
+} // namespace Viscoplastic

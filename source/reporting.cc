@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/energy.h>
+#include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/version.h>
+#include <viscoplastic_contact/viscoplastic_contact.h>
+
+#include <iomanip>
+#include <iostream>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::announce() const
+  {
+    out << "viscoplastic_contact " << VISCOPLASTIC_CONTACT_VERSION << " ("
+        << VISCOPLASTIC_CONTACT_GIT_REVISION << "), " << parameters.file
+        << " on " << Utilities::MPI::n_mpi_processes(communicator)
+        << " MPI rank(s)\nEffects:\n";
+    for (const std::string &effect : scene.effects())
+      out << "  " << effect << '\n';
+    out << std::flush;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::record(const State<dim> &old_state,
+                                   const Step       &step,
+                                   const TimeStep   &time_step)
+  {
+    const Discretisation &d          = *discretisation;
+    const bool            is_initial = time_step.n == 0;
+
+    // All ranks compute; rank 0 writes.
+    TimerOutput::Scope  phase(timer, "balance");
+    const StressSummary stress =
+      summarise_stress(d.sampling, old_state, step.state);
+    const double stored_energy = step.forces.strain_energy +
+                                 step.forces.irreversible_work +
+                                 stress.irreversible_energy;
+    const double      max_displacement = step.state.u.linfty_norm();
+    DistributedVector change           = step.forces.u;
+    change -= forces.u;
+    FrictionIdentities friction;
+    Tensor<1, dim>     friction_force;
+    if (d.face)
+      {
+        friction       = check_friction(*d.face,
+                                  step.state.friction,
+                                  is_initial ? d.face->bounds(0.) : step.bounds,
+                                  change,
+                                  max_displacement);
+        friction_force = d.face->resultant(step.state.friction);
+      }
+    const auto reaction_forces = reactions(d.space, step.forces);
+
+    // Forces on the body: loads, reactions, minus the multipliers.
+    Tensor<1, dim> balance = step.forces.load.resultant - friction_force;
+    double         size    = step.forces.load.resultant.norm();
+    size                   = std::max(size, friction_force.norm());
+    for (const auto &pair : reaction_forces)
+      {
+        balance += pair.second;
+        size = std::max(size, pair.second.norm());
+      }
+
+    if (is_initial)
+      accounts.initial_energy = stored_energy;
+    else
+      {
+        accounts.external_work += external_work(d.space, forces, step.forces);
+        accounts.viscous_dissipation += stress.viscous_dissipation;
+        accounts.friction_dissipation += friction.dissipation;
+      }
+    accounts.contact_iterations += step.report.iterations;
+    accounts.linear_iterations += step.report.linear_iterations;
+    const double defect =
+      accounts.external_work -
+      (stored_energy - accounts.initial_energy - accounts.adaptation_energy) -
+      accounts.viscous_dissipation - accounts.friction_dissipation;
+
+    std::vector<Tensor<1, dim>> point_values;
+    for (const auto &probe : probes)
+      point_values.push_back(probe.value(step.state.u));
+    const double estimate = squared_estimate.size() > 0 ?
+                              total_estimate(squared_estimate, communicator) :
+                              0.;
+    phase.stop();
+
+    if (statistics)
+      {
+        Statistics &row = *statistics;
+        row.add("step", time_step.n);
+        row.add("t", time_step.t);
+        row.add("k", time_step.k);
+        row.add("cells", triangulation.n_global_active_cells());
+        row.add("dofs", dof_handler.n_dofs());
+        if (scene.has_viscosity())
+          row.add("step_limit", step.step_limit);
+        if (d.face)
+          {
+            row.add("contact_iterations", step.report.iterations);
+            row.add("linear_iterations", step.report.linear_iterations);
+            row.add("duality_gap", step.report.duality_gap);
+            row.add("algebraic_error", step.report.relative_error);
+            row.add("stick_area", friction.stick_area);
+            row.add("slip_area", friction.slip_area);
+            row.add_vector("friction_force", friction_force, dim);
+          }
+        else
+          row.add("linear_iterations", step.report.linear_iterations);
+        for (const auto &[id, force] : reaction_forces)
+          row.add_vector("reaction_" + std::to_string(id), force, dim);
+        row.add_vector("load", step.forces.load.resultant, dim);
+        row.add("force_balance_defect", size > 0. ? balance.norm() / size : 0.);
+        if (d.face)
+          {
+            row.add("max_utilisation", friction.max_utilisation);
+            row.add("max_stick_slip", friction.max_stick_slip);
+            row.add("slip_misalignment", friction.slip_misalignment);
+          }
+        row.add("stored_energy", stored_energy);
+        row.add("strain_energy", step.forces.strain_energy);
+        if (scene.has_viscosity())
+          row.add("viscous_dissipation", accounts.viscous_dissipation);
+        if (d.face)
+          row.add("friction_dissipation", accounts.friction_dissipation);
+        row.add("external_work", accounts.external_work);
+        if (scene.is_adaptive())
+          row.add("adaptation_energy", accounts.adaptation_energy);
+        row.add("energy_balance_defect", defect);
+        row.add("max_displacement", max_displacement);
+        row.add("max_von_mises", stress.max_von_mises);
+        row.add("mean_von_mises", stress.mean_von_mises);
+        row.add("stress_norm", stress.stress_norm);
+        for (unsigned int i = 0; i < point_values.size(); ++i)
+          row.add_vector("point" + std::to_string(i), point_values[i], dim);
+        if (scene.is_adaptive())
+          row.add("estimator", estimate);
+
+        const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
+        for (const char *name :
+             {"rate", "load", "contact", "balance", "output"})
+          {
+            const auto   entry = total.find(name);
+            const double now   = entry == total.end() ? 0. : entry->second;
+            row.add(std::string("wall_") + name, now - last_seconds[name]);
+            last_seconds[name] = now;
+          }
+        row.add("wall_total", run_timer.wall_time());
+        row.end_row();
+      }
+
+    // Progress.
+    const unsigned int n_steps = scene.schedule.n_steps();
+    if (is_initial)
+      return;
+    out << "Step "
+        << std::setw(static_cast<int>(std::to_string(n_steps).size()))
+        << time_step.n << '/' << n_steps << "  t = " << std::setprecision(5)
+        << time_step.t;
+    if (scene.is_adaptive())
+      out << "  cells " << triangulation.n_global_active_cells();
+    if (d.face)
+      out << "  contact iterations " << step.report.iterations << "  slipping "
+          << std::lround(100. * friction.slip_area /
+                         std::max(friction.slip_area + friction.stick_area,
+                                  std::numeric_limits<double>::min()))
+          << " %";
+    if (scene.is_adaptive())
+      out << "  error estimate " << std::setprecision(3) << estimate;
+    const double elapsed = run_timer.wall_time();
+    out << "  left "
+        << std::lround(elapsed / time_step.n * (n_steps - time_step.n)) << " s"
+        << std::endl;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::close()
+  {
+    const unsigned int n = scene.schedule.n_steps();
+    out << '\n' << std::setprecision(3);
+    if (discretisation->face)
+      out << "Active set iterations per step: "
+          << static_cast<double>(accounts.contact_iterations) / n << '\n';
+    out << "Linear iterations per step: "
+        << static_cast<double>(accounts.linear_iterations) / n << '\n';
+    if (scene.has_viscosity())
+      {
+        const double fluctuation =
+          relative_stress_fluctuation(discretisation->sampling, state);
+        out << "Stress within cells, norm(sigma - P0 sigma)/norm(sigma): "
+            << fluctuation << '\n';
+        if (fluctuation > 0.2 &&
+            parameters.material.stress_history == "cell means")
+          out << "  This is large: cell means may be too stiff in long creep; "
+                 "refine the mesh or set 'Material/Stress history' = "
+                 "quadrature points.\n";
+      }
+    out << "Seconds by phase:\n";
+    for (const auto &[name, time] :
+         timer.get_summary_data(TimerOutput::total_wall_time))
+      out << "  " << std::left << std::setw(12) << name << std::right << time
+          << '\n';
+    out << "  " << std::left << std::setw(12) << "whole run" << std::right
+        << run_timer.wall_time() << '\n'
+        << "Results in " << output->directory() << std::endl;
+  }
+
+
+
+  template class ViscoplasticContact<2>;
+  template class ViscoplasticContact<3>;
+} // namespace Viscoplastic

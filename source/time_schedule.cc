@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/time_schedule.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  TimeSchedule::TimeSchedule(const std::string &text)
+  {
+    double start = 0.;
+    for (const std::string &phase : Utilities::split_string_list(text, ','))
+      {
+        const auto parts   = Utilities::split_string_list(phase, ':');
+        double     end     = 0.;
+        int        n_steps = 0;
+        try
+          {
+            if (parts.size() == 2)
+              {
+                end     = Utilities::string_to_double(parts[0]);
+                n_steps = Utilities::string_to_int(parts[1]);
+              }
+          }
+        catch (const std::exception &)
+          {
+            n_steps = 0; // refused below
+          }
+        AssertThrow(n_steps > 0,
+                    ExcMessage("'Time/Phases': '" + phase +
+                               "' is not of the form `end time: number of "
+                               "steps' with a positive number of steps."));
+        AssertThrow(std::isfinite(end) && end > start,
+                    ExcMessage("'Time/Phases': the end time of '" + phase +
+                               "' must be finite and lie after " +
+                               std::to_string(start) + "."));
+        phases.push_back({start, end, static_cast<unsigned int>(n_steps)});
+        start = end;
+      }
+    AssertThrow(!phases.empty(),
+                ExcMessage("'Time/Phases' is empty; give at least one phase as "
+                           "`end time: number of steps'."));
+  }
+
+
+
+  unsigned int
+  TimeSchedule::n_steps() const
+  {
+    unsigned int n = 0;
+    for (const Phase &phase : phases)
+      n += phase.n_steps;
+    return n;
+  }
+
+
+
+  TimeStep
+  TimeSchedule::step(const unsigned int n) const
+  {
+    Assert(n >= 1 && n <= n_steps(), ExcIndexRange(n, 1, n_steps() + 1));
+    unsigned int i = n; // counted within the phase, from 1
+    auto         p = phases.begin();
+    for (; i > p->n_steps; ++p)
+      i -= p->n_steps;
+    const auto time = [&](const unsigned int j) {
+      return j == p->n_steps ? p->end :
+                               p->start + (p->end - p->start) * j / p->n_steps;
+    };
+    return {n, time(i - 1), time(i), time(i) - time(i - 1)};
+  }
+} // namespace Viscoplastic

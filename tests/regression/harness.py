@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Run the program on a scene and read what it wrote.
+
+The regression tests treat the program as a user does: a parameter file goes
+in, an exit code, statistics.csv and VTU series come out.  Everything is read
+with general readers (csv, json, xml, meshio), so that a file only our own code
+could read would fail here.
+
+The executable is taken from the environment variable VISCOPLASTIC_CONTACT,
+otherwise from build/ beside prm/.  Results go to temporary directories; set
+KEEP_RESULTS to a directory to keep them.
+"""
+
+import csv
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+SOURCE = Path(__file__).resolve().parents[2]
+SCENES = SOURCE / "prm" / "verification"
+EXECUTABLE = os.environ.get(
+    "VISCOPLASTIC_CONTACT", str(SOURCE / "build" / "viscoplastic_contact")
+)
+MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]
+
+# Columns that tell how the numbers were found: they may differ from run to
+# run and from rank count to rank count.
+EFFORT = {"contact_iterations", "linear_iterations", "duality_gap", "algebraic_error"}
+
+# Columns that are errors of the solution of one step, compared with bounds,
+# not with each other.
+DEFECTS = {
+    "force_balance_defect",
+    "max_utilisation",
+    "max_stick_slip",
+    "slip_misalignment",
+    "energy_balance_defect",
+}
+
+
+def as_prm(overrides):
+    """Parameter-file text of {"Section/Subsection/Entry": value}."""
+    text = []
+    for path, value in overrides.items():
+        *sections, entry = path.split("/")
+        text += [f"subsection {name}" for name in sections]
+        text.append(f"set {entry} = {value}")
+        text += ["end"] * len(sections)
+    return "\n".join(text) + "\n"
+
+
+def lattice(points):
+    """Points as integers on a fine lattice, to recognise equal ones.
+
+    VTU coordinates have single precision.  The offset keeps dyadic fractions
+    and thirds of the unit, where mesh points lie, away from the jumps.
+    """
+    return np.floor(np.asarray(points, float) * 2**16 + 0.31).astype(int)
+
+
+class Fields:
+    """One output time of a VTU series, all pieces joined."""
+
+    def __init__(self, pieces):
+        offset, points, cells = 0, [], []
+        for piece in pieces:
+            points.append(piece.points)
+            blocks = [block for block in piece.cells if len(block.data)]
+            if len({block.type for block in blocks}) > 1:
+                raise AssertionError("more than one cell type in a VTU file")
+            cells += [block.data + offset for block in blocks]
+            offset += len(piece.points)
+        self.points = np.concatenate(points)
+        self.cells = np.concatenate(cells)
+        pieces = [p for p in pieces if len(p.points)]
+        self.point_data = {
+            name: np.concatenate([p.point_data[name] for p in pieces])
+            for name in pieces[0].point_data
+        }
+        self.cell_data = {
+            name: np.concatenate([np.concatenate(p.cell_data[name]) for p in pieces])
+            for name in pieces[0].cell_data
+        }
+
+    def nodes(self):
+        """Indices of one copy of each point: faces and cells repeat them."""
+        _, first = np.unique(lattice(self.points), axis=0, return_index=True)
+        return first
+
+
+class Run:
+    """A finished run: exit code, messages and, if it succeeded, results."""
+
+    def __init__(self, directory, process, keep):
+        self.directory = directory
+        self.returncode = process.returncode
+        self.stdout = process.stdout
+        self.stderr = process.stderr
+        self._keep = keep
+
+    def __getitem__(self, column):
+        return self.statistics[column]
+
+    @property
+    def statistics(self):
+        """{column: array over steps}, in file order."""
+        if not hasattr(self, "_statistics"):
+            with open(self.directory / "statistics.csv", newline="") as file:
+                rows = list(csv.reader(file))
+            width = len(rows[0])
+            if any(len(row) != width for row in rows):
+                raise AssertionError("statistics.csv has rows of unequal length")
+            table = np.array([[float(v) for v in row] for row in rows[1:]])
+            names = [name.strip() for name in rows[0]]
+            self._statistics = dict(zip(names, table.T))
+        return self._statistics
+
+    def row(self, t):
+        """Index of the step that ends at time t."""
+        index = int(np.argmin(abs(self["t"] - t)))
+        if abs(self["t"][index] - t) > 1e-9 * max(1, abs(t)):
+            raise AssertionError(f"no step ends at t = {t}")
+        return index
+
+    def vector(self, prefix):
+        """Columns prefix_x, prefix_y(, prefix_z) as one array (step, axis)."""
+        axes = [a for a in "xyz" if f"{prefix}_{a}" in self.statistics]
+        return np.stack([self[f"{prefix}_{a}"] for a in axes], axis=1)
+
+    def series(self, name):
+        """[(time, pvtu file)] as listed in name.pvd."""
+        root = xml.parse(self.directory / f"{name}.pvd").getroot()
+        return [
+            (float(e.attrib["timestep"]), self.directory / e.attrib["file"])
+            for e in root.iter("DataSet")
+        ]
+
+    def fields(self, name="solution", index=-1):
+        """The fields of one entry of a series, default the last."""
+        record = self.series(name)[index][1]
+        root = xml.parse(record).getroot()
+        return Fields(
+            [
+                meshio.read(record.parent / e.attrib["Source"])
+                for e in root.iter("Piece")
+            ]
+        )
+
+    @property
+    def info(self):
+        return json.loads((self.directory / "run.json").read_text())
+
+
+def run(scene, overrides=None, ranks=1, text=None, check=True):
+    """Run the program.
+
+    scene      name of a file in prm/verification, without .prm
+    overrides  {"Section/Entry": value}, appended to the scene: in a parameter
+               file the later value of an entry counts
+    text       the whole parameter file instead of a scene
+    check      fail unless the program succeeds
+    """
+    keep = os.environ.get("KEEP_RESULTS")
+    if keep:
+        Path(keep).mkdir(parents=True, exist_ok=True)
+        holder = None
+        work = Path(tempfile.mkdtemp(prefix=f"{scene}_", dir=keep))
+    else:
+        holder = tempfile.TemporaryDirectory(prefix=f"{scene}_")
+        work = Path(holder.name)
+
+    if text is None:
+        text = (SCENES / f"{scene}.prm").read_text()
+    overrides = {"Output/Directory": work / "results", **(overrides or {})}
+    (work / f"{scene}.prm").write_text(text + "\n" + as_prm(overrides))
+
+    command = [EXECUTABLE, str(work / f"{scene}.prm")]
+    if ranks > 1:
+        command = MPIRUN + ["-n", str(ranks)] + command
+    process = subprocess.run(
+        command,
+        cwd=work,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    result = Run(work / "results", process, holder)
+    if check and process.returncode != 0:
+        raise AssertionError(
+            f"{scene} on {ranks} rank(s) ended with code "
+            f"{process.returncode}:\n{process.stderr[-3000:]}"
+        )
+    return result
+
+
+class TestCase(unittest.TestCase):
+    """unittest with comparisons of numbers and the discrete identities."""
+
+    longMessage = True
+
+    def assertClose(self, value, expected, relative=0.0, absolute=0.0, what=""):
+        """abs(value - expected) <= relative abs(expected) + absolute."""
+        value, expected = np.asarray(value, float), np.asarray(expected, float)
+        defect = abs(value - expected) - relative * abs(expected) - absolute
+        if not np.all(defect <= 0):
+            worst = np.unravel_index(
+                np.nanargmax(np.where(np.isnan(defect), np.inf, defect)),
+                np.shape(defect),
+            )
+            shape = np.shape(defect)
+            got = np.broadcast_to(value, shape)[worst]
+            wanted = np.broadcast_to(expected, shape)[worst]
+            self.fail(
+                f"{what}: {got:.10g} is not {wanted:.10g} "
+                f"(difference {got - wanted:.3g}, allowed "
+                f"{relative * abs(wanted) + absolute:.3g}, at index {worst})"
+            )
+
+    def check_identities(self, result, tolerance=1e-10):
+        """The discrete identities that hold at every step of every scene.
+
+        tolerance is the scene's `Contact tolerance`, a bound on the relative
+        error in the energy norm.  Forces are dual to displacements: their
+        relative error is larger by the square root of the condition of the
+        stiffness, a factor of a hundred on the meshes used here, and another
+        hundred is left for loads that are small against the stresses.
+        """
+        forces = 1e4 * tolerance
+        stats = result.statistics
+        for name, column in stats.items():
+            self.assertTrue(np.all(np.isfinite(column)), f"{name} is not finite")
+
+        # The first row is the initial state: nothing was solved there unless
+        # the scene asked for equilibrium.
+        self.assertLessEqual(
+            stats["force_balance_defect"][1:].max(), forces, "force balance"
+        )
+        if "friction_dissipation" not in stats:
+            return
+
+        self.assertLessEqual(
+            stats["algebraic_error"].max(), tolerance, "algebraic error"
+        )
+        # The multiplier is clipped to its ball: only rounding is left.
+        self.assertLessEqual(stats["max_utilisation"].max(), 1 + 1e-12)
+        # A sticking node does not move at all: its increment is constrained.
+        self.assertLessEqual(
+            stats["max_stick_slip"].max(),
+            tolerance * stats["max_displacement"].max(),
+            "slip at sticking nodes",
+        )
+        self.assertLessEqual(
+            stats["slip_misalignment"].max(), forces, "force not along the slip"
+        )
+        # Rounding of the sum is the only way down.
+        dissipation = stats["friction_dissipation"]
+        self.assertGreaterEqual(
+            np.diff(dissipation).min(), -1e-14 * dissipation.max(), "dissipation"
+        )
+
+
+def main():
+    unittest.main(verbosity=2)

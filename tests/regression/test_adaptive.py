@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Adaptive meshes: identities after every step, hanging nodes on the contact."""
+
+import unittest
+
+import numpy as np
+
+from harness import TestCase, lattice, main, run
+
+
+def face_sizes(contact):
+    """The different edge lengths of the contact faces."""
+    corners = contact.points[contact.cells]
+    edges = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+    return np.unique(np.round(edges, 6))
+
+
+def hanging_nodes(contact):
+    """Points of the contact series in the middle of an edge of a face."""
+    key = lambda points: {tuple(p) for p in lattice(points)}
+    present = key(contact.points)
+    quads = contact.points[contact.cells]
+    middles = np.concatenate(
+        [(quads[:, i] + quads[:, (i + 1) % 4]) / 2 for i in range(4)]
+    )
+    return present & key(middles)
+
+
+class SlabAdaptive(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.result = run("slab_adaptive")
+
+    def test_identities_on_every_mesh(self):
+        self.check_identities(self.result)
+
+    def test_mesh_changes_and_refines_the_front(self):
+        cells = self.result["cells"]
+        self.assertGreater(len(np.unique(cells)), 5)
+        self.assertGreater(cells[-1], 2 * cells[0])
+        # the budget is a bound up to the last refinement
+        self.assertLessEqual(cells.max(), 2500)
+        contact = self.result.fields("contact", self.at(1))
+        self.assertGreaterEqual(len(face_sizes(contact)), 2)
+
+    def at(self, t):
+        times = [time for time, _ in self.result.series("contact")]
+        return int(np.argmin(np.abs(np.array(times) - t)))
+
+    def test_contact_face_stays_complete(self):
+        """Faces of different size cover the foundation once."""
+        for index in range(len(self.result.series("contact"))):
+            contact = self.result.fields("contact", index)
+            corners = contact.points[contact.cells]
+            length = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+            self.assertClose(length.sum(), 2, absolute=1e-6)
+        area = self.result["stick_area"] + self.result["slip_area"]
+        self.assertClose(area, 2, absolute=1e-10)
+
+    def test_values_near_the_limit(self):
+        """2 % of the values at t = 1: the uniform meshes n = 16 and n = 128
+        differ by 0.4 % there, the steps are those of n = 16."""
+        result = self.result
+        force = result["friction_force_x"]
+        self.assertClose(force[result.row(1)], 0.1286592, relative=0.02)
+        self.assertClose(force[result.row(2)], -0.0097635, absolute=0.02 * 0.1287)
+        self.assertClose(
+            result["strain_energy"][result.row(1)], 0.0321748, relative=0.02
+        )
+
+    def test_estimator_is_written(self):
+        self.assertGreater(self.result["estimator"][1:].min(), 0)
+        self.assertIn("estimator", self.result.fields().cell_data)
+
+    def test_kelly_works_too(self):
+        result = run("slab_adaptive", {"Mesh refinement/Strategy": "kelly"})
+        self.check_identities(result)
+        self.assertGreater(result["cells"][-1], 2 * result["cells"][0])
+        force = result["friction_force_x"][result.row(1)]
+        self.assertClose(force, 0.1286592, relative=0.02)
+
+    def test_estimator_falls_under_uniform_refinement(self):
+        """The residual estimator bounds the energy-norm error: of first order
+        up to the singular corners of the glued face, so between 0.5 and 1.1."""
+        values = []
+        for n in 8, 16, 32:
+            result = run(
+                "slab_adaptive",
+                {
+                    "Geometry/Arguments": f"{2 * n}, {n} : 0, 0 : 2, 1 : true",
+                    "Time/Phases": "1: 8",
+                    "Mesh refinement/Every n steps": 100,
+                },
+            )
+            values.append(result["estimator"][-1])
+        orders = np.log2(np.divide(values[:-1], values[1:]))
+        self.assertClose(orders, 0.8, absolute=0.3, what="order of the estimator")
+
+
+class PadAdaptive(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.result = run("pad_adaptive")
+
+    def test_identities_on_every_mesh(self):
+        self.check_identities(self.result)
+
+    def test_foundation_carries_hanging_nodes(self):
+        contact = self.result.fields("contact")
+        self.assertGreaterEqual(len(face_sizes(contact)), 2)
+        hanging = hanging_nodes(contact)
+        self.assertGreater(len(hanging), 0, "no hanging node on the foundation")
+        # where they hang their data are interpolated, hence finite
+        for name, values in contact.point_data.items():
+            self.assertTrue(np.all(np.isfinite(values)), name)
+
+    def test_stick_and_slip_make_up_the_face(self):
+        """The weights of the conforming basis functions add to the area."""
+        area = self.result["stick_area"] + self.result["slip_area"]
+        self.assertClose(area, 1, absolute=1e-10)
+
+    def test_values_near_the_uniform_ones(self):
+        """Within 5 % of n = 16: the step is 0.1 instead of 0.0375, and n = 8
+        with 0.075 differs from n = 16 by 6 % in energy and 0.3 % in force."""
+        result = self.result
+        self.assertClose(result["friction_force_x"][-1], 0.0099325, relative=0.05)
+        self.assertClose(result["friction_force_y"][-1], 0.0056079, relative=0.05)
+        self.assertClose(result["point0_y"][-1], 0.2061958, relative=0.05)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contact pieces that meet at an angle.
+
+Every scene has a displacement field that is linear in space and slips
+everywhere, so the discrete answer is exact: a wrong normal, a lost constraint
+or a wrong share of the bound at the corner shows at once.
+"""
+
+import unittest
+
+import numpy as np
+
+from harness import TestCase, main, run
+from test_rotation import rotation
+
+
+class Corners(TestCase):
+    def check_displacement(self, result, constant, gradient, centre=0.0):
+        """u(x,1) = constant + gradient (x - centre), at every node."""
+        fields = result.fields()
+        dim = len(constant)
+        x = fields.points[:, :dim] - centre
+        expected = np.asarray(constant) + x @ np.asarray(gradient).T
+        # single precision in VTU
+        self.assertClose(
+            fields.point_data["displacement"][:, :dim], expected, absolute=2e-7
+        )
+
+    def test_90_degrees_coulomb(self):
+        result = run("corner_coulomb_90_2d")
+        self.check_displacement(
+            result, (0.2, 0.4), ((-0.013, 0.039), (0.039, -0.143))
+        )
+        t = result["t"]
+        # lower side of length 2: 0.03 t along x; left side: 0.03 t along y
+        self.assertClose(result.vector("friction_force").T, 0.06 * t, absolute=1e-9)
+        self.assertClose(result["slip_area"][1:], 4, absolute=1e-10)
+        corner = np.outer(t, (0.2 + 0.013 - 0.039, 0.4 - 0.039 + 0.143))
+        self.assertClose(result.vector("point0"), corner, absolute=1e-9)
+        self.check_identities(result)
+
+    def test_90_degrees_coulomb_that_sticks(self):
+        """With a large coefficient the corner holds in both directions and
+        its two multipliers are not unique; all identities remain."""
+        result = run(
+            "corner_coulomb_90_2d",
+            {
+                "Boundary 0/Friction coefficient": 50,
+                "Boundary 1/Friction coefficient": 50,
+            },
+        )
+        self.check_identities(result)
+        self.assertClose(result["slip_area"][1:], 0, absolute=1e-10)
+        corner = result.vector("point0")
+        self.assertClose(corner, 0, absolute=1e-12, what="corner")
+
+    def check_150(self, refinements):
+        result = run(
+            "corner_tresca_150_2d", {"Geometry/Global refinements": refinements}
+        )
+        root3 = np.sqrt(3)
+        self.check_displacement(
+            result, (0.1, 0.05), ((0.02, 0.05 * root3), (0, -0.03))
+        )
+        t = result["t"]
+        self.assertClose(
+            result.vector("point0"), np.outer(t, (0.1, 0.05)), absolute=1e-9
+        )
+        self.check_identities(result)
+        return result
+
+    def test_150_degrees_tresca(self):
+        result = self.check_150(3)
+        # Both sides have length 1; the corner holds no friction point, so its
+        # share (half a cell of 1/8 on each side) is missing.  Slip is to the
+        # right below and downwards on the left.
+        bound = 0.25 / 13 * np.sqrt(3) * result["t"]
+        share = 1 - 1 / 16
+        direction = np.array([1, 0]) + np.array([np.sqrt(3) / 2, -0.5])
+        self.assertClose(
+            result.vector("friction_force"),
+            np.outer(share * bound, direction),
+            absolute=1e-9,
+            what="friction force",
+        )
+
+    def test_150_degrees_with_one_cell(self):
+        """One cell carries both normals of the obtuse corner."""
+        self.check_150(0)
+
+    def test_150_degrees_frictionless(self):
+        """Uniform dilatation slides along both sides: u = x t, for which the
+        outer sides need the pressure 2 (lambda + mu)."""
+        pressure = 2 * (0.3 / 1.3 / 0.4 + 1 / 2.6) * 0.01
+        corners = np.array([[1, 0], [0.25, 1.25], [-np.sqrt(3) / 2, 0.5]])
+        overrides = {}
+        for side, (a, b) in {1: (0, 1), 3: (1, 2)}.items():
+            along = corners[b] - corners[a]
+            normal = np.array([along[1], -along[0]]) / np.linalg.norm(along)
+            force = pressure * normal
+            overrides[f"Boundary {side}/Traction"] = (
+                f"{force[0]:.17g}*t; {force[1]:.17g}*t"
+            )
+        for side in 0, 2:
+            overrides[f"Boundary {side}/Friction law"] = "none"
+            overrides[f"Boundary {side}/Foundation displacement"] = 0
+        result = run("corner_tresca_150_2d", overrides)
+        self.check_displacement(result, (0, 0), ((0.01, 0), (0, 0.01)))
+
+    def check_edge(self, result, matrix):
+        gradient = np.zeros((3, 3))
+        gradient[2, :2] = 0.06, 0.08
+        self.check_displacement(
+            result, matrix @ (0, 0, 0.1), matrix @ gradient @ matrix.T
+        )
+        force = np.outer(0.7 / 13 * result["t"], matrix @ (0, 0, 1))
+        self.assertClose(
+            result.vector("friction_force"), force, absolute=1e-9, what="friction force"
+        )
+        self.assertClose(result["slip_area"][1:], 2, absolute=1e-10)
+        self.check_identities(result)
+
+    def test_90_degrees_edge_tresca_3d(self):
+        self.check_edge(run("corner_tresca_90_3d"), np.eye(3))
+
+    def test_90_degrees_edge_tresca_3d_turned(self):
+        """The edge is oblique too.  Side x = 1 is held in all components,
+        because a single one is not a Cartesian component any more."""
+        matrix = rotation(50, (1, -2, 2))
+
+        def turned(vector):
+            return "; ".join(
+                " + ".join(f"({c:.17g})*({v})" for c, v in zip(row, vector))
+                for row in matrix
+            )
+
+        y = " + ".join(f"({c:.17g})*{v}" for c, v in zip(matrix[:, 1], "xyz"))
+        result = run(
+            "corner_tresca_90_3d",
+            {
+                "Geometry/Rotation angle": 50,
+                "Geometry/Rotation axis": "1, -2, 2",
+                "Boundary 1/Displacement": turned(("0", "0", f"t*(0.16 + 0.08*({y}))")),
+                "Boundary 3/Traction": turned(("0", "0", "0.4/13*t")),
+                "Boundary 4/Traction": turned(("-0.3/13*t", "-0.4/13*t", "0")),
+                "Boundary 5/Traction": turned(("0.3/13*t", "0.4/13*t", "0")),
+            },
+        )
+        self.check_edge(result, matrix)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Bad input is refused: a non-zero exit code and one sentence on the error
+stream that names what is wrong.  No stack trace, no partial result that looks
+like an answer."""
+
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from harness import EXECUTABLE, MPIRUN, TestCase, main, run
+
+SMALL = {
+    "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
+    "Time/Phases": "1: 4, 2: 4",
+}
+
+
+class Refused(TestCase):
+    def refused(self, *names, scene="slab", text=None, ranks=1, **overrides):
+        """The run fails with one sentence that contains every name (regular
+        expressions, case ignored)."""
+        overrides = {**(SMALL if scene == "slab" else {}), **overrides}
+        result = run(scene, overrides, text=text, ranks=ranks, check=False)
+        self.check(result.returncode, result.stderr, names, ranks)
+        return result
+
+    def check(self, returncode, message, names, ranks=1):
+        self.assertNotEqual(returncode, 0, "the run was accepted")
+        self.assertGreater(returncode, 0, f"killed by a signal: {message}")
+        for name in names:
+            self.assertRegex(message, f"(?is){name}")
+        for trace in "Stacktrace", "An error occurred in line", "terminate called":
+            self.assertNotIn(trace, message)
+        if ranks == 1:
+            lines = [line for line in message.splitlines() if line.strip()]
+            self.assertEqual(len(lines), 1, f"not one sentence: {message}")
+
+    # The parameter file
+
+    def test_missing_file(self):
+        with tempfile.TemporaryDirectory() as work:
+            process = subprocess.run(
+                [EXECUTABLE, str(Path(work) / "absent.prm")],
+                capture_output=True,
+                text=True,
+            )
+        self.check(process.returncode, process.stderr, ["absent.prm"])
+
+    def test_no_argument(self):
+        process = subprocess.run([EXECUTABLE], capture_output=True, text=True)
+        self.check(process.returncode, process.stderr, [r"\.prm"])
+
+    def test_unknown_entry(self):
+        self.refused("Youngs modulus", **{"Material/Youngs modulus": 1})
+
+    def test_unknown_subsection(self):
+        self.refused("Lods", **{"Lods/Body force": "0; 0"})
+
+    def test_unknown_law(self):
+        self.refused("Law", "burgers", "maxwell", **{"Material/Law": "burgers"})
+
+    def test_not_a_number(self):
+        self.refused("Poisson", "soft", **{"Material/Poisson's ratio": "soft"})
+
+    def test_dimension_four(self):
+        self.refused("Dimension", **{"Dimension": 4})
+
+    # Boundary roles
+
+    def test_boundary_without_a_role(self):
+        text = """
+            set Dimension = 2
+            subsection Geometry
+              set Generator = subdivided_hyper_rectangle
+              set Arguments = 2, 2 : 0, 0 : 1, 1 : true
+            end
+            subsection Boundary 3
+              set Role = clamped
+            end
+            subsection Boundary 0
+              set Role = free
+            end
+            subsection Boundary 1
+              set Role = free
+            end
+            subsection Time
+              set Phases = 1: 1
+            end
+        """
+        self.refused("boundary", "2", "role", scene="roles", text=text)
+
+    def test_boundary_not_in_the_mesh(self):
+        self.refused("boundary 7", **{"Boundary 7/Role": "clamped"})
+
+    def test_unknown_role(self):
+        self.refused("Role", "glue", **{"Boundary 3/Role": "glue"})
+
+    def test_wrong_number_of_components(self):
+        self.refused("Traction", **{"Boundary 0/Traction": "1; 2; 3"})
+
+    def test_curved_contact_piece(self):
+        self.refused(
+            "flat|curved|plane",
+            "0",
+            **{
+                "Geometry/Generator": "hyper_shell",
+                "Geometry/Arguments": "0, 0 : 0.5 : 1 : 12 : true",
+                "Boundary 0/Role": "contact",
+                "Boundary 0/Friction law": "tresca",
+                "Boundary 1/Role": "clamped",
+            },
+            scene="ring",
+            text="set Dimension = 2\n",
+        )
+
+    def test_unknown_generator(self):
+        self.refused("hyper_doughnut", **{"Geometry/Generator": "hyper_doughnut"})
+
+    def test_point_outside_the_body(self):
+        self.refused("Points", "5", **{"Output/Points": "5, 5"})
+
+    # Physics
+
+    def test_incompressible(self):
+        self.refused("Poisson", "0.5", **{"Material/Poisson's ratio": 0.5})
+
+    def test_negative_stiffness(self):
+        self.refused("Young", **{"Material/Young's modulus": -1})
+
+    def test_stiffness_that_vanishes_somewhere(self):
+        self.refused("Young", **{"Material/Young's modulus": "x - 1"})
+
+    def test_negative_viscosity(self):
+        self.refused("Viscosity", **{"Material/maxwell/Viscosity": -0.5})
+
+    def test_negative_friction_bound(self):
+        self.refused("Friction bound", **{"Boundary 2/Friction bound": -0.1})
+
+    def test_friction_bound_that_turns_negative(self):
+        self.refused("Friction bound", **{"Boundary 2/Friction bound": "0.5 - t"})
+
+    def test_negative_friction_coefficient(self):
+        self.refused(
+            "Friction coefficient",
+            scene="coulomb_block_2d",
+            **{"Boundary 2/Friction coefficient": -0.4},
+        )
+
+    def test_body_free_to_move(self):
+        self.refused("rigid", **{"Boundary 3/Role": "free"})
+
+    def test_friction_does_not_hold_a_body(self):
+        """Given normal stress: nothing but friction holds the slab."""
+        self.refused(
+            "rigid",
+            **{
+                "Boundary 3/Role": "free",
+                "Boundary 2/Friction law": "coulomb",
+                "Boundary 2/Normal stress": "-t",
+            },
+        )
+
+    def test_body_free_to_rotate(self):
+        """Held at x = 0 and y = 0 as planes, but here both are symmetry
+        planes of one direction only."""
+        self.refused(
+            "rigid",
+            **{
+                "Boundary 3/Role": "free",
+                "Boundary 1/Role": "displacement",
+                "Boundary 1/Displacement": "free; 0",
+                "Boundary 2/Role": "free",
+            },
+        )
+
+    def test_incompatible_initial_load(self):
+        """A load that is there at t = 0 with zero initial stress."""
+        self.refused(
+            "compatib|equilibr", **{"Boundary 0/Traction": "0.3; 0"}
+        )
+
+    def test_incompatible_initial_stress(self):
+        self.refused(
+            "compatib|equilibr", **{"Initial state/Stress": "0.1; 0; 0; 0"}
+        )
+
+    def test_compatible_initial_stress_is_accepted(self):
+        """The counterpart: friction may carry a shear below its bound, here
+        0.05 of 0.08, balanced by tractions on the sides; this is no error."""
+        result = run(
+            "slab",
+            {
+                **SMALL,
+                "Initial state/Stress": "0; 0; 0; 0.05",
+                "Boundary 0/Traction": "0; -0.05",
+                "Boundary 1/Role": "traction",
+                "Boundary 1/Traction": "0; 0.05",
+                "Time/Phases": "0.1: 1",
+            },
+        )
+        self.assertClose(result["friction_force_x"][0], 0.1, absolute=1e-9)
+
+    def test_initial_shear_beyond_the_bound(self):
+        self.refused(
+            "compatib|equilibr",
+            **{
+                "Initial state/Stress": "0; 0; 0; 0.09",
+                "Boundary 0/Traction": "0; -0.09",
+                "Boundary 1/Role": "traction",
+                "Boundary 1/Traction": "0; 0.09",
+            },
+        )
+
+    def test_step_beyond_the_stability_limit(self):
+        """2/r = 2.6; the message names the limit."""
+        self.refused("step", r"2\.6", **{"Time/Phases": "3: 1"})
+
+    def test_step_below_the_stability_limit_is_accepted(self):
+        run("slab", {**SMALL, "Time/Phases": "2.5: 1"})
+
+    def test_phases_that_go_back(self):
+        self.refused("Phases", **{"Time/Phases": "1: 4, 0.5: 4"})
+
+    def test_expression_without_value(self):
+        self.refused("Traction", **{"Boundary 0/Traction": "sqrt(-1 - t); 0"})
+
+    def test_expression_that_loses_its_value(self):
+        """Fine at t = 0, NaN after t = 0.5."""
+        self.refused("Traction", **{"Boundary 0/Traction": "t*sqrt(0.5 - t); 0"})
+
+    def test_expression_with_an_unknown_symbol(self):
+        self.refused("Body force", **{"Loads/Body force": "q*t; 0"})
+
+    def test_exhausted_contact_iterations(self):
+        """Not converged is an error, never a result."""
+        self.refused(
+            "iterations",
+            **{
+                "Geometry/Arguments": "32, 16 : 0, 0 : 2, 1 : true",
+                "Time/Phases": "1: 1",
+                "Solver/Maximal contact iterations": 1,
+            },
+        )
+
+    # The machine
+
+    def test_unwritable_output(self):
+        """The place of the directory is taken by a file."""
+        with tempfile.NamedTemporaryFile() as file:
+            self.refused(
+                Path(file.name).name, **{"Output/Directory": f"{file.name}/results"}
+            )
+
+    def test_every_rank_ends(self):
+        """An error found by all ranks or by one ends all of them."""
+        self.refused(
+            "Friction bound",
+            ranks=3,
+            **{"Boundary 2/Friction bound": "if(x>1.9, 0.5 - t, 1)"},
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""VTU series, statistics and records, read back by independent readers."""
+
+import unittest
+
+import numpy as np
+
+from harness import TestCase, main, run
+
+STATISTICS_2D = [
+    "step",
+    "t",
+    "k",
+    "cells",
+    "dofs",
+    "contact_iterations",
+    "linear_iterations",
+    "duality_gap",
+    "algebraic_error",
+    "stick_area",
+    "slip_area",
+    "friction_force_x",
+    "friction_force_y",
+    "reaction_2_x",
+    "reaction_2_y",
+    "reaction_3_x",
+    "reaction_3_y",
+    "load_x",
+    "load_y",
+    "force_balance_defect",
+    "max_utilisation",
+    "max_stick_slip",
+    "slip_misalignment",
+    "stored_energy",
+    "strain_energy",
+    "viscous_dissipation",
+    "friction_dissipation",
+    "external_work",
+    "energy_balance_defect",
+    "max_displacement",
+    "max_von_mises",
+    "mean_von_mises",
+    "stress_norm",
+    "point0_x",
+    "point0_y",
+    "wall_rate",
+    "wall_load",
+    "wall_contact",
+    "wall_output",
+    "wall_step",
+]
+
+# VTU may hold single precision
+SINGLE = 1e-6
+
+
+class Slab(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.result = run("slab")
+
+    def test_columns_and_steps(self):
+        self.assertEqual(list(self.result.statistics), STATISTICS_2D)
+        self.assertClose(self.result["step"], np.arange(33))
+        self.assertClose(self.result["t"], np.linspace(0, 2, 33), absolute=1e-14)
+        self.assertClose(self.result["k"][1:], 1 / 16, absolute=1e-14)
+        self.assertClose(self.result["cells"], 512)
+        self.assertClose(self.result["dofs"], 2 * 33 * 17)
+
+    def test_forces_are_in_balance_by_their_signs(self):
+        """Loads, reactions and minus the friction force act on the body; the
+        reaction of the foundation is normal."""
+        r = self.result
+        total = (
+            r.vector("load")
+            + r.vector("reaction_2")
+            + r.vector("reaction_3")
+            - r.vector("friction_force")
+        )
+        self.assertClose(total, 0, absolute=1e-9)
+        push = 0.3 * np.minimum(r["t"], 2 - r["t"])
+        self.assertClose(r["load_x"], push, absolute=1e-12)
+        self.assertClose(r["reaction_2_x"], 0, absolute=1e-12)
+
+    def test_series_times(self):
+        for name in "solution", "contact":
+            times = [time for time, _ in self.result.series(name)]
+            self.assertClose(times, (0, 0.5, 1, 1.5, 2), absolute=1e-12, what=name)
+            for _, record in self.result.series(name):
+                self.assertTrue(record.exists(), record)
+
+    def test_solution_fields(self):
+        fields = self.result.fields("solution", 2)
+        step = self.result.row(1)
+        self.assertEqual(set(fields.point_data), {"displacement", "velocity"})
+        components = [f"{s}_{c}" for s in ("stress", "irreversible_stress")
+                      for c in ("xx", "yy", "zz", "xy")]
+        self.assertEqual(
+            set(fields.cell_data), {*components, "von_mises", "subdomain"}
+        )
+        for data in fields.point_data, fields.cell_data:
+            for name, values in data.items():
+                self.assertTrue(np.all(np.isfinite(values)), name)
+        for values in fields.point_data.values():
+            self.assertEqual(values.shape[1], 3)
+            self.assertClose(values[:, 2], 0)
+
+        self.assertEqual(len(fields.cells), self.result["cells"][step])
+        largest = np.linalg.norm(fields.point_data["displacement"], axis=1).max()
+        self.assertClose(
+            largest, self.result["max_displacement"][step], relative=SINGLE
+        )
+        xx, yy, zz, xy = (fields.cell_data[c] for c in components[:4])
+        mises = np.sqrt(
+            ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2
+        )
+        self.assertClose(
+            fields.cell_data["von_mises"], mises, absolute=SINGLE * mises.max()
+        )
+        self.assertClose(
+            mises.mean(), self.result["mean_von_mises"][step], relative=SINGLE
+        )
+        self.assertClose(
+            mises.max(), self.result["max_von_mises"][step], relative=SINGLE
+        )
+        norm = np.sqrt(np.mean(xx**2 + yy**2 + zz**2 + 2 * xy**2) * 2)
+        self.assertClose(norm, self.result["stress_norm"][step], relative=SINGLE)
+
+        # z is deviatoric for this law
+        trace = sum(fields.cell_data[c] for c in components[4:7])
+        self.assertClose(trace, 0, absolute=SINGLE * mises.max())
+
+    def test_stress_is_elastic_stress_plus_z(self):
+        """sigma = E eps(u) + z with the mean strain of the cell, formed here
+        from the displacement at its corners."""
+        fields = self.result.fields("solution", 2)
+        x = fields.points[fields.cells][:, :, :2]
+        u = fields.point_data["displacement"][fields.cells][:, :, :2]
+        low, high = x.min(axis=1), x.max(axis=1)
+        size = high - low
+        sign = np.where(x > (low + high)[:, None, :] / 2, 1, -1)
+        gradient = np.einsum("cvi,cvj->cij", u, sign) / 2 / size[:, None, :]
+        strain = (gradient + gradient.transpose(0, 2, 1)) / 2
+        lame, mu = 0.3 / 1.3 / 0.4, 1 / 2.6
+        trace = strain[:, 0, 0] + strain[:, 1, 1]
+        elastic = {
+            "xx": lame * trace + 2 * mu * strain[:, 0, 0],
+            "yy": lame * trace + 2 * mu * strain[:, 1, 1],
+            "zz": lame * trace,
+            "xy": 2 * mu * strain[:, 0, 1],
+        }
+        scale = abs(fields.cell_data["stress_xx"]).max()
+        for name, value in elastic.items():
+            z = fields.cell_data[f"irreversible_stress_{name}"]
+            # differences of single-precision displacements over h = 1/16
+            self.assertClose(
+                fields.cell_data[f"stress_{name}"], value + z, absolute=2e-5 * scale
+            )
+
+    def test_contact_fields(self):
+        wanted = {
+            "traction",
+            "bound",
+            "utilisation",
+            "slip",
+            "slip_rate",
+            "stick",
+            "displacement",
+        }
+        for index, (time, _) in enumerate(self.result.series("contact")):
+            contact = self.result.fields("contact", index)
+            step = self.result.row(time)
+            self.assertLessEqual(wanted, set(contact.point_data))
+            for name, values in contact.point_data.items():
+                self.assertTrue(np.all(np.isfinite(values)), name)
+            # all of the foundation and nothing else
+            self.assertClose(contact.points[:, 1:], 0, absolute=1e-12)
+            self.assertEqual(len(contact.cells), 32)
+            nodes = contact.nodes()
+            nodes = nodes[np.argsort(contact.points[nodes, 0])]
+            data = {name: v[nodes] for name, v in contact.point_data.items()}
+            weight = np.full(33, 1 / 16)
+            weight[[0, -1]] /= 2
+
+            # lumped weights: the sum is the force, opposite to lambda
+            force = (weight[:, None] * data["traction"]).sum(axis=0)
+            scale = abs(self.result["friction_force_x"]).max()
+            self.assertClose(
+                force[0],
+                -self.result["friction_force_x"][step],
+                absolute=SINGLE * scale,
+            )
+            self.assertClose(data["traction"][:, 1:], 0, absolute=SINGLE * scale)
+            self.assertClose(data["bound"], 0.08, absolute=SINGLE)
+            size = np.linalg.norm(data["traction"], axis=1)
+            self.assertClose(data["utilisation"], size / 0.08, absolute=10 * SINGLE)
+            self.assertLessEqual(data["utilisation"].max(), 1 + SINGLE)
+            self.assertEqual(set(np.unique(data["stick"])) - {0, 1}, set())
+            if step > 0:
+                self.assertClose(
+                    (weight * data["stick"]).sum(),
+                    self.result["stick_area"][step],
+                    absolute=SINGLE,
+                )
+            # a foundation at rest: the slip since the start is the tangential
+            # displacement
+            self.assertClose(
+                data["slip"][:, 0],
+                data["displacement"][:, 0],
+                absolute=SINGLE * abs(data["displacement"]).max(),
+            )
+            # friction opposes the rate of slip, which vanishes at stick
+            rate = data["slip_rate"][:, 0]
+            self.assertTrue(np.all(rate * data["traction"][:, 0] <= 1e-12))
+            self.assertClose(rate[data["stick"] > 0.5], 0, absolute=1e-9)
+
+    def test_both_series_agree_on_the_foundation(self):
+        solution = self.result.fields("solution", 2)
+        contact = self.result.fields("contact", 2)
+        bottom = {
+            round(float(p[0]), 6): u
+            for p, u in zip(solution.points, solution.point_data["displacement"])
+            if abs(p[1]) < 1e-9
+        }
+        for point, u in zip(contact.points, contact.point_data["displacement"]):
+            self.assertClose(u, bottom[round(float(point[0]), 6)], absolute=SINGLE)
+
+    def test_run_record(self):
+        info = self.result.info
+        self.assertLessEqual(
+            {
+                "program",
+                "version",
+                "git_revision",
+                "dealii_version",
+                "n_mpi_ranks",
+                "dimension",
+                "effects",
+                "date",
+            },
+            set(info),
+        )
+        self.assertEqual(info["program"], "viscoplastic_contact")
+        self.assertEqual(info["n_mpi_ranks"], 1)
+        self.assertEqual(info["dimension"], 2)
+        self.assertTrue(info["effects"])
+
+    def test_recorded_parameters_repeat_the_run(self):
+        """parameters.prm is complete: running it gives the same numbers."""
+        text = (self.result.directory / "parameters.prm").read_text()
+        again = run("again", text=text)
+        self.assertEqual(list(again.statistics), list(self.result.statistics))
+        for name, column in self.result.statistics.items():
+            if not name.startswith("wall_"):
+                self.assertClose(again[name], column, absolute=0, what=name)
+
+
+class Choices(TestCase):
+    SMALL = {"Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true"}
+
+    def times(self, **more):
+        result = run("slab", {**self.SMALL, **more})
+        return [time for time, _ in result.series("solution")]
+
+    def test_only_the_ends(self):
+        times = self.times(**{"Output/Fields every": 0})
+        self.assertClose(times, (0, 2), absolute=1e-12)
+
+    def test_every_five_steps_and_the_last(self):
+        times = self.times(**{"Output/Fields every": 5})
+        self.assertClose(times, np.r_[np.arange(0, 32, 5), 32] / 16, absolute=1e-12)
+
+    def test_time_interval(self):
+        """Every 0.5: the steps of 1/16 meet these times."""
+        times = self.times(**{"Output/Fields interval": 0.5})
+        self.assertClose(times, (0, 0.5, 1, 1.5, 2), absolute=1e-12)
+
+    def test_several_points(self):
+        result = run("slab", {**self.SMALL, "Output/Points": "0, 0; 2, 0.5; 1, 1"})
+        for name in "point0", "point1", "point2":
+            self.assertIn(f"{name}_x", result.statistics)
+        # the third is glued
+        self.assertClose(result.vector("point2"), 0, absolute=1e-15)
+        self.assertGreater(abs(result["point1_x"]).max(), 0)
+
+    def test_default_directory_is_named_after_the_scene(self):
+        result = run("slab", {**self.SMALL, "Output/Directory": ""})
+        directory = result.directory.parent / "output" / "slab"
+        self.assertTrue((directory / "statistics.csv").exists())
+
+
+class ThreeDimensions(TestCase):
+    def test_pad_fields(self):
+        result = run("pad", {"Geometry/Arguments": "4, 4, 4 : 0, 0, 0 : 1, 1, 1 : true",
+                             "Time/Phases": "0.75: 10"})
+        fields = result.fields()
+        for c in "xx", "yy", "zz", "xy", "xz", "yz":
+            self.assertIn(f"stress_{c}", fields.cell_data)
+            self.assertIn(f"irreversible_stress_{c}", fields.cell_data)
+        self.assertEqual(fields.cells.shape, (64, 8))
+        s = fields.cell_data
+        mises = np.sqrt(
+            (
+                (s["stress_xx"] - s["stress_yy"]) ** 2
+                + (s["stress_yy"] - s["stress_zz"]) ** 2
+                + (s["stress_zz"] - s["stress_xx"]) ** 2
+            )
+            / 2
+            + 3 * (s["stress_xy"] ** 2 + s["stress_xz"] ** 2 + s["stress_yz"] ** 2)
+        )
+        self.assertClose(s["von_mises"], mises, absolute=SINGLE * mises.max())
+
+        contact = result.fields("contact")
+        self.assertEqual(contact.cells.shape, (16, 4))
+        self.assertClose(contact.points[:, 2], 0, absolute=1e-12)
+        nodes = contact.nodes()
+        self.assertEqual(len(nodes), 25)
+        x = contact.points[nodes]
+        edge = lambda v: np.where((v < 1e-9) | (v > 1 - 1e-9), 0.5, 1)
+        weight = edge(x[:, 0]) * edge(x[:, 1]) / 16
+        force = (weight[:, None] * contact.point_data["traction"][nodes]).sum(axis=0)
+        expected = -result.vector("friction_force")[-1]
+        self.assertClose(force, expected, absolute=SINGLE * abs(expected).max())
+
+
+if __name__ == "__main__":
+    main()

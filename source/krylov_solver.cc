@@ -52,8 +52,9 @@ namespace Viscoplastic
 
   /**
    * P D M^{-1} D P: the multigrid cycle, filtered by the truncation. The factor
-   * D^2 = diag(K)/diag(K + springs) goes from 1 (no spring) to 0 (stick), so
-   * that stiff springs do not spoil a preconditioner that knows none.
+   * D^2 = diag(K + springs known to M)/diag(K + springs), at most 1, tends to 0
+   * for a point that comes to rest, so that stiff new springs do not spoil a
+   * preconditioner that does not know them.
    */
   struct KrylovSolver::FilteredPreconditioner
   {
@@ -73,9 +74,13 @@ namespace Viscoplastic
           {
             const unsigned int k = solver.face.first_dof[n] + i;
             if (solver.local_face_dofs[k] != numbers::invalid_unsigned_int)
-              damping[k] = std::sqrt(
-                solver.face_diagonal[k] /
-                (solver.face_diagonal[k] + solver.truncation.spring[n][i][i]));
+              {
+                const double known =
+                  solver.face_diagonal[k] + solver.built_for.spring[n][i][i];
+                const double present =
+                  solver.face_diagonal[k] + solver.truncation.spring[n][i][i];
+                damping[k] = std::sqrt(std::min(1., known / present));
+              }
           }
     }
 
@@ -121,6 +126,9 @@ namespace Viscoplastic
     , w(residual)
     , product(residual)
   {
+    for (std::size_t i = 0; i < excluded.size(); ++i)
+      if (excluded[i])
+        excluded_entries.push_back(i);
     const IndexSet &owned = residual.locally_owned_elements();
     for (unsigned int k = 0; k < face_dofs.size(); ++k)
       if (owned.is_element(face_dofs[k]))
@@ -173,9 +181,8 @@ namespace Viscoplastic
   KrylovSolver::restrict_to_unknowns(DistributedVector &v) const
   {
     double *entry = v.begin();
-    for (std::size_t i = 0; i < excluded.size(); ++i)
-      if (excluded[i])
-        entry[i] = 0.;
+    for (const std::size_t i : excluded_entries)
+      entry[i] = 0.;
   }
 
 
@@ -278,6 +285,24 @@ namespace Viscoplastic
             values[e] *= keep[i] * keep_column[indices[e]];
       }
 
+    // The springs of slipping points, which the cut-off rows do not have.
+    if (has_springs)
+      {
+        for (unsigned int n = 0; n < face.n_nodes(); ++n)
+          for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+            for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
+              {
+                const unsigned int first = face.first_dof[n];
+                if (local_face_dofs[first + i] !=
+                      numbers::invalid_unsigned_int &&
+                    truncation.spring[n][i][j] != 0.)
+                  masked_matrix.add(face_dofs[first + i],
+                                    face_dofs[first + j],
+                                    truncation.spring[n][i][j]);
+              }
+        masked_matrix.compress(VectorOperation::add);
+      }
+
     // A contiguous copy of the rigid body modes, which ML refers to.
     const std::size_t n = excluded.size();
     near_null_space.resize(n * rigid_body_modes.size());
@@ -303,7 +328,7 @@ namespace Viscoplastic
     amg = std::make_unique<TrilinosWrappers::PreconditionAMG>();
     amg->initialize(masked_matrix, parameters);
     built_for       = truncation;
-    fresh_rate      = 0.;
+    is_fresh        = true;
     lost_iterations = 0.;
   }
 
@@ -402,8 +427,9 @@ namespace Viscoplastic
 
     // What ML costs in iterations of this solver: a set-up takes 1.2 (2D) to
     // 2.2 (3D) solves of about 15.
-    const double price = dim == 2 ? 20. : 30.;
-    if (!amg || (lost_iterations > price && !(built_for == truncation)))
+    const double price       = dim == 2 ? 20. : 30.;
+    const bool   is_outdated = !(built_for == truncation) || has_springs;
+    if (!amg || (lost_iterations > price && is_outdated))
       build_preconditioner();
   }
 
@@ -471,10 +497,11 @@ namespace Viscoplastic
     if (decades > 0.)
       {
         const double rate = control.last_step() / decades;
-        if (fresh_rate == 0.)
-          fresh_rate = rate;
+        if (is_fresh)
+          best_rate = best_rate == 0. ? rate : std::min(best_rate, rate);
+        is_fresh = false;
         lost_iterations +=
-          std::max(0., control.last_step() - fresh_rate * decades);
+          std::max(0., control.last_step() - best_rate * decades);
       }
     return control.last_step();
   }

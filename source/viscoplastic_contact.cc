@@ -94,7 +94,11 @@ namespace Viscoplastic
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       statistics =
         std::make_unique<Statistics>(output->directory() + "statistics.csv");
-    Step initial{state, forces, initial_report, {}, 0.};
+    Step initial{state,
+                 forces,
+                 initial_report,
+                 {},
+                 std::numeric_limits<double>::infinity()};
     record(state, initial, {0, 0., 0., 0.});
     write_fields();
 

@@ -110,6 +110,7 @@ namespace Viscoplastic
 
     const DistributedMatrix                    &matrix;
     const std::vector<bool>                    &excluded;
+    std::vector<std::size_t>                    excluded_entries;
     std::vector<DistributedVector>              rigid_body_modes;
     const FrictionFace                         &face;
     const std::vector<types::global_dof_index> &face_dofs;
@@ -128,8 +129,10 @@ namespace Viscoplastic
     DistributedMatrix masked_matrix;
     /// For which truncation it was built.
     FaceTruncation built_for;
-    /// Iterations a decade right after the set-up; those lost since.
-    double fresh_rate = 0., lost_iterations = 0.;
+    /// Iterations a decade right after a set-up, the best so far; iterations
+    /// lost against that since the last set-up.
+    double best_rate = 0., lost_iterations = 0.;
+    bool   is_fresh = false;
 
     // The solve under way.
     const DistributedVector *load = nullptr;

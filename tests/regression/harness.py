@@ -14,9 +14,11 @@ KEEP_RESULTS to a directory to keep them.
 import csv
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
+import weakref
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
@@ -33,6 +35,9 @@ MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none
 # Columns that tell how the numbers were found: they may differ from run to
 # run and from rank count to rank count.
 EFFORT = {"contact_iterations", "linear_iterations", "duality_gap", "algebraic_error"}
+
+# Fields that have one value a cell.
+CELL_DATA = ("stress_", "irreversible_stress_", "von_mises", "estimator", "subdomain")
 
 # Columns that are errors of the solution of one step, compared with bounds,
 # not with each other.
@@ -65,6 +70,11 @@ def lattice(points):
     return np.floor(np.asarray(points, float) * 2**16 + 0.31).astype(int)
 
 
+def has_points(vtu):
+    piece = next(xml.parse(vtu).getroot().iter("Piece"))
+    return int(piece.attrib["NumberOfPoints"]) > 0
+
+
 class Fields:
     """One output time of a VTU series, all pieces joined."""
 
@@ -72,22 +82,24 @@ class Fields:
         offset, points, cells = 0, [], []
         for piece in pieces:
             points.append(piece.points)
-            blocks = [block for block in piece.cells if len(block.data)]
-            if len({block.type for block in blocks}) > 1:
+            if len({block.type for block in piece.cells}) != 1:
                 raise AssertionError("more than one cell type in a VTU file")
-            cells += [block.data + offset for block in blocks]
+            cells += [block.data + offset for block in piece.cells]
             offset += len(piece.points)
         self.points = np.concatenate(points)
         self.cells = np.concatenate(cells)
-        pieces = [p for p in pieces if len(p.points)]
-        self.point_data = {
-            name: np.concatenate([p.point_data[name] for p in pieces])
-            for name in pieces[0].point_data
-        }
-        self.cell_data = {
-            name: np.concatenate([np.concatenate(p.cell_data[name]) for p in pieces])
-            for name in pieces[0].cell_data
-        }
+        self.point_data, self.cell_data = {}, {}
+        for name in pieces[0].point_data:
+            values = np.concatenate([p.point_data[name] for p in pieces])
+            if not name.startswith(CELL_DATA):
+                self.point_data[name] = values
+                continue
+            # deal.II writes one copy of each point a cell, and cell data as
+            # point data that are constant in the cell
+            values = values[self.cells]
+            if not np.array_equal(values.min(axis=1), values.max(axis=1)):
+                raise AssertionError(f"{name} is not constant in the cells")
+            self.cell_data[name] = values[:, 0]
 
     def nodes(self):
         """Indices of one copy of each point: faces and cells repeat them."""
@@ -98,12 +110,11 @@ class Fields:
 class Run:
     """A finished run: exit code, messages and, if it succeeded, results."""
 
-    def __init__(self, directory, process, keep):
+    def __init__(self, directory, process):
         self.directory = directory
         self.returncode = process.returncode
         self.stdout = process.stdout
         self.stderr = process.stderr
-        self._keep = keep
 
     def __getitem__(self, column):
         return self.statistics[column]
@@ -145,13 +156,13 @@ class Run:
     def fields(self, name="solution", index=-1):
         """The fields of one entry of a series, default the last."""
         record = self.series(name)[index][1]
-        root = xml.parse(record).getroot()
-        return Fields(
-            [
-                meshio.read(record.parent / e.attrib["Source"])
-                for e in root.iter("Piece")
-            ]
-        )
+        files = [
+            record.parent / e.attrib["Source"]
+            for e in xml.parse(record).getroot().iter("Piece")
+        ]
+        # meshio cannot read files without points, which ranks without a face
+        # of the contact write
+        return Fields([meshio.read(file) for file in files if has_points(file)])
 
     @property
     def info(self):
@@ -170,11 +181,7 @@ def run(scene, overrides=None, ranks=1, text=None, check=True):
     keep = os.environ.get("KEEP_RESULTS")
     if keep:
         Path(keep).mkdir(parents=True, exist_ok=True)
-        holder = None
-        work = Path(tempfile.mkdtemp(prefix=f"{scene}_", dir=keep))
-    else:
-        holder = tempfile.TemporaryDirectory(prefix=f"{scene}_")
-        work = Path(holder.name)
+    work = Path(tempfile.mkdtemp(prefix=f"{scene}_", dir=keep))
 
     if text is None:
         text = (SCENES / f"{scene}.prm").read_text()
@@ -192,7 +199,10 @@ def run(scene, overrides=None, ranks=1, text=None, check=True):
         stderr=subprocess.PIPE,
         text=True,
     )
-    result = Run(work / "results", process, holder)
+    result = Run(work / "results", process)
+    if not keep:
+        # results live as long as the Run
+        weakref.finalize(result, shutil.rmtree, work, ignore_errors=True)
     if check and process.returncode != 0:
         raise AssertionError(
             f"{scene} on {ranks} rank(s) ended with code "
@@ -209,7 +219,9 @@ class TestCase(unittest.TestCase):
     def assertClose(self, value, expected, relative=0.0, absolute=0.0, what=""):
         """abs(value - expected) <= relative abs(expected) + absolute."""
         value, expected = np.asarray(value, float), np.asarray(expected, float)
-        defect = abs(value - expected) - relative * abs(expected) - absolute
+        with np.errstate(invalid="ignore"):
+            defect = abs(value - expected) - relative * abs(expected) - absolute
+        defect = np.where(value == expected, 0, defect)  # infinities
         if not np.all(defect <= 0):
             worst = np.unravel_index(
                 np.nanargmax(np.where(np.isnan(defect), np.inf, defect)),
@@ -236,7 +248,9 @@ class TestCase(unittest.TestCase):
         forces = 1e4 * tolerance
         stats = result.statistics
         for name, column in stats.items():
-            self.assertTrue(np.all(np.isfinite(column)), f"{name} is not finite")
+            # no limit to the step where nothing flows
+            if name != "step_limit":
+                self.assertTrue(np.all(np.isfinite(column)), f"{name} is not finite")
 
         # The first row is the initial state: nothing was solved there unless
         # the scene asked for equilibrium.

@@ -257,7 +257,7 @@ class Refused(TestCase):
         self.refused(
             "Friction bound",
             ranks=3,
-            **{"Boundary 2/Friction bound": "if(x>1.9, 0.5 - t, 1)"},
+            **{"Boundary 2/Friction bound": "if(x>1.5, 0.5 - t, 1)"},
         )
 
 

@@ -23,7 +23,7 @@ class Ranks(TestCase):
         for n in ranks:
             several = run(scene, overrides, ranks=n)
             self.assertEqual(list(several.statistics), list(alone.statistics))
-            self.assertEqual(several.info["n_mpi_ranks"], n)
+            self.assertEqual(int(several.info["n_mpi_ranks"]), n)
             self.check_identities(several)
             for name, column in alone.statistics.items():
                 if name in EFFORT | DEFECTS or name.startswith("wall_"):
@@ -35,7 +35,8 @@ class Ranks(TestCase):
                 self.assertClose(
                     several[name],
                     column,
-                    absolute=AGREE * scale,
+                    # forces that cancel have rounding as their size
+                    absolute=AGREE * scale + 1e-14,
                     what=f"{scene}, {n} ranks, {name}",
                 )
             self.compare_fields(alone.fields(), several.fields())

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Integrals over stresses: homogeneous states, known by hand.
+
+#include <viscoplastic_contact/energy.h>
+
+#include <cmath>
+
+#include "body.h"
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  using Stress = SymmetricTensor<2, 3>;
+
+  template <typename Dimension>
+  class Energy : public testing::Test
+  {};
+  TYPED_TEST_SUITE(Energy, Dimensions, );
+
+
+
+  template <int dim>
+  std::string
+  scene()
+  {
+    std::string text = box<dim>(2, "set Translation = 0.1, 0.2" +
+                                     std::string(dim == 3 ? ", 0.3" : ""));
+    for (unsigned int id = 0; id < 2 * dim; ++id)
+      text += boundary(id, "set Role = clamped");
+    return text;
+  }
+
+
+
+  constexpr double volume = 2.;
+
+
+
+  Stress
+  some_stress(const double scale)
+  {
+    Stress stress;
+    stress[0][0] = 0.3 * scale;
+    stress[1][1] = -0.2 * scale;
+    stress[2][2] = 0.7 * scale;
+    stress[0][1] = 0.5 * scale;
+    return stress;
+  }
+
+
+
+  /// A homogeneous strain, its displacement, and z that makes a given stress.
+  template <int dim>
+  State<dim>
+  homogeneous(const Body<dim> &body,
+              const double     stretch,
+              const Stress    &stress)
+  {
+    State<dim> state;
+    state.u = body.interpolate([stretch](const Point<dim> &x) {
+      Tensor<1, dim> u;
+      u[0] = stretch * (x[0] + x[1]);
+      u[1] = -0.5 * stretch * x[1];
+      return u;
+    });
+    Stress strain;
+    strain[0][0] = stretch;
+    strain[1][1] = -0.5 * stretch;
+    strain[0][1] = 0.5 * stretch;
+    state.z.assign(body.sampling->n_cells() * body.sampling->n_samples,
+                   stress - (*body.moduli)(0).stress(strain));
+    return state;
+  }
+
+
+
+  TYPED_TEST(Energy, HomogeneousStress)
+  {
+    constexpr int   dim       = TypeParam::value;
+    const Stiffness stiffness = Stiffness::isotropic(1., 0.3);
+    for (const bool at_quadrature_points : {false, true})
+      for (const bool mean_dilatation : {false, true})
+        {
+          Body<dim> body(scene<dim>(), at_quadrature_points, mean_dilatation);
+          body.refine_where([](const Point<dim> &x) { return x[0] < 1.; });
+          body.set_up();
+          const Stress     old_stress = some_stress(1.);
+          const Stress     stress     = some_stress(1.8);
+          const State<dim> old_state  = homogeneous(body, 0.1, old_stress);
+          const State<dim> state      = homogeneous(body, 0.4, stress);
+          const auto       summary =
+            summarise_stress(*body.sampling, old_state, state);
+
+          // Von Mises by its formula in components.
+          const double s = 1.8;
+          const double mises =
+            s * std::sqrt(0.5 * (0.5 * 0.5 + 0.9 * 0.9 + 0.4 * 0.4) +
+                          3. * 0.5 * 0.5);
+          EXPECT_NEAR(summary.max_von_mises, mises, 1e-13);
+          EXPECT_NEAR(summary.mean_von_mises, mises, 1e-13);
+          EXPECT_NEAR(summary.stress_norm,
+                      s * std::sqrt(volume * (0.09 + 0.04 + 0.49 + 2. * 0.25)),
+                      1e-13);
+
+          const Stress z = state.z[0], old_z = old_state.z[0];
+          const auto   inverse = [](const Stress &tau) {
+            // E = 1, nu = 0.3: (1 + nu) tau - nu tr(tau) I
+            return 1.3 * tau - 0.3 * trace(tau) * unit_symmetric_tensor<3>();
+          };
+          EXPECT_NEAR(summary.irreversible_energy,
+                      0.5 * volume * (z * inverse(z)),
+                      1e-13);
+          EXPECT_NEAR(summary.viscous_dissipation,
+                      -0.5 * volume *
+                        (inverse(z - old_z) * (stress + old_stress)),
+                      1e-13);
+          EXPECT_NEAR(relative_stress_fluctuation(*body.sampling, state),
+                      0.,
+                      1e-12);
+        }
+  }
+
+
+
+  TYPED_TEST(Energy, ElasticBodyHasNoIrreversiblePart)
+  {
+    constexpr int dim = TypeParam::value;
+    Body<dim>     body(scene<dim>());
+    body.set_up();
+    State<dim> state = homogeneous(body, 0.1, Stress());
+    state.z.clear();
+    const auto summary = summarise_stress(*body.sampling, state, state);
+    EXPECT_EQ(summary.irreversible_energy, 0.);
+    EXPECT_EQ(summary.viscous_dissipation, 0.);
+    Stress strain;
+    strain[0][0] = 0.1;
+    strain[1][1] = -0.05;
+    strain[0][1] = 0.05;
+    EXPECT_NEAR(summary.max_von_mises,
+                von_mises((*body.moduli)(0).stress(strain)),
+                1e-14);
+  }
+
+
+
+  TYPED_TEST(Energy, MeansWeighVolumesAndMaximaSeeAllCells)
+  {
+    // A stress in the right half only, where cells are smaller.
+    constexpr int dim = TypeParam::value;
+    Body<dim>     body(scene<dim>());
+    const double  middle = 1.1;
+    body.refine_where([&](const Point<dim> &x) { return x[0] > middle; });
+    body.set_up();
+    State<dim> state;
+    state.u = body.space->ghosted_vector();
+    for (std::size_t c = 0; c < body.sampling->n_cells(); ++c)
+      state.z.push_back(body.sampling->position(c, 0)[0] > middle ?
+                          some_stress(1.) :
+                          Stress());
+    const auto summary = summarise_stress(*body.sampling, state, state);
+    EXPECT_NEAR(summary.max_von_mises, von_mises(some_stress(1.)), 1e-14);
+    EXPECT_NEAR(summary.mean_von_mises, 0.5 * summary.max_von_mises, 1e-14);
+    EXPECT_NEAR(summary.stress_norm, some_stress(1.).norm(), 1e-14);
+  }
+
+
+
+  TYPED_TEST(Energy, FluctuationWithinCells)
+  {
+    // u_y = x y: eps_xy = y/2, eps_yy = x vary within cells of size h = 1/2 as
+    // h/sqrt(12) in the mean square; here against a sum over one cell by hand.
+    constexpr int dim = TypeParam::value;
+    Body<dim>     body(scene<dim>());
+    body.set_up();
+    State<dim> state;
+    state.u                = body.interpolate([](const Point<dim> &x) {
+      Tensor<1, dim> u;
+      u[1] = x[0] * x[1];
+      return u;
+    });
+    const Stiffness stiffness = (*body.moduli)(0);
+    Stress          yy, xy;
+    yy[1][1]                  = 1.;
+    xy[0][1]                  = 0.5;
+    const double shear        = stiffness.stress(xy) * stiffness.stress(xy);
+    const double normal       = stiffness.stress(yy) * stiffness.stress(yy);
+    const double h            = 0.5;
+    const double fluctuation  = volume * h * h / 12. * (shear + normal);
+    // int x^2 over (0.1, 2.1), int y^2 over (0.2, 1.2), both by the length of
+    // the other sides.
+    const double squared = shear * 2. * (1.728 - 0.008) / 3. +
+                           normal * (9.261 - 0.001) / 3.;
+    // Mixed terms vanish: eps_xy and eps_yy are orthogonal.
+    EXPECT_NEAR(relative_stress_fluctuation(*body.sampling, state),
+                std::sqrt(fluctuation / squared),
+                1e-12);
+  }
+} // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
 #include <viscoplastic_contact/error_estimator.h>
 #include <viscoplastic_contact/version.h>
@@ -21,6 +22,9 @@ namespace Viscoplastic
         << " MPI rank(s)\nEffects:\n";
     for (const std::string &effect : scene.effects())
       out << "  " << effect << '\n';
+    const std::string advice = advice_on_blas_kernel();
+    if (!advice.empty())
+      out << "Note: " << advice << '\n';
     out << std::flush;
   }
 

@@ -26,7 +26,6 @@ import meshio
 import numpy as np
 
 SOURCE = Path(__file__).resolve().parents[2]
-SCENES = SOURCE / "prm" / "verification"
 EXECUTABLE = os.environ.get(
     "VISCOPLASTIC_CONTACT", str(SOURCE / "build" / "viscoplastic_contact")
 )
@@ -48,6 +47,12 @@ DEFECTS = {
     "slip_misalignment",
     "energy_balance_defect",
 }
+
+
+def scene_file(name):
+    """The parameter file of that name in prm/verification or prm/demos."""
+    (file,) = (SOURCE / "prm").glob(f"[vd]*/{name}.prm")
+    return file
 
 
 def as_prm(overrides):
@@ -86,11 +91,12 @@ class Fields:
                 raise AssertionError("more than one cell type in a VTU file")
             cells += [block.data + offset for block in piece.cells]
             offset += len(piece.points)
-        self.points = np.concatenate(points)
+        self.points = np.concatenate(points).astype(float)
         self.cells = np.concatenate(cells)
         self.point_data, self.cell_data = {}, {}
         for name in pieces[0].point_data:
             values = np.concatenate([p.point_data[name] for p in pieces])
+            values = values.astype(float)
             if not name.startswith(CELL_DATA):
                 self.point_data[name] = values
                 continue
@@ -172,7 +178,7 @@ class Run:
 def run(scene, overrides=None, ranks=1, text=None, check=True):
     """Run the program.
 
-    scene      name of a file in prm/verification, without .prm
+    scene      name of a file in prm/verification or prm/demos, without .prm
     overrides  {"Section/Entry": value}, appended to the scene: in a parameter
                file the later value of an entry counts
     text       the whole parameter file instead of a scene
@@ -184,7 +190,7 @@ def run(scene, overrides=None, ranks=1, text=None, check=True):
     work = Path(tempfile.mkdtemp(prefix=f"{scene}_", dir=keep))
 
     if text is None:
-        text = (SCENES / f"{scene}.prm").read_text()
+        text = scene_file(scene).read_text()
     overrides = {"Output/Directory": work / "results", **(overrides or {})}
     (work / f"{scene}.prm").write_text(text + "\n" + as_prm(overrides))
 

@@ -40,6 +40,19 @@ class ElasticFrictionless(TestCase):
         iterations = self.result["linear_iterations"][1:]
         self.assertClose(iterations, (1, 1, 1, 1, 0, 0, 0, 0))
 
+    def test_one_linear_solve_per_changed_displacement(self):
+        """The same where only a moving boundary loads the body."""
+        result = run(
+            "half_clamped_block",
+            {
+                "Boundary 2/Friction law": "none",
+                "Boundary 3/Displacement": "0; -0.1*min(t, 1)",
+                "Time/Phases": "1: 2, 2: 2",
+                "Solver/Linear solver": "direct",
+            },
+        )
+        self.assertClose(result["linear_iterations"][1:], (1, 1, 0, 0))
+
     def test_no_traces_of_friction_viscosity_adaptivity(self):
         columns = set(self.result.statistics)
         self.assertEqual(columns & FRICTION, set())

@@ -115,6 +115,24 @@ class PadAdaptive(TestCase):
         for name, values in contact.point_data.items():
             self.assertTrue(np.all(np.isfinite(values)), name)
 
+    def test_traction_integrates_to_the_friction_force(self):
+        """The traction is a conforming field whose nodal values are
+        lambda_c/m_c: its integral is minus the sum of lambda_c, also with
+        hanging nodes, where it is interpolated."""
+        for index, (time, _) in enumerate(self.result.series("contact")):
+            contact = self.result.fields("contact", index)
+            corners = contact.points[contact.cells]
+            area = np.linalg.norm(
+                np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0]),
+                axis=1,
+            )
+            self.assertClose(area.sum(), 1, absolute=1e-6)
+            mean = contact.point_data["traction"][contact.cells].mean(axis=1)
+            force = (area[:, None] * mean).sum(axis=0)
+            expected = self.result.vector("friction_force")[self.result.row(time)]
+            # single precision in VTU
+            self.assertClose(force, -expected, absolute=1e-6 * 0.03)
+
     def test_stick_and_slip_make_up_the_face(self):
         """The weights of the conforming basis functions add to the area."""
         area = self.result["stick_area"] + self.result["slip_area"]
@@ -129,6 +147,58 @@ class PadAdaptive(TestCase):
         self.assertClose(result["friction_force_y"][-1], 0.0057041, relative=0.014)
         self.assertClose(result["point0_y"][-1], 0.2049921, relative=0.04)
         self.assertClose(result["strain_energy"][-1], 0.0062689, relative=0.045)
+
+
+class Combinations(TestCase):
+    """Adaptive meshes together with everything else a scene may have."""
+
+    SCENES = {
+        "salt_pillar_2d": {  # a foundation that moves, symmetry planes
+            "Geometry/Arguments": "16, 8 : 0, 0 : 6, 3 : true",
+            "Mesh refinement/Every n steps": 5,
+            "Material/Stress history": "quadrature points",
+        },
+        "brake_pad_3d": {  # Coulomb
+            "Geometry/Arguments": "8, 4, 2 : 0, 0, 0 : 0.1, 0.05, 0.012 : true",
+            "Mesh refinement/Every n steps": 5,
+        },
+        "cantilever_creep": {  # no contact
+            "Mesh refinement/Every n steps": 20,
+        },
+        "corner_coulomb_90_2d": {  # two friction points at a node
+            "Boundary 0/Friction coefficient": "0.3 + 0.2*y",
+        },
+        "corner_tresca_150_2d": {
+            "Boundary 0/Friction bound": "0.01*t",
+        },
+        "corner_tresca_90_3d": {  # hanging nodes next to an edge
+            "Boundary 0/Friction bound": "0.01*t",
+        },
+        "shear_layer_rotated_3d": {  # hanging nodes on an oblique plane
+            "Boundary 2/Friction bound": "0.1 + 0.05*x",
+            "Mesh refinement/Every n steps": 5,
+        },
+        "elastic_frictionless": {
+            "Boundary 1/Traction": "0.1*t*y; 0",
+        },
+    }
+
+    def test_identities(self):
+        for scene, overrides in self.SCENES.items():
+            with self.subTest(scene):
+                result = run(
+                    scene,
+                    {
+                        "Mesh refinement/Strategy": "residual",
+                        "Mesh refinement/Refinement fraction": 0.5,
+                        "Mesh refinement/Maximal level": 2,
+                        "Mesh refinement/Cell budget": 1500,
+                        "Solver/Contact tolerance": 1e-10,
+                        **overrides,
+                    },
+                )
+                self.check_identities(result)
+                self.assertNotEqual(result["cells"][0], result["cells"][-1])
 
 
 if __name__ == "__main__":

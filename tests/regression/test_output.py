@@ -13,6 +13,7 @@ STATISTICS_2D = [
     "k",
     "cells",
     "dofs",
+    "step_limit",
     "contact_iterations",
     "linear_iterations",
     "duality_gap",
@@ -46,8 +47,9 @@ STATISTICS_2D = [
     "wall_rate",
     "wall_load",
     "wall_contact",
+    "wall_balance",
     "wall_output",
-    "wall_step",
+    "wall_total",
 ]
 
 # VTU may hold single precision
@@ -66,6 +68,8 @@ class Slab(TestCase):
         self.assertClose(self.result["k"][1:], 1 / 16, absolute=1e-14)
         self.assertClose(self.result["cells"], 512)
         self.assertClose(self.result["dofs"], 2 * 33 * 17)
+        # 2/r of forward Euler, r = mu/eta
+        self.assertClose(self.result["step_limit"][1:], 2.6, relative=1e-12)
 
     def test_forces_are_in_balance_by_their_signs(self):
         """Loads, reactions and minus the friction force act on the body; the

@@ -94,6 +94,32 @@ class Rotated(TestCase):
         )
         self.compare(straight, turned, matrix)
 
+    def test_coulomb_block_by_30_degrees(self):
+        """Given normal stress on an oblique line, which moves normally."""
+        matrix = rotation(30)
+        pressure = "0.1*min(t, 1)"
+        tau = (
+            "min(min(1.5/13*max(0, t-1), 0.04), max(0.04 - 1.5/13*(t-2), -0.04))"
+        )
+        drive = "0.3*min(max(0, t-1), 3-t)"
+        straight = run("coulomb_block_2d")
+        foot = matrix @ (1, 0)
+        turned = run(
+            "coulomb_block_2d",
+            {
+                "Geometry/Rotation angle": 30,
+                "Boundary 0/Traction": expressions(
+                    matrix, (f"3/7*{pressure}", f"-{tau}")
+                ),
+                "Boundary 1/Traction": expressions(
+                    matrix, (f"-3/7*{pressure}", tau)
+                ),
+                "Boundary 3/Displacement": expressions(matrix, (drive, "0")),
+                "Output/Points": f"{foot[0]:.17g}, {foot[1]:.17g}",
+            },
+        )
+        self.compare(straight, turned, matrix)
+
     def test_pad_about_an_oblique_axis(self):
         """Slip directions turn in an oblique contact plane."""
         matrix = rotation(65, (2, -1, 1))

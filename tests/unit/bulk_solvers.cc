@@ -1,1 +1,628 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+
+// The two solvers of the bulk, direct and Krylov, against dense algebra and
+// against each other. The direct one runs on one rank only.
+
+#include <deal.II/lac/lapack_full_matrix.h>
+
+#include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/krylov_solver.h>
+#include <viscoplastic_contact/schur_solver.h>
+
+#include <cmath>
+#include <limits>
+
+#include "body.h"
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  template <typename Dimension>
+  class BulkSolvers : public testing::Test
+  {};
+  TYPED_TEST_SUITE(BulkSolvers, Dimensions, );
+
+
+
+  /// A rotated box that rubs on two sides which meet: bilaterally below
+  /// (moving foundation), with given normal stress at x = 0; clamped at x = 2.
+  template <int dim>
+  struct Scenario : Body<dim>
+  {
+    explicit Scenario(const unsigned int n, const bool refined = false)
+      : Body<dim>(text(n))
+    {
+      if (refined)
+        {
+          const Point<dim> marked = this->triangulation.begin(0)->vertex(0);
+          this->refine_where([&marked](const Point<dim> &x) {
+            return (x - marked).norm() < 0.6;
+          });
+        }
+      this->set_up();
+      assemble_elastic_matrix(*this->space, *this->moduli, false, matrix);
+      start = this->rough_unknowns(2.);
+      start *= 0.05;
+      this->space->set_prescribed(0.5, start);
+      load = this->rough_unknowns(0.7);
+      // Rows of the load at excluded components are not used.
+      load.add(0.1, this->space->rigid_body_modes()[0]);
+      load.add(1., this->loads->assemble(0.5).values);
+    }
+
+    static std::string
+    text(const unsigned int n)
+    {
+      std::string text =
+        box<dim>(n, oblique<dim>()) +
+        boundary(0,
+                 "set Role = contact\nset Friction law = coulomb\n"
+                 "set Friction coefficient = 0.3\nset Normal stress = -1") +
+        boundary(1, "set Role = clamped") +
+        boundary(2,
+                 "set Role = contact\nset Friction law = tresca\n"
+                 "set Friction bound = 0.4\n"
+                 "set Foundation displacement = -0.1*t") +
+        boundary(3, "set Role = free");
+      for (unsigned int id = 4; id < 2 * dim; ++id)
+        text += boundary(id, id == 4 ? "set Role = symmetry" :
+                                       "set Role = free");
+      return text;
+    }
+
+    std::unique_ptr<BulkSolver>
+    direct() const
+    {
+      return std::make_unique<SchurSolver>(matrix,
+                                           this->space->excluded(),
+                                           this->face->layout(),
+                                           this->face->dofs(),
+                                           dim);
+    }
+
+    std::unique_ptr<BulkSolver>
+    krylov() const
+    {
+      return std::make_unique<KrylovSolver>(matrix,
+                                            this->space->excluded(),
+                                            this->space->rigid_body_modes(),
+                                            this->face->layout(),
+                                            this->face->dofs(),
+                                            dim);
+    }
+
+    /// The solvers that run on the present number of ranks.
+    std::vector<std::unique_ptr<BulkSolver>>
+    solvers() const
+    {
+      std::vector<std::unique_ptr<BulkSolver>> result;
+      result.push_back(krylov());
+      if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+        result.push_back(direct());
+      return result;
+    }
+
+    DistributedMatrix matrix;
+    DistributedVector load, start;
+  };
+
+
+
+  /// Everything on all ranks, without structure.
+  struct Dense
+  {
+    template <int dim>
+    explicit Dense(const Scenario<dim> &scenario)
+      : face_dofs(scenario.face->dofs())
+    {
+      const unsigned int n = scenario.dof_handler.n_dofs();
+      std::vector<double> entries(n * n, 0.);
+      std::vector<double> is_unknown(n, 0.);
+      for (const auto i : scenario.space->owned)
+        {
+          for (auto entry = scenario.matrix.begin(i);
+               entry != scenario.matrix.end(i);
+               ++entry)
+            entries[i * n + entry->column()] = entry->value();
+          if (!scenario.space
+                 ->excluded()[scenario.space->owned.index_within_set(i)])
+            is_unknown[i] = 1.;
+        }
+      Utilities::MPI::sum(entries, MPI_COMM_WORLD, entries);
+      Utilities::MPI::sum(is_unknown, MPI_COMM_WORLD, is_unknown);
+      K.reinit(n, n);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          for (unsigned int j = 0; j < n; ++j)
+            K(i, j) = entries[i * n + j];
+          if (is_unknown[i] == 1.)
+            unknowns.push_back(i);
+        }
+      load  = gather(scenario.load);
+      start = gather(scenario.start);
+    }
+
+    Vector<double>
+    gather(const DistributedVector &v) const
+    {
+      std::vector<double> result(v.size(), 0.);
+      for (const auto i : v.locally_owned_elements())
+        result[i] = v(i);
+      Utilities::MPI::sum(result, MPI_COMM_WORLD, result);
+      return Vector<double>(result.begin(), result.end());
+    }
+
+    /// x with A x = b on the unknowns, zero elsewhere; A = K plus @p more on
+    /// the face, @p of as projector P there: P A P + (I - P).
+    Vector<double>
+    solve(const Vector<double>     &b,
+          const FullMatrix<double> &projector,
+          const FullMatrix<double> &more) const
+    {
+      const unsigned int n = unknowns.size(), m = face_dofs.size();
+      FullMatrix<double> A(n, n), P(n, n), PA(n, n), PAP(n, n);
+      std::vector<int>   on_face(K.m(), -1);
+      for (unsigned int k = 0; k < m; ++k)
+        on_face[face_dofs[k]] = k;
+      Vector<double> right_side(n), x(n), result(K.m());
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          right_side[i] = b[unknowns[i]];
+          for (unsigned int j = 0; j < n; ++j)
+            {
+              const int a = on_face[unknowns[i]], c = on_face[unknowns[j]];
+              A(i, j) = K(unknowns[i], unknowns[j]);
+              P(i, j) = i == j ? 1. : 0.;
+              if (a >= 0 && c >= 0)
+                {
+                  A(i, j) += more(a, c);
+                  P(i, j) = projector(a, c);
+                }
+            }
+        }
+      P.mmult(PA, A);
+      PA.mmult(PAP, P);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          PAP(i, j) += (i == j ? 1. : 0.) - P(i, j);
+      P.vmult(x, right_side);
+      LAPACKFullMatrix<double> lapack(n, n);
+      lapack = PAP;
+      lapack.compute_lu_factorization();
+      lapack.solve(x);
+      P.vmult(right_side, x);
+      for (unsigned int i = 0; i < n; ++i)
+        result[unknowns[i]] = right_side[i];
+      return result;
+    }
+
+    Vector<double>
+    solve(const Vector<double> &b) const
+    {
+      const unsigned int m = face_dofs.size();
+      return solve(b,
+                   FullMatrix<double>(IdentityMatrix(m)),
+                   FullMatrix<double>(m, m));
+    }
+
+    /// load - K u on the unknowns.
+    Vector<double>
+    residual(const Vector<double> &u) const
+    {
+      Vector<double> r(K.m()), result(K.m());
+      K.residual(r, u, load);
+      for (const unsigned int i : unknowns)
+        result[i] = r[i];
+      return result;
+    }
+
+    Vector<double>
+    on_face(const Vector<double> &u) const
+    {
+      Vector<double> result(face_dofs.size());
+      for (unsigned int k = 0; k < face_dofs.size(); ++k)
+        result[k] = u[face_dofs[k]];
+      return result;
+    }
+
+    Vector<double>
+    from_face(const Vector<double> &c) const
+    {
+      Vector<double> result(K.m());
+      for (unsigned int k = 0; k < face_dofs.size(); ++k)
+        result[face_dofs[k]] = c[k];
+      return result;
+    }
+
+    const std::vector<types::global_dof_index> face_dofs;
+    FullMatrix<double>                         K;
+    std::vector<unsigned int>                  unknowns;
+    Vector<double>                             load, start;
+  };
+
+
+
+  double
+  distance(Vector<double> a, const Vector<double> &b)
+  {
+    a -= b;
+    return a.l2_norm();
+  }
+
+
+
+  TYPED_TEST(BulkSolvers, PlainSolve)
+  {
+    constexpr int       dim = TypeParam::value;
+    const Scenario<dim> scenario(2, true);
+    const Dense         dense(scenario);
+    Vector<double>      exact = dense.solve(dense.residual(dense.start));
+    exact += dense.start;
+    for (const auto &solver : scenario.solvers())
+      {
+        SCOPED_TRACE(solver->name());
+        DistributedVector u(scenario.start);
+        solver->solve(scenario.load, u, 1e-10);
+        EXPECT_LT(distance(dense.gather(u), exact), 1e-8 * exact.l2_norm());
+        // The set-up serves again, from any start.
+        u.add(0.3, scenario.rough_unknowns(5.));
+        solver->solve(scenario.load, u, 1e-10);
+        EXPECT_LT(distance(dense.gather(u), exact), 1e-8 * exact.l2_norm());
+      }
+  }
+
+
+
+  TYPED_TEST(BulkSolvers, SchurComplementIsThatOfTheBulk)
+  {
+    if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      GTEST_SKIP() << "The direct solver runs on one rank.";
+    constexpr int       dim = TypeParam::value;
+    const Scenario<dim> scenario(2, true);
+    const Dense         dense(scenario);
+    const auto          solver = scenario.direct();
+    const auto         &S =
+      dynamic_cast<const DenseFaceMatrix &>(solver->face_matrix()).matrix();
+    const unsigned int m = dense.face_dofs.size();
+    ASSERT_EQ(S.m(), m);
+    // S^-1 is the face block of K^-1.
+    FullMatrix<double> inverse(m, m), product(m, m);
+    for (unsigned int k = 0; k < m; ++k)
+      {
+        Vector<double> unit(m);
+        unit[k]                = 1.;
+        const Vector<double> x = dense.on_face(dense.solve(dense.from_face(unit)));
+        for (unsigned int i = 0; i < m; ++i)
+          inverse(i, k) = x[i];
+      }
+    S.mmult(product, inverse);
+    for (unsigned int i = 0; i < m; ++i)
+      for (unsigned int j = 0; j < m; ++j)
+        {
+          EXPECT_NEAR(product(i, j), i == j ? 1. : 0., 1e-10);
+          EXPECT_EQ(S(i, j), S(j, i));
+        }
+  }
+
+
+
+  /// A mixture of free, sticking and slipping points with springs.
+  FaceTruncation
+  some_truncation(const FrictionFace &face)
+  {
+    FaceTruncation truncation;
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        Tensor<2, 3> projector(unit_symmetric_tensor<3>()), spring;
+        if (node % 3 == 0)
+          projector = Tensor<2, 3>();
+        else
+          {
+            // One direction is blocked in rotated components, one has a spring.
+            const FrictionFace::Point &point =
+              face.points[face.first_point[node]];
+            Tensor<1, 3> q = point.map[0];
+            q /= q.norm();
+            if (node % 3 == 1)
+              projector -= outer_product(q, q);
+            else
+              spring = 0.7 * outer_product(q, q);
+          }
+        // Not beyond the components of the node.
+        for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int j = 0; j < 3; ++j)
+            if ((i >= face.n_node_dofs(node) || j >= face.n_node_dofs(node)) &&
+                i != j)
+              projector[i][j] = spring[i][j] = 0.;
+        truncation.projector.push_back(projector);
+        truncation.spring.push_back(spring);
+      }
+    return truncation;
+  }
+
+
+
+  TYPED_TEST(BulkSolvers, StepsOfAContactSolver)
+  {
+    constexpr int       dim = TypeParam::value;
+    const Scenario<dim> scenario(2, true);
+    const Dense         dense(scenario);
+    const FrictionFace &face = scenario.face->layout();
+    const unsigned int  m    = face.n_dofs();
+    Vector<double>      force(m), change(m);
+    for (unsigned int k = 0; k < m; ++k)
+      {
+        force[k]  = 0.1 * std::cos(3. * k);
+        change[k] = 0.02 * std::sin(5. * k);
+      }
+    const FaceTruncation truncation = some_truncation(face);
+    FullMatrix<double>   projector(m, m), springs(m, m);
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
+        for (unsigned int j = 0; j < face.n_node_dofs(node); ++j)
+          {
+            const unsigned int first = face.first_dof[node];
+            projector(first + i, first + j) = truncation.projector[node][i][j];
+            springs(first + i, first + j)   = truncation.spring[node][i][j];
+          }
+
+    for (const auto &solver : scenario.solvers())
+      {
+        SCOPED_TRACE(solver->name());
+        const bool is_direct =
+          dynamic_cast<const SchurSolver *>(solver.get()) != nullptr;
+        // What the displacement is to be, the bulk following a direct solver.
+        const auto relaxed = [&](const Vector<double> &u) {
+          if (!is_direct)
+            return u;
+          FullMatrix<double> none(m, m);
+          Vector<double>     result =
+            dense.solve(dense.residual(u), none, FullMatrix<double>(m, m));
+          result += u;
+          return result;
+        };
+
+        DistributedVector u(scenario.start);
+        solver->begin(scenario.load, u);
+        Vector<double> expected = relaxed(dense.start), r(m);
+        solver->face_residual(r);
+        EXPECT_LT(distance(r, dense.on_face(dense.residual(expected))), 1e-11);
+
+        // The face matrix foretells what moving the face does.
+        Vector<double> foretold(r);
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          solver->face_matrix().subtract(node,
+                                         face.node_values(change, node),
+                                         foretold);
+        solver->move_face(change);
+        Vector<double> moved(expected);
+        moved += dense.from_face(change);
+        expected = relaxed(moved);
+        solver->face_residual(r);
+        EXPECT_LT(distance(r, dense.on_face(dense.residual(expected))), 1e-11);
+        EXPECT_LT(distance(r, foretold), 1e-11);
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          {
+            const Tensor<2, 3> block =
+              solver->face_matrix().diagonal_block(node);
+            for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
+              {
+                Vector<double> column(m);
+                Tensor<1, 3>   unit;
+                unit[i] = 1.;
+                solver->face_matrix().subtract(node, unit, column);
+                for (unsigned int j = 0; j < face.n_node_dofs(node); ++j)
+                  EXPECT_NEAR(block[i][j],
+                              -column[face.first_dof[node] + j],
+                              1e-13);
+              }
+          }
+
+        // The error bound: exact for direct solvers.
+        solver->set_truncation(truncation);
+        Vector<double> unbalanced = dense.residual(expected);
+        unbalanced -= dense.from_face(force);
+        const double norm =
+          std::sqrt(unbalanced * dense.solve(unbalanced));
+        EXPECT_NEAR(solver->dual_norm(force), norm, is_direct ? 1e-9 * norm :
+                                                                0.7 * norm);
+
+        // The correction on the truncated space.
+        Vector<double>       w(m);
+        const Vector<double> correction =
+          dense.solve(unbalanced, projector, springs);
+        solver->correct(force, 1e-10, w);
+        EXPECT_LT(distance(w, dense.on_face(correction)),
+                  1e-7 * correction.l2_norm());
+
+        // A changed correction, and half a step of it.
+        w[0] += 0.01;
+        w[m - 1] -= 0.02;
+        Vector<double> step(correction);
+        for (unsigned int k = 0; k < m; ++k)
+          step[dense.face_dofs[k]] = w[k];
+        if (is_direct)
+          {
+            Vector<double> target(expected);
+            target += step;
+            step = relaxed(target);
+            step -= expected;
+          }
+        const auto terms = solver->search_terms(w);
+        EXPECT_NEAR(terms.slope, dense.residual(expected) * step, 1e-7);
+        EXPECT_NEAR(terms.curvature, dense.K.matrix_norm_square(step), 1e-7);
+        solver->take_step(0.5);
+        expected.add(0.5, step);
+        solver->face_residual(r);
+        EXPECT_LT(distance(r, dense.on_face(dense.residual(expected))), 1e-7);
+
+        // The displacement that comes out, prescribed values untouched.
+        solver->finish();
+        EXPECT_LT(distance(dense.gather(u), expected),
+                  1e-7 * expected.l2_norm());
+        // The norm is a scale: the right one up to a small factor.
+        const double energy =
+          std::sqrt(dense.K.matrix_norm_square(expected));
+        EXPECT_GT(solver->energy_norm(), 0.5 * energy);
+        EXPECT_LT(solver->energy_norm(), 3. * energy);
+      }
+  }
+
+
+
+  TYPED_TEST(BulkSolvers, FrictionalSolutionsAgree)
+  {
+    constexpr int       dim = TypeParam::value;
+    constexpr double    tolerance = 1e-9;
+    const Scenario<dim> scenario(dim == 2 ? 8 : 3, true);
+    const FrictionFace &face   = scenario.face->layout();
+    const auto          bounds = scenario.face->bounds(0.5);
+
+    std::vector<DistributedVector> solutions;
+    std::vector<FrictionState>     states;
+    for (const auto &solver : scenario.solvers())
+      {
+        DistributedVector u(scenario.start);
+        Vector<double>    increment(face.n_dofs());
+        FrictionState     state(face.points.size());
+        solver->begin(scenario.load, u);
+        const ContactReport report = ContactSolver(tolerance, 50)
+                                       .solve(*solver,
+                                              face,
+                                              bounds,
+                                              increment,
+                                              state);
+        EXPECT_LE(report.relative_error, tolerance);
+        EXPECT_LE(report.iterations, 20u);
+
+        // Equilibrium with the friction forces, whatever the solver says.
+        DistributedVector residual(scenario.load);
+        scenario.matrix.vmult(residual, u);
+        residual.sadd(-1., 1., scenario.load);
+        scenario.set_excluded_to_zero(residual);
+        const double   size    = residual.l2_norm();
+        Vector<double> on_face = scenario.face->face_vector(residual);
+        Vector<double> force(face.n_dofs());
+        unsigned int   n_stick = 0;
+        for (unsigned int p = 0; p < face.points.size(); ++p)
+          {
+            const unsigned int node = face.points[p].node;
+            face.set_node_values(face.node_values(force, node) +
+                                   node_force(face.points[p],
+                                              state.multiplier[p]),
+                                 node,
+                                 force);
+            n_stick += state.sticks[p];
+          }
+        EXPECT_GT(n_stick, 0u);
+        EXPECT_LT(n_stick, face.points.size());
+        for (unsigned int k = 0; k < force.size(); ++k)
+          if (scenario.space->owned.is_element(scenario.face->dofs()[k]))
+            residual.begin()[scenario.space->owned.index_within_set(
+              scenario.face->dofs()[k])] -= force[k];
+        EXPECT_LT(residual.l2_norm(), 1e-6 * size);
+
+        // Slip belongs to the displacement.
+        DistributedVector moved(u);
+        moved -= scenario.start;
+        const auto slips = scenario.face->slips(moved);
+        for (unsigned int p = 0; p < slips.size(); ++p)
+          EXPECT_LT((slips[p] - state.slip[p]).norm(), 1e-11);
+        solutions.push_back(u);
+        states.push_back(state);
+      }
+    if (solutions.size() == 2)
+      {
+        const double size = solutions[1].l2_norm();
+        solutions[0] -= solutions[1];
+        EXPECT_LT(solutions[0].l2_norm(), 1e-6 * size);
+        EXPECT_EQ(states[0].sticks, states[1].sticks);
+        for (unsigned int p = 0; p < face.points.size(); ++p)
+          EXPECT_LT((states[0].multiplier[p] - states[1].multiplier[p]).norm(),
+                    1e-6);
+      }
+  }
+
+
+
+  TYPED_TEST(BulkSolvers, MultigridWithSeveralLevels)
+  {
+    // Large enough that ML does not just factorise.
+    constexpr int       dim = TypeParam::value;
+    const Scenario<dim> scenario(dim == 2 ? 28 : 8);
+    ASSERT_GT(scenario.dof_handler.n_dofs(), 2500u);
+    const auto        solver = scenario.krylov();
+    DistributedVector u(scenario.start);
+    const unsigned    n = solver->solve(scenario.load, u, 1e-9);
+    EXPECT_LT(n, 60u);
+    DistributedVector residual(scenario.load);
+    scenario.matrix.vmult(residual, u);
+    residual.sadd(-1., 1., scenario.load);
+    scenario.set_excluded_to_zero(residual);
+    DistributedVector load(scenario.load);
+    scenario.set_excluded_to_zero(load);
+    EXPECT_LT(residual.l2_norm(), 1e-6 * load.l2_norm());
+
+    if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+      {
+        DistributedVector exact(scenario.start);
+        scenario.direct()->solve(scenario.load, exact, 1e-9);
+        const double size = exact.l2_norm();
+        exact -= u;
+        EXPECT_LT(exact.l2_norm(), 1e-6 * size);
+      }
+  }
+
+
+
+  TYPED_TEST(BulkSolvers, WithoutFriction)
+  {
+    constexpr int                              dim = TypeParam::value;
+    const Scenario<dim>                        scenario(2);
+    const Dense                                dense(scenario);
+    const FrictionFace                         no_face;
+    const std::vector<types::global_dof_index> no_dofs;
+    Vector<double> exact = dense.solve(dense.residual(dense.start));
+    exact += dense.start;
+    const bool serial = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+    for (const std::string choice : {"direct", "multigrid", "automatic"})
+      {
+        const auto make = [&] {
+          return make_bulk_solver(
+            *scenario.space, scenario.matrix, no_face, no_dofs, choice, 0.3, 1);
+        };
+        if (choice == "direct" && !serial)
+          {
+            expect_refusal([&] { make(); }, "works on one MPI rank");
+            continue;
+          }
+        const auto solver = make();
+        EXPECT_EQ(dynamic_cast<SchurSolver *>(solver.get()) != nullptr,
+                  serial && choice != "multigrid");
+        DistributedVector u(scenario.start);
+        solver->solve(scenario.load, u, 1e-10);
+        EXPECT_LT(distance(dense.gather(u), exact), 1e-8 * exact.l2_norm());
+      }
+    expect_refusal(
+      [&] {
+        make_bulk_solver(
+          *scenario.space, scenario.matrix, no_face, no_dofs, "magic", 0.3, 1);
+      },
+      "it must be automatic, direct or multigrid");
+  }
+
+
+
+  TYPED_TEST(BulkSolvers, RefusesAnIndefiniteMatrix)
+  {
+    if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      GTEST_SKIP() << "The direct solver runs on one rank.";
+    constexpr int dim = TypeParam::value;
+    Scenario<dim> scenario(2);
+    scenario.matrix *= -1.;
+    expect_refusal([&] { scenario.direct(); }, "not positive definite");
+  }
+} // namespace

@@ -797,7 +797,7 @@ namespace
   {
     Vector<double> unbalanced = problem.residual(result.u);
     unbalanced -= problem.force(result.state.multiplier);
-    double     gap   = 0.5 * unbalanced * solve_dense(problem.A, unbalanced);
+    double     gap   = 0.5 * (unbalanced * solve_dense(problem.A, unbalanced));
     const auto slips = problem.slips(result.u);
     for (unsigned int c = 0; c < slips.size(); ++c)
       if (slips[c].norm() > 1e-14) // infinite bounds
@@ -963,8 +963,10 @@ namespace
                     EXPECT_LE(result.report.iterations, 1u);
                   }
                 if (kind == 1)
-                  for (const bool sticks : result.state.sticks)
-                    EXPECT_TRUE(sticks);
+                  {
+                    for (const bool sticks : result.state.sticks)
+                      EXPECT_TRUE(sticks);
+                  }
               }
           }
   }

@@ -80,8 +80,7 @@ namespace
 
   TYPED_TEST(Energy, HomogeneousStress)
   {
-    constexpr int   dim       = TypeParam::value;
-    const Stiffness stiffness = Stiffness::isotropic(1., 0.3);
+    constexpr int dim = TypeParam::value;
     for (const bool at_quadrature_points : {false, true})
       for (const bool mean_dilatation : {false, true})
         {

@@ -466,8 +466,7 @@ namespace
   TYPED_TEST(FrictionPoints, BoundsAddUpToTheIntegralWithHangingNodes)
   {
     constexpr int dim = TypeParam::value;
-    // Linear along the face: two Gauss points integrate rho phi exactly. The
-    // box is 2 long; x along the face is undone from the rotation below.
+    // Linear in space: two Gauss points integrate rho phi exactly.
     const auto body =
       rotated_body<dim>("set Role = contact\nset Friction law = tresca\n"
                         "set Friction bound = (1.5 + 0.2*x - 0.1*y)*t");

@@ -307,16 +307,24 @@ namespace Viscoplastic
       }
     else
       {
-        // Nothing to solve where nothing has changed.
-        DistributedVector residual(right_side);
-        d.matrix.vmult(residual, u);
-        residual.sadd(-1., 1., right_side);
-        for (std::size_t i = 0; i < space.excluded().size(); ++i)
-          if (space.excluded()[i])
-            residual.begin()[i] = 0.;
-        if (residual.linfty_norm() > 1e-13 * right_side.linfty_norm())
-          report.linear_iterations =
-            d.solver->solve(right_side, u, parameters.solver.contact_tolerance);
+        // An elastic body whose data have not changed does not move.
+        if (!scene.has_viscosity() && old_state.n > 0)
+          {
+            DistributedVector displacement_change(old_u);
+            space.set_prescribed(t, displacement_change);
+            displacement_change -= old_u;
+            DistributedVector load_change(load.values);
+            load_change -= old_forces.load.values;
+            if (displacement_change.linfty_norm() == 0. &&
+                load_change.linfty_norm() == 0.)
+              {
+                new_state.u        = old_state.u;
+                new_state.velocity = space.ghosted_vector();
+                return report;
+              }
+          }
+        report.linear_iterations =
+          d.solver->solve(right_side, u, parameters.solver.contact_tolerance);
       }
 
     new_state.u        = space.ghosted_vector();

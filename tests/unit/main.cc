@@ -3,6 +3,7 @@
 // Runs the unit tests on any number of MPI ranks. Every rank runs the same
 // tests in the same order; those other than the first report only failures.
 
+#include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 
 #include <gtest/gtest.h>
@@ -16,6 +17,10 @@ main(int argc, char **argv)
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc,
                                                      argv,
                                                      /* max_num_threads = */ 1);
+
+  // A failed assertion is the failure of one test, not of all that follow.
+  dealii::deal_II_exceptions::disable_abort_on_exception();
+  dealii::deal_II_exceptions::suppress_stacktrace_in_exceptions();
 
   auto &listeners = testing::UnitTest::GetInstance()->listeners();
   class FailuresOnly : public testing::EmptyTestEventListener

@@ -57,7 +57,7 @@ namespace
                                    "one: 2",
                                    "1: 2: 3",
                                    ": 4",
-                                   "1: 2, "})
+                                   "1: 2,, 2: 3"})
       expect_refusal([&] { TimeSchedule schedule(text); },
                      "'Time/Phases'");
     expect_refusal([] { TimeSchedule schedule("1: 2, 1: 3"); },

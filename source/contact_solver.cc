@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 namespace Viscoplastic
@@ -220,37 +221,176 @@ namespace Viscoplastic
 
 
 
+    FrictionAlongLine
+    friction_along(const FrictionFace        &face,
+                   const std::vector<double> &bounds,
+                   const FrictionState       &state,
+                   const Vector<double>      &direction)
+    {
+      FrictionAlongLine friction;
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        if (!state.sticks[p] && bounds[p] > 0.)
+          friction.terms.push_back(
+            {bounds[p],
+             state.slip[p],
+             slip(face.points[p],
+                  face.node_values(direction, face.points[p].node))});
+      return friction;
+    }
+
+
+
+    /// Whether a correction @p w makes the slip of a node change sides. At
+    /// corners, where points share a node, the line search alone decides.
+    bool
+    reverses(const FrictionFace        &face,
+             const std::vector<double> &bounds,
+             const FrictionState       &state,
+             const Vector<double>      &w,
+             const unsigned int         node)
+    {
+      const unsigned int p = face.first_point[node];
+      if (face.n_node_points(node) != 1 || state.sticks[p] || bounds[p] == 0.)
+        return false;
+      const Tensor<1, 2> end =
+        state.slip[p] + slip(face.points[p], face.node_values(w, node));
+      return state.slip[p] * end < 0.;
+    }
+
+
+
+    /// Shorten a correction @p w where a slip would change sides, so that it
+    /// ends at rest instead. Returns whether there is such a slip.
+    bool
+    stop_at_reversal(const FrictionFace        &face,
+                     const std::vector<double> &bounds,
+                     const FrictionState       &state,
+                     const Vector<double>      &x,
+                     Vector<double>            &w)
+    {
+      bool any = false;
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        if (reverses(face, bounds, state, w, node))
+          {
+            face.set_node_values(-1. * face.node_values(x, node), node, w);
+            any = true;
+          }
+      return any;
+    }
+
+
+
+    /// A step along a line, and what it does to J.
+    struct SearchResult
+    {
+      double step, energy_change;
+    };
+
+
+
     /**
      * The step in (0, 2] that minimises J along the correction; 1 if that is as
      * good up to inexact linear solves, 0 if there is no descent.
      */
-    double
+    SearchResult
     line_search(const BulkSolver::SearchTerms &bulk,
                 const FrictionAlongLine       &friction)
     {
+      const auto at = [&](const double step) {
+        return SearchResult{step,
+                            (0.5 * bulk.curvature * step - bulk.slope) * step +
+                              friction.value(step)};
+      };
       const auto derivative = [&](const double step) {
         return bulk.curvature * step - bulk.slope + friction.derivative(step);
       };
       const double initial = derivative(0.);
       if (!(initial < 0.) || !(bulk.curvature > 0.))
-        return 0.;
+        return {0., 0.};
       if (std::abs(derivative(1.)) <= 0.1 * std::abs(initial) &&
-          0.5 * bulk.curvature - bulk.slope + friction.value(1.) <= 0.)
-        return 1.;
+          at(1.).energy_change <= 0.)
+        return at(1.);
       double left = 0., right = 1.;
       if (derivative(1.) < 0.)
         {
           left  = 1.;
           right = 2.;
           if (derivative(2.) < 0.)
-            return 2.;
+            return at(2.);
         }
       for (unsigned int bisection = 0; bisection < 60; ++bisection)
         {
           const double middle                      = 0.5 * (left + right);
           (derivative(middle) < 0. ? left : right) = middle;
         }
-      return left;
+      return at(left);
+    }
+
+
+
+    /// A correction that begins with stopping the slips that would reverse.
+    struct RestStep
+    {
+      Vector<double> correction;
+      SearchResult   search;
+      unsigned int   linear_iterations;
+    };
+
+    /**
+     * Bring the points whose slip the correction @p w reverses to rest, solve
+     * with them sticking, and search along that correction. If J is lower then,
+     * the stop is made (@p x and @p state change) and the step is returned, to
+     * be taken; otherwise everything is as before but the correction.
+     */
+    std::optional<RestStep>
+    step_from_rest(BulkSolver                      &bulk,
+                   const FrictionFace              &face,
+                   const std::vector<double>       &bounds,
+                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                   const Vector<double>            &residual,
+                   const Vector<double>            &w,
+                   Vector<double>                  &x,
+                   FrictionState                   &state)
+    {
+      const FrictionState  old_state = state;
+      const Vector<double> old_x     = x;
+      Vector<double>       stop(x.size());
+      double               energy_change = 0.;
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        {
+          const unsigned int p = face.first_point[node];
+          if (!reverses(face, bounds, state, w, node))
+            continue;
+          energy_change -= bounds[p] * state.slip[p].norm();
+          state.sticks[p] = true;
+          state.slip[p]   = Tensor<1, 2>();
+          face.set_node_values(-1. * face.node_values(x, node), node, stop);
+          face.set_node_values(Tensor<1, 3>(), node, x);
+        }
+      bulk.move_face(stop);
+      Vector<double> new_residual(x.size()), force(x.size());
+      bulk.face_residual(new_residual);
+      // J is quadratic but for friction: its mean slope makes the change.
+      energy_change -= 0.5 * (stop * residual + stop * new_residual);
+
+      fit_multipliers(face, bounds, new_residual, state, force);
+      bulk.set_truncation(
+        make_truncation(face, bounds, state, inverse_diagonal));
+      RestStep result;
+      result.correction.reinit(x.size());
+      result.linear_iterations = bulk.correct(force, 0.05, result.correction);
+      stop_at_reversal(face, bounds, state, x, result.correction);
+      result.search =
+        line_search(bulk.search_terms(result.correction),
+                    friction_along(face, bounds, state, result.correction));
+      if (energy_change + result.search.energy_change < 0.)
+        return result;
+
+      stop *= -1.;
+      bulk.move_face(stop);
+      x     = old_x;
+      state = old_state;
+      return {};
     }
   } // namespace
 
@@ -468,28 +608,35 @@ namespace Viscoplastic
                        w);
 
         // (3) A slip that would reverse stops at stick.
-        for (unsigned int node = 0; node < face.n_nodes(); ++node)
-          if (face.n_node_points(node) == 1)
-            {
-              const unsigned int p = face.first_point[node];
-              if (state.sticks[p] || bounds[p] == 0.)
-                continue;
-              const Tensor<1, 2> s = state.slip[p];
-              const Tensor<1, 2> ds =
-                slip(face.points[p], face.node_values(w, node));
-              if (s * (s + ds) < 0.)
-                face.set_node_values(-1. * face.node_values(x, node), node, w);
-            }
-        FrictionAlongLine friction;
-        for (unsigned int p = 0; p < face.points.size(); ++p)
-          if (!state.sticks[p] && bounds[p] > 0.)
-            friction.terms.push_back(
-              {bounds[p],
-               state.slip[p],
-               slip(face.points[p], face.node_values(w, face.points[p].node))});
-        const double step = line_search(bulk.search_terms(w), friction);
-        bulk.take_step(step);
-        x.add(step, w);
+        const auto search = [&](const Vector<double> &direction) {
+          return line_search(bulk.search_terms(direction),
+                             friction_along(face, bounds, state, direction));
+        };
+        Vector<double> limited(w);
+        const bool     any_reverses =
+          stop_at_reversal(face, bounds, state, x, limited);
+        SearchResult search_result = search(limited);
+        if (!any_reverses || search_result.step >= 0.5)
+          w = limited;
+        else if (const auto rest = step_from_rest(
+                   bulk, face, bounds, inverse, residual, w, x, state))
+          {
+            // When a whole zone reverses, the rest of the body must adapt to
+            // its stop before J descends far.
+            w             = rest->correction;
+            search_result = rest->search;
+            report.linear_iterations += rest->linear_iterations;
+          }
+        else
+          {
+            // The correction as it is descends, because it solves a positive
+            // definite system with the gradient of J.
+            bulk.set_truncation(truncation);
+            report.linear_iterations += bulk.correct(force, 0.05, w);
+            search_result = search(w);
+          }
+        bulk.take_step(search_result.step);
+        x.add(search_result.step, w);
         ++report.iterations;
       }
     report.linear_iterations += bulk.finish();

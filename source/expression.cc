@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/messages.h>
 
 #include <cmath>
+#include <iostream>
 #include <regex>
 #include <sstream>
 
@@ -35,6 +36,10 @@ namespace Viscoplastic
   {
     AssertThrow(!text.empty(),
                 ExcMessage("The expression of '" + entry + "' is empty."));
+    // deal.II prints what muParser says to std::cerr; the user gets it in our
+    // sentence instead.
+    std::ostringstream printed;
+    std::streambuf    *original = std::cerr.rdbuf(printed.rdbuf());
     try
       {
         parser->initialize(FunctionParser<dim>::default_variable_names() + ",t",
@@ -42,12 +47,20 @@ namespace Viscoplastic
                            {{"pi", numbers::PI}, {"Pi", numbers::PI}},
                            /* time_dependent = */ true);
         constant = parser->value(Point<dim>());
+        std::cerr.rdbuf(original);
       }
     catch (const std::exception &exception)
       {
+        std::cerr.rdbuf(original);
+        const std::string output = printed.str();
+        std::smatch       found;
+        const std::string why =
+          std::regex_search(output, found, std::regex("Message:\\s*<(.*)>")) ?
+            found[1].str() :
+            reason(exception);
         AssertThrow(false,
                     ExcMessage("The expression '" + text + "' of '" + entry +
-                               "' cannot be parsed: " + reason(exception)));
+                               "' cannot be parsed: " + why));
       }
   }
 

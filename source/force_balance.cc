@@ -18,13 +18,10 @@ namespace Viscoplastic
           const NodalFrame<dim> &frame = space.frame(node.frame);
           for (unsigned int i = 0; i < frame.n_fixed; ++i)
             {
-              Tensor<1, dim> direction;
-              for (unsigned int d = 0; d < dim; ++d)
-                direction[d] = frame.directions[d][frame.fixed[i]];
               visit(frame.condition_boundary[i],
                     space.owned.index_within_set(node.first_dof) +
                       frame.fixed[i],
-                    direction);
+                    column(frame.directions, frame.fixed[i]));
             }
         }
     }

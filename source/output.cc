@@ -5,9 +5,6 @@
 #include <viscoplastic_contact/output.h>
 #include <viscoplastic_contact/version.h>
 
-#include <boost/property_tree/json_parser.hpp>
-#include <boost/property_tree/ptree.hpp>
-
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -82,26 +79,25 @@ namespace Viscoplastic
                   ExcMessage("The results directory '" + path +
                              "' cannot be written."));
 
-      boost::property_tree::ptree record, effects;
-      record.put("program", "viscoplastic_contact");
-      record.put("version", VISCOPLASTIC_CONTACT_VERSION);
-      record.put("git_revision", VISCOPLASTIC_CONTACT_GIT_REVISION);
-      record.put("dealii_version", DEAL_II_PACKAGE_VERSION);
-      record.put("n_mpi_ranks", n_ranks);
-      record.put("dimension", dim);
-      for (const std::string &effect : scene.effects())
-        {
-          boost::property_tree::ptree item;
-          item.put("", effect);
-          effects.push_back({"", item});
-        }
-      record.add_child("effects", effects);
       const std::time_t now = std::time(nullptr);
       char              date[32];
       std::strftime(date, sizeof(date), "%FT%TZ", std::gmtime(&now));
-      record.put("date", date);
       std::ofstream json(path + "run.json");
-      boost::property_tree::write_json(json, record);
+      json << "{\n  \"program\": \"viscoplastic_contact\",\n  \"version\": "
+           << std::quoted(VISCOPLASTIC_CONTACT_VERSION)
+           << ",\n  \"git_revision\": "
+           << std::quoted(VISCOPLASTIC_CONTACT_GIT_REVISION)
+           << ",\n  \"dealii_version\": "
+           << std::quoted(DEAL_II_PACKAGE_VERSION)
+           << ",\n  \"n_mpi_ranks\": " << n_ranks
+           << ",\n  \"dimension\": " << dim << ",\n  \"effects\": [";
+      const char *separator = "";
+      for (const std::string &effect : scene.effects())
+        {
+          json << separator << "\n    " << std::quoted(effect);
+          separator = ",";
+        }
+      json << "\n  ],\n  \"date\": " << std::quoted(date) << "\n}\n";
     }
   } // namespace
 
@@ -303,7 +299,8 @@ namespace Viscoplastic
     add_vector("slip_rate");
 
     // Tractions and sets live at the nodes of friction points.
-    DistributedVector density, bound, utilisation, stick;
+    // Where there is none, other conditions hold the face: it does not slip.
+    DistributedVector density, bound, utilisation, slipping;
     if (face != nullptr)
       {
         add_vector("traction");
@@ -320,9 +317,9 @@ namespace Viscoplastic
                         0.;
         utilisation = face->nodal_field(values);
         for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = state.friction.sticks[p] ? 1. : 0.;
-        stick   = face->nodal_field(values);
-        density = face->density(state.friction);
+          values[p] = state.friction.sticks[p] ? 0. : 1.;
+        slipping = face->nodal_field(values);
+        density  = face->density(state.friction);
       }
 
     for (const auto &cell : space.dof_handler.active_cell_iterators())
@@ -371,8 +368,9 @@ namespace Viscoplastic
                     store(condition.has_friction() ?
                             -1. * tangential(vector(density)) :
                             Tensor<1, dim>());
-                    for (const auto *field : {&bound, &utilisation, &stick})
-                      patch.data(row++, v) = field->begin()[node];
+                    patch.data(row++, v) = bound.begin()[node];
+                    patch.data(row++, v) = utilisation.begin()[node];
+                    patch.data(row++, v) = 1. - slipping.begin()[node];
                   }
               }
             output.patches.push_back(patch);

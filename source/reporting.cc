@@ -46,8 +46,17 @@ namespace Viscoplastic
     const double stored_energy = step.forces.strain_energy +
                                  step.forces.irreversible_work +
                                  stress.irreversible_energy;
-    const double      max_displacement = step.state.u.linfty_norm();
-    DistributedVector change           = step.forces.u;
+    // Frames are orthonormal, and hanging nodes lie between others.
+    double max_displacement = 0.;
+    for (std::size_t i = 0; i < d.space.owned.n_elements(); i += dim)
+      {
+        double square = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          square += Utilities::fixed_power<2>(step.forces.u.begin()[i + c]);
+        max_displacement = std::max(max_displacement, std::sqrt(square));
+      }
+    max_displacement = Utilities::MPI::max(max_displacement, communicator);
+    DistributedVector change = step.forces.u;
     change -= forces.u;
     FrictionIdentities friction;
     Tensor<1, dim>     friction_force;

@@ -76,7 +76,7 @@ namespace Viscoplastic
     , dof_handler(triangulation)
     , contact_solver(parameters.solver.contact_tolerance,
                      parameters.solver.maximal_iterations)
-    , timer(communicator, out, TimerOutput::never, TimerOutput::wall_times)
+    , timer(out, TimerOutput::never, TimerOutput::wall_times)
   {}
 
 

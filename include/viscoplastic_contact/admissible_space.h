@@ -4,55 +4,12 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/affine_constraints.h>
 
+#include <viscoplastic_contact/nodal_frame.h>
 #include <viscoplastic_contact/scene.h>
 #include <viscoplastic_contact/types.h>
 
 namespace Viscoplastic
 {
-  /**
-   * The slip that one friction point can make. At a node where Gamma_3 is flat
-   * this is the tangent plane. Where pieces meet at an angle there is one point
-   * a piece; its slip is the part of the piece's tangential displacement that
-   * the other conditions at the node leave free.
-   */
-  template <int dim>
-  struct FrictionPlane
-  {
-    /// Number of independent slip directions, 1 or 2.
-    unsigned int n_tangents;
-    /// slip = map u: n_tangents rows over the frame components of the node.
-    std::array<Tensor<1, dim>, dim - 1> map;
-    /// Boundary ids whose bounds add up here (coplanar pieces, or pieces that
-    /// leave the same direction free).
-    std::vector<types::boundary_id> boundary_ids;
-  };
-
-
-  /**
-   * The orthonormal frame of displacement components at a node, chosen so that
-   * what is prescribed there are single components.
-   */
-  template <int dim>
-  struct NodalFrame
-  {
-    /// Columns are the frame's directions; the identity wherever conditions
-    /// are along coordinate axes.
-    Tensor<2, dim> directions;
-    bool           is_cartesian = true;
-    /// The first n_fixed entries of `fixed` are prescribed components.
-    std::array<unsigned int, dim> fixed;
-    unsigned int                  n_fixed = 0;
-    /// The accepted conditions direction . u = datum, one a fixed component:
-    /// their directions, and whose datum it is (boundary id, and for given
-    /// components the component, otherwise numbers::invalid_unsigned_int).
-    std::array<Tensor<1, dim>, dim>     condition_direction;
-    std::array<types::boundary_id, dim> condition_boundary;
-    std::array<unsigned int, dim>       condition_component;
-    /// Friction points at the node.
-    std::vector<FrictionPlane<dim>> planes;
-  };
-
-
   /**
    * The space U^h of admissible displacements and its translates: hanging
    * nodes, prescribed components in nodal frames of any orientation, and their

@@ -30,9 +30,11 @@ namespace Viscoplastic
    * who sticks and in which direction who slips; (2) a linear solve on the
    * truncated space with the tangent stiffness of turning slip is a semismooth
    * Newton step; (3) increments that would reverse a slip stop at stick, and a
-   * line search minimises J along the rest. J never increases, and (1) alone
-   * converges (Kornhuber; Graeser, Sander), so sets may change arbitrarily
-   * without a danger to the result.
+   * line search minimises J along the rest. Where that is no descent, the
+   * reversing points are brought to rest first, or the correction is taken as
+   * it is, which always descends. J never increases, so no set comes twice
+   * (compare Kornhuber's monotone multigrid and TNNMG by Graeser and Sander,
+   * where (1) covers all unknowns; here the linear solve covers the bulk).
    *
    * The iteration stops when the duality gap bounds the error: with
    * multipliers in their balls that satisfy the friction law exactly and the

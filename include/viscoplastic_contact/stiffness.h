@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#ifndef viscoplastic_contact_stiffness_h
-#define viscoplastic_contact_stiffness_h
+#pragma once
 
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/symmetric_tensor.h>
@@ -171,5 +170,3 @@ namespace Viscoplastic
            bulk * outer_product(identity, identity);
   }
 } // namespace Viscoplastic
-
-#endif

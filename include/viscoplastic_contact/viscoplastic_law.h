@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#ifndef viscoplastic_contact_viscoplastic_law_h
-#define viscoplastic_contact_viscoplastic_law_h
+#pragma once
 
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/point.h>
@@ -149,5 +148,3 @@ namespace Viscoplastic
                    const std::string      &law,
                    const std::string      &entry);
 } // namespace Viscoplastic
-
-#endif

@@ -5,14 +5,13 @@
 
 #include <deal.II/lac/lapack_full_matrix.h>
 
+#include "body.h"
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/krylov_solver.h>
 #include <viscoplastic_contact/schur_solver.h>
 
 #include <cmath>
 #include <limits>
-
-#include "body.h"
 
 namespace
 {
@@ -68,8 +67,8 @@ namespace
                  "set Foundation displacement = -0.1*t") +
         boundary(3, "set Role = free");
       for (unsigned int id = 4; id < 2 * dim; ++id)
-        text += boundary(id, id == 4 ? "set Role = symmetry" :
-                                       "set Role = free");
+        text +=
+          boundary(id, id == 4 ? "set Role = symmetry" : "set Role = free");
       return text;
     }
 
@@ -118,7 +117,7 @@ namespace
     explicit Dense(const Scenario<dim> &scenario)
       : face_dofs(scenario.face->dofs())
     {
-      const unsigned int n = scenario.dof_handler.n_dofs();
+      const unsigned int  n = scenario.dof_handler.n_dofs();
       std::vector<double> entries(n * n, 0.);
       std::vector<double> is_unknown(n, 0.);
       for (const auto i : scenario.space->owned)
@@ -293,8 +292,9 @@ namespace
     for (unsigned int k = 0; k < m; ++k)
       {
         Vector<double> unit(m);
-        unit[k]                = 1.;
-        const Vector<double> x = dense.on_face(dense.solve(dense.from_face(unit)));
+        unit[k] = 1.;
+        const Vector<double> x =
+          dense.on_face(dense.solve(dense.from_face(unit)));
         for (unsigned int i = 0; i < m; ++i)
           inverse(i, k) = x[i];
       }
@@ -364,7 +364,7 @@ namespace
       for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
         for (unsigned int j = 0; j < face.n_node_dofs(node); ++j)
           {
-            const unsigned int first = face.first_dof[node];
+            const unsigned int first        = face.first_dof[node];
             projector(first + i, first + j) = truncation.projector[node][i][j];
             springs(first + i, first + j)   = truncation.spring[node][i][j];
           }
@@ -425,10 +425,10 @@ namespace
         solver->set_truncation(truncation);
         Vector<double> unbalanced = dense.residual(expected);
         unbalanced -= dense.from_face(force);
-        const double norm =
-          std::sqrt(unbalanced * dense.solve(unbalanced));
-        EXPECT_NEAR(solver->dual_norm(force), norm, is_direct ? 1e-9 * norm :
-                                                                0.7 * norm);
+        const double norm = std::sqrt(unbalanced * dense.solve(unbalanced));
+        EXPECT_NEAR(solver->dual_norm(force),
+                    norm,
+                    is_direct ? 1e-9 * norm : 0.7 * norm);
 
         // The correction on the truncated space.
         Vector<double>       w(m);
@@ -464,8 +464,7 @@ namespace
         EXPECT_LT(distance(dense.gather(u), expected),
                   1e-7 * expected.l2_norm());
         // The norm is a scale: the right one up to a small factor.
-        const double energy =
-          std::sqrt(dense.K.matrix_norm_square(expected));
+        const double energy = std::sqrt(dense.K.matrix_norm_square(expected));
         EXPECT_GT(solver->energy_norm(), 0.5 * energy);
         EXPECT_LT(solver->energy_norm(), 3. * energy);
       }
@@ -475,10 +474,10 @@ namespace
 
   TYPED_TEST(BulkSolvers, FrictionalSolutionsAgree)
   {
-    constexpr int       dim = TypeParam::value;
+    constexpr int       dim       = TypeParam::value;
     constexpr double    tolerance = 1e-9;
     const Scenario<dim> scenario(dim == 2 ? 8 : 3, true);
-    const FrictionFace &face   = scenario.face->layout();
+    const FrictionFace &face = scenario.face->layout();
     // The load is a rough one of size 1 a node; so are these bounds.
     auto bounds = scenario.face->bounds(0.5);
     for (double &bound : bounds)
@@ -492,12 +491,9 @@ namespace
         Vector<double>    increment(face.n_dofs());
         FrictionState     state(face.points.size());
         solver->begin(scenario.load, u);
-        const ContactReport report = ContactSolver(tolerance, 50)
-                                       .solve(*solver,
-                                              face,
-                                              bounds,
-                                              increment,
-                                              state);
+        const ContactReport report =
+          ContactSolver(tolerance, 50)
+            .solve(*solver, face, bounds, increment, state);
         EXPECT_LE(report.relative_error, tolerance);
         EXPECT_LE(report.iterations, 20u);
 

@@ -8,11 +8,10 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
+#include "body.h"
 #include <viscoplastic_contact/elasticity.h>
 
 #include <cmath>
-
-#include "body.h"
 
 namespace
 {
@@ -58,7 +57,7 @@ namespace
     {
       FullMatrix<double> result(n_unknowns, n_unknowns),
         cell_matrix(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
-      FEValues<2> fe_values(fe,
+      FEValues<2>                          fe_values(fe,
                             QGauss<2>(form == Form::one_point ? 1 : 2),
                             update_gradients | update_JxW_values);
       std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
@@ -127,9 +126,8 @@ namespace
         EXPECT_GE(square.smallest_eigenvalue(
                     square.matrix(stiffness, Form::mean_dilatation), strains),
                   0.515);
-        EXPECT_NEAR(square.smallest_eigenvalue(square.matrix(stiffness,
-                                                             Form::one_point),
-                                               full),
+        EXPECT_NEAR(square.smallest_eigenvalue(
+                      square.matrix(stiffness, Form::one_point), full),
                     known,
                     0.01 * known);
       }
@@ -145,10 +143,11 @@ namespace
         const auto       strains = square.matrix(strain_product, Form::full);
         for (const double nu : {0.3, 0.49, 0.4999, 0.49999})
           {
-            const double constant = square.smallest_eigenvalue(
-              square.matrix(Stiffness::isotropic(1., nu),
-                            Form::mean_dilatation),
-              strains);
+            const double constant =
+              square.smallest_eigenvalue(square.matrix(Stiffness::isotropic(1.,
+                                                                            nu),
+                                                       Form::mean_dilatation),
+                                         strains);
             EXPECT_GT(constant, 0.515) << "nu = " << nu << ", n = " << n;
             EXPECT_LT(constant, 0.62) << "nu = " << nu << ", n = " << n;
           }
@@ -229,8 +228,8 @@ namespace
             }
           EXPECT_NEAR(matrix(i, j), form, 1e-13);
           EXPECT_NEAR(mean(i, j),
-                      form +
-                        bulk * (divergence[i] * divergence[j] / volume - product),
+                      form + bulk * (divergence[i] * divergence[j] / volume -
+                                     product),
                       1e-12);
           EXPECT_EQ(matrix(i, j), matrix(j, i));
           EXPECT_EQ(mean(i, j), mean(j, i));
@@ -293,10 +292,10 @@ namespace
     for (const bool mean_dilatation : {false, true})
       {
         const auto body = rotated_body<dim>(mean_dilatation);
-        EXPECT_GT(Utilities::MPI::sum(
-                    body->space->hanging_nodes().n_constraints(),
-                    MPI_COMM_WORLD),
-                  0u);
+        EXPECT_GT(
+          Utilities::MPI::sum(body->space->hanging_nodes().n_constraints(),
+                              MPI_COMM_WORLD),
+          0u);
         DistributedMatrix matrix;
         assemble_elastic_matrix(*body->space,
                                 *body->moduli,
@@ -304,8 +303,8 @@ namespace
                                 matrix);
         EXPECT_TRUE(matrix.m() == body->dof_handler.n_dofs());
 
-        const DistributedVector u = body->rough_vector(0.3),
-                                v = body->rough_vector(1.7);
+        const DistributedVector u  = body->rough_vector(0.3),
+                                v  = body->rough_vector(1.7);
         DistributedVector u_frames = body->space->owned_vector(),
                           v_frames = u_frames, product = u_frames;
         body->space->to_frames(u, u_frames);

@@ -2,11 +2,10 @@
 
 // Integrals over stresses: homogeneous states, known by hand.
 
+#include "body.h"
 #include <viscoplastic_contact/energy.h>
 
 #include <cmath>
-
-#include "body.h"
 
 namespace
 {
@@ -27,8 +26,9 @@ namespace
   std::string
   scene()
   {
-    std::string text = box<dim>(2, "set Translation = 0.1, 0.2" +
-                                     std::string(dim == 3 ? ", 0.3" : ""));
+    std::string text = box<dim>(2,
+                                "set Translation = 0.1, 0.2" +
+                                  std::string(dim == 3 ? ", 0.3" : ""));
     for (unsigned int id = 0; id < 2 * dim; ++id)
       text += boundary(id, "set Role = clamped");
     return text;
@@ -56,9 +56,7 @@ namespace
   /// A homogeneous strain, its displacement, and z that makes a given stress.
   template <int dim>
   State<dim>
-  homogeneous(const Body<dim> &body,
-              const double     stretch,
-              const Stress    &stress)
+  homogeneous(const Body<dim> &body, const double stretch, const Stress &stress)
   {
     State<dim> state;
     state.u = body.interpolate([stretch](const Point<dim> &x) {
@@ -157,9 +155,8 @@ namespace
     State<dim> state;
     state.u = body.space->ghosted_vector();
     for (std::size_t c = 0; c < body.sampling->n_cells(); ++c)
-      state.z.push_back(body.sampling->position(c, 0)[0] > middle ?
-                          some_stress(1.) :
-                          Stress());
+      state.z.push_back(
+        body.sampling->position(c, 0)[0] > middle ? some_stress(1.) : Stress());
     const auto summary = summarise_stress(*body.sampling, state, state);
     EXPECT_NEAR(summary.max_von_mises, von_mises(some_stress(1.)), 1e-14);
     EXPECT_NEAR(summary.mean_von_mises, 0.5 * summary.max_von_mises, 1e-14);
@@ -176,23 +173,23 @@ namespace
     Body<dim>     body(scene<dim>());
     body.set_up();
     State<dim> state;
-    state.u                = body.interpolate([](const Point<dim> &x) {
+    state.u                   = body.interpolate([](const Point<dim> &x) {
       Tensor<1, dim> u;
       u[1] = x[0] * x[1];
       return u;
     });
     const Stiffness stiffness = (*body.moduli)(0);
     Stress          yy, xy;
-    yy[1][1]                  = 1.;
-    xy[0][1]                  = 0.5;
-    const double shear        = stiffness.stress(xy) * stiffness.stress(xy);
-    const double normal       = stiffness.stress(yy) * stiffness.stress(yy);
-    const double h            = 0.5;
-    const double fluctuation  = volume * h * h / 12. * (shear + normal);
+    yy[1][1]                 = 1.;
+    xy[0][1]                 = 0.5;
+    const double shear       = stiffness.stress(xy) * stiffness.stress(xy);
+    const double normal      = stiffness.stress(yy) * stiffness.stress(yy);
+    const double h           = 0.5;
+    const double fluctuation = volume * h * h / 12. * (shear + normal);
     // int x^2 over (0.1, 2.1), int y^2 over (0.2, 1.2), both by the length of
     // the other sides.
-    const double squared = shear * 2. * (1.728 - 0.008) / 3. +
-                           normal * (9.261 - 0.001) / 3.;
+    const double squared =
+      shear * 2. * (1.728 - 0.008) / 3. + normal * (9.261 - 0.001) / 3.;
     // Mixed terms vanish: eps_xy and eps_yy are orthogonal.
     EXPECT_NEAR(relative_stress_fluctuation(*body.sampling, state),
                 std::sqrt(fluctuation / squared),

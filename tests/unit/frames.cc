@@ -7,10 +7,10 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include "body.h"
+
 #include <cmath>
 #include <set>
-
-#include "body.h"
 
 namespace
 {
@@ -115,10 +115,10 @@ namespace
                     const FrictionPlane<dim> &plane = frame.planes[0];
                     EXPECT_EQ(plane.n_tangents, 1u);
                     // Both pieces rub along the edge: their bounds add up.
-                    EXPECT_EQ(std::set<types::boundary_id>(
-                                plane.boundary_ids.begin(),
-                                plane.boundary_ids.end()),
-                              (std::set<types::boundary_id>{0, 2}));
+                    EXPECT_EQ(
+                      std::set<types::boundary_id>(plane.boundary_ids.begin(),
+                                                   plane.boundary_ids.end()),
+                      (std::set<types::boundary_id>{0, 2}));
                     const Tensor<1, dim> slip_direction =
                       frame.directions * plane.map[0];
                     EXPECT_NEAR(std::abs(slip_direction[dim - 1]), 1., 1e-14);
@@ -150,9 +150,9 @@ namespace
       boundary(1, "set Role = free") +
       boundary(2, tresca + "set Foundation displacement = -0.1*t") +
       boundary(3, "set Role = free") +
-      (dim == 3 ? boundary(4, "set Role = symmetry") +
-                    boundary(5, "set Role = free") :
-                  ""));
+      (dim == 3 ?
+             boundary(4, "set Role = symmetry") + boundary(5, "set Role = free") :
+             ""));
     body.set_up();
     DistributedVector in_frames = body.rough_unknowns();
     body.space->set_prescribed(2., in_frames);
@@ -185,8 +185,7 @@ namespace
     body.set_up();
     unsigned int n_edge = 0;
     for (const auto &node : body.space->boundary_nodes())
-      if (on_edge(node.position) &&
-          (dim == 2 || node.position[dim - 1] > 0.))
+      if (on_edge(node.position) && (dim == 2 || node.position[dim - 1] > 0.))
         {
           ++n_edge;
           const NodalFrame<dim> &frame = body.space->frame(node.frame);
@@ -296,9 +295,9 @@ namespace
 
   TYPED_TEST(Frames, CartesianAndBack)
   {
-    constexpr int           dim  = TypeParam::value;
-    const auto              body = rotated_body<dim>(tresca);
-    const DistributedVector u    = body->rough_vector();
+    constexpr int           dim       = TypeParam::value;
+    const auto              body      = rotated_body<dim>(tresca);
+    const DistributedVector u         = body->rough_vector();
     DistributedVector       in_frames = body->space->owned_vector(),
                       back            = body->space->ghosted_vector();
     body->space->to_frames(u, in_frames);
@@ -315,9 +314,9 @@ namespace
         rotated |= !frame.is_cartesian;
         const Tensor<2, dim> product =
           transpose(frame.directions) * frame.directions;
-        EXPECT_LT((product - Tensor<2, dim>(unit_symmetric_tensor<dim>()))
-                    .norm(),
-                  1e-14);
+        EXPECT_LT(
+          (product - Tensor<2, dim>(unit_symmetric_tensor<dim>())).norm(),
+          1e-14);
       }
     EXPECT_GT(Utilities::MPI::sum(rotated ? 1 : 0, MPI_COMM_WORLD), 0);
   }
@@ -354,7 +353,7 @@ namespace
     double              work = 0.;
     for (const auto i : body->space->owned)
       {
-        const double share = 1. + i % 7;
+        const double share                                   = 1. + i % 7;
         cartesian[body->space->relevant.index_within_set(i)] = share;
         work += share * u(i);
       }
@@ -407,8 +406,8 @@ namespace
     // Enough.
     std::string text = box<dim>(2);
     for (unsigned int id = 0; id < 2 * dim; ++id)
-      text += boundary(id,
-                       id % 2 == 0 ? "set Role = symmetry" : "set Role = free");
+      text +=
+        boundary(id, id % 2 == 0 ? "set Role = symmetry" : "set Role = free");
     EXPECT_EQ(message_of([&] { Body<dim>(text).set_up(); }), "");
   }
 
@@ -440,8 +439,8 @@ namespace
                 {
                   const auto dof = cell->vertex_dof_index(v, d);
                   if (!body->space->owned.is_element(dof) ||
-                      body->space->excluded()
-                        [body->space->owned.index_within_set(dof)])
+                      body->space
+                        ->excluded()[body->space->owned.index_within_set(dof)])
                     continue;
                   largest = std::max(largest, std::abs(mode(dof)));
                   if ((cell->vertex(v) - origin) * up < 0.49)
@@ -472,7 +471,7 @@ namespace
                         "set Friction bound = (1.5 + 0.2*x - 0.1*y)*t");
     const ContactFace<dim> &face = *body->face;
 
-    double integral = 0., area = 0.;
+    double            integral = 0., area = 0.;
     FEFaceValues<dim> values(body->fe,
                              QGauss<dim - 1>(3),
                              update_quadrature_points | update_JxW_values);
@@ -485,8 +484,7 @@ namespace
               for (const unsigned int q : values.quadrature_point_indices())
                 {
                   const Point<dim> x = values.quadrature_point(q);
-                  integral +=
-                    (1.5 + 0.2 * x[0] - 0.1 * x[1]) * values.JxW(q);
+                  integral += (1.5 + 0.2 * x[0] - 0.1 * x[1]) * values.JxW(q);
                   area += values.JxW(q);
                 }
             }
@@ -515,8 +513,7 @@ namespace
     });
     EXPECT_EQ(Utilities::MPI::sum(vertices.size(), MPI_COMM_WORLD),
               face.layout().points.size());
-    EXPECT_EQ(face.layout().n_dofs(),
-              face.layout().points.size() * (dim - 1));
+    EXPECT_EQ(face.layout().n_dofs(), face.layout().points.size() * (dim - 1));
   }
 
 
@@ -548,15 +545,15 @@ namespace
     // The corner of 150 degrees with bounds 1 and 3: in 3D the edge has the
     // bounds of both, in 2D nobody has its share.
     constexpr int dim = TypeParam::value;
-    Body<dim>     body(corner<dim>() + boundary(0, tresca) +
-                   boundary(1, "set Role = free") +
-                   boundary(2,
-                            "set Role = contact\nset Friction law = tresca\n"
-                                "set Friction bound = 3") +
-                   boundary(3, "set Role = free") +
-                   (dim == 3 ? boundary(4, "set Role = symmetry") +
-                                 boundary(5, "set Role = free") :
-                               ""));
+    Body<dim>     body(
+      corner<dim>() + boundary(0, tresca) + boundary(1, "set Role = free") +
+      boundary(2,
+               "set Role = contact\nset Friction law = tresca\n"
+                   "set Friction bound = 3") +
+      boundary(3, "set Role = free") +
+      (dim == 3 ?
+             boundary(4, "set Role = symmetry") + boundary(5, "set Role = free") :
+             ""));
     body.triangulation.refine_global(2);
     body.set_up();
     double       total = 0., edge = 0.;
@@ -599,8 +596,8 @@ namespace
         const Tensor<1, dim>    normal = body->scene.boundary.at(2).normal;
         const unsigned int      n      = face.layout().points.size();
 
-        FrictionState state(n);
-        Tensor<1, dim> sum;
+        FrictionState     state(n);
+        Tensor<1, dim>    sum;
         DistributedVector in_frames = body->space->owned_vector();
         body->space->to_frames(body->rough_vector(), in_frames);
         const auto slips = face.slips(in_frames);
@@ -608,8 +605,7 @@ namespace
           {
             for (unsigned int i = 0; i < dim - 1; ++i)
               state.multiplier[p][i] = std::sin(1. + 3. * p + i);
-            const Tensor<1, dim> force =
-              face.cartesian(p, state.multiplier[p]);
+            const Tensor<1, dim> force = face.cartesian(p, state.multiplier[p]);
             EXPECT_NEAR(force * normal, 0., 1e-14);
             EXPECT_NEAR(force.norm(), state.multiplier[p].norm(), 1e-14);
             // The slip is the tangential part of the displacement there.

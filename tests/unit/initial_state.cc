@@ -5,11 +5,10 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include "body.h"
 #include <viscoplastic_contact/initial_state.h>
 
 #include <cmath>
-
-#include "body.h"
 
 namespace
 {
@@ -43,13 +42,13 @@ namespace
   {
     constexpr int dim = TypeParam::value;
     Body<dim>     body(scene<dim>(dim == 2 ?
-                                "set Displacement = 0.1*y + 0.2*x*y; -0.3*y" :
-                                "set Displacement = 0.1*y + 0.2*x*y; -0.3*y; "
-                                "0.4*y*z"));
+                                    "set Displacement = 0.1*y + 0.2*x*y; -0.3*y" :
+                                    "set Displacement = 0.1*y + 0.2*x*y; -0.3*y; "
+                                    "0.4*y*z"));
     body.refine_where([](const Point<dim> &x) { return x[0] < 1.; });
     body.set_up();
     const State<dim> state = make_initial_state(*body.sampling, false);
-    const auto exact = body.interpolate([](const Point<dim> &x) {
+    const auto       exact = body.interpolate([](const Point<dim> &x) {
       Tensor<1, dim> u;
       u[0] = 0.1 * x[1] + 0.2 * x[0] * x[1];
       u[1] = -0.3 * x[1];
@@ -71,14 +70,14 @@ namespace
     // (eps(u0h - u0), eps(v)) = 0 for all v, by quadrature of its own.
     constexpr int dim = TypeParam::value;
     Body<dim>     body(scene<dim>(dim == 2 ?
-                                "set Displacement = x*y^2; y*(x^2 - y)" :
-                                "set Displacement = x*y^2; y*(x^2 - y); "
-                                "x*y*z"));
+                                    "set Displacement = x*y^2; y*(x^2 - y)" :
+                                    "set Displacement = x*y^2; y*(x^2 - y); "
+                                    "x*y*z"));
     body.refine_where([](const Point<dim> &x) { return x[0] > 1.; });
     body.set_up();
     const State<dim> state = make_initial_state(*body.sampling, false);
 
-    FEValues<dim> values(body.fe,
+    FEValues<dim>       values(body.fe,
                          QGauss<dim>(3),
                          update_gradients | update_JxW_values |
                            update_quadrature_points);
@@ -108,9 +107,8 @@ namespace
               const SymmetricTensor<2, dim> strain = symmetrize(gradient);
               for (const unsigned int v : cell->vertex_indices())
                 {
-                  const Tensor<1, dim> f = strain *
-                                           values.shape_grad(v * dim, q) *
-                                           values.JxW(q);
+                  const Tensor<1, dim> f =
+                    strain * values.shape_grad(v * dim, q) * values.JxW(q);
                   for (unsigned int i = 0; i < dim; ++i)
                     work[body.space->relevant.index_within_set(
                       cell->vertex_dof_index(v, i))] += f[i];
@@ -128,10 +126,10 @@ namespace
   TYPED_TEST(InitialState, IrreversibleStressIsWhatElasticityDoesNotExplain)
   {
     // z_0 = P0 sigma0 - P0 E eps(u0h), for linear sigma0 its value at centres.
-    constexpr int dim = TypeParam::value;
-    const std::string displacement =
-      dim == 2 ? "set Displacement = 0.1*y; -0.3*y\n" :
-                 "set Displacement = 0.1*y; -0.3*y; 0\n";
+    constexpr int     dim          = TypeParam::value;
+    const std::string displacement = dim == 2 ?
+                                       "set Displacement = 0.1*y; -0.3*y\n" :
+                                       "set Displacement = 0.1*y; -0.3*y; 0\n";
     const std::string stress =
       dim == 2 ? "set Stress = x; 2*y; 0.5 + x; x - y" :
                  "set Stress = x; 2*y; 0.5 + x; x - y; 3*z; x + z";
@@ -142,8 +140,8 @@ namespace
         body.set_up();
         const State<dim> state = make_initial_state(*body.sampling, false);
         Stress           strain;
-        strain[0][1] = 0.05;
-        strain[1][1] = -0.3;
+        strain[0][1]         = 0.05;
+        strain[1][1]         = -0.3;
         const Stress elastic = Stiffness::isotropic(1., 0.3).stress(strain);
         ASSERT_EQ(state.z.size(),
                   body.sampling->n_cells() * body.sampling->n_samples);
@@ -221,11 +219,10 @@ namespace
     const std::string f    = std::to_string(traction_factor) + "*exp(y)*";
     const std::string rest = dim == 3 ? "; 0" : "";
     std::string       text =
-      box<dim>(n) +
-      subsection("Initial state",
-                 "set Stress = sin(x)*exp(y); -sin(x)*exp(y); 0; "
-                 "-cos(x)*exp(y)" +
-                   std::string(dim == 3 ? "; 0; 0" : ""));
+      box<dim>(n) + subsection("Initial state",
+                               "set Stress = sin(x)*exp(y); -sin(x)*exp(y); 0; "
+                               "-cos(x)*exp(y)" +
+                                 std::string(dim == 3 ? "; 0; 0" : ""));
     text += boundary(0,
                      "set Role = traction\nset Traction = -" + f + "sin(x); " +
                        f + "cos(x)" + rest);
@@ -273,10 +270,9 @@ namespace
     // Without initial stress, any load at t = 0 is a violation of 1.
     constexpr int dim  = TypeParam::value;
     const auto    text = [](const std::string &force) {
-      return scene<dim>("") +
-             subsection("Loads",
-                        "set Body force = " + force + "; 0" +
-                          std::string(dim == 3 ? "; 0" : ""));
+      return scene<dim>("") + subsection("Loads",
+                                         "set Body force = " + force + "; 0" +
+                                           std::string(dim == 3 ? "; 0" : ""));
     };
     FrictionState friction;
     Body<dim>     loaded(text("1 + t"));
@@ -294,8 +290,8 @@ namespace
   std::string
   shear(const double tau, const double bound, const bool coulomb)
   {
-    const std::string t    = std::to_string(tau);
-    const std::string rest = dim == 3 ? "; 0" : "";
+    const std::string t        = std::to_string(tau);
+    const std::string rest     = dim == 3 ? "; 0" : "";
     const auto        traction = [&](const std::string &force) {
       return "set Role = traction\nset Traction = " + force + rest;
     };
@@ -304,7 +300,8 @@ namespace
       subsection("Initial state",
                  "set Stress = 0; " + std::string(coulomb ? "-1" : "0") +
                    "; 0; " + t + std::string(dim == 3 ? "; 0; 0" : "")) +
-      boundary(0, traction("0; -(" + t + ")")) + boundary(1, traction("0; " + t)) +
+      boundary(0, traction("0; -(" + t + ")")) +
+      boundary(1, traction("0; " + t)) +
       boundary(2,
                coulomb ? "set Role = contact\nset Friction law = coulomb\n"
                          "set Normal stress = -1\n"
@@ -331,9 +328,8 @@ namespace
           for (const double bound : {0.5, 0.25, 0.2, 0.1})
             {
               Body<dim> body(shear<dim>(tau, bound, coulomb));
-              body.refine_where([](const Point<dim> &x) {
-                return x[0] < 1. && x[1] < 0.5;
-              });
+              body.refine_where(
+                [](const Point<dim> &x) { return x[0] < 1. && x[1] < 0.5; });
               body.set_up();
               FrictionState friction;
               found.push_back(violation(body, friction));
@@ -368,16 +364,16 @@ namespace
     const Load<dim>   load     = body.loads->assemble(0.);
     DistributedVector internal = load.values;
     body.set_excluded_to_zero(internal);
-    double       excess = 0., left = 0.;
-    const auto   on_face = body.face->face_vector(internal);
-    const auto  &face    = body.face->layout();
+    double      excess = 0., left = 0.;
+    const auto  on_face = body.face->face_vector(internal);
+    const auto &face    = body.face->layout();
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const double m = body.face->weights()[p];
         excess += 0.15 * m * 0.15 * m;
         for (unsigned int i = 0; i < face.n_node_dofs(p); ++i)
-          left -= on_face[face.first_dof[p] + i] *
-                  on_face[face.first_dof[p] + i];
+          left -=
+            on_face[face.first_dof[p] + i] * on_face[face.first_dof[p] + i];
         left += 0.25 * m * 0.25 * m;
       }
     const double size =

@@ -3,11 +3,10 @@
 // Reading of parameter files, expressions, time steps, and the sentences with
 // which wrong ones are refused.
 
+#include "body.h"
 #include <viscoplastic_contact/time_schedule.h>
 
 #include <cmath>
-
-#include "body.h"
 
 namespace
 {
@@ -58,8 +57,7 @@ namespace
                                    "1: 2: 3",
                                    ": 4",
                                    "1: 2,, 2: 3"})
-      expect_refusal([&] { TimeSchedule schedule(text); },
-                     "'Time/Phases'");
+      expect_refusal([&] { TimeSchedule schedule(text); }, "'Time/Phases'");
     expect_refusal([] { TimeSchedule schedule("1: 2, 1: 3"); },
                    "the end time of '1: 3' must be finite and lie after 1.0");
     expect_refusal([] { TimeSchedule schedule("1: 2, 0.5: 3"); },
@@ -111,9 +109,9 @@ namespace
 
   TEST(Expression, Gradient)
   {
-    const Expression<3>  f("x*y + sin(z) + t*x", "f");
-    const Point<3>       x(1., 2., 3.);
-    const Tensor<1, 3>   gradient = f.gradient(x, 0.5);
+    const Expression<3> f("x*y + sin(z) + t*x", "f");
+    const Point<3>      x(1., 2., 3.);
+    const Tensor<1, 3>  gradient = f.gradient(x, 0.5);
     EXPECT_NEAR(gradient[0], 2.5, 1e-9);
     EXPECT_NEAR(gradient[1], 1., 1e-9);
     EXPECT_NEAR(gradient[2], std::cos(3.), 1e-9);
@@ -220,8 +218,8 @@ namespace
   void
   inspect(const std::string &text)
   {
-    const auto parameters = read_parameters(
-      "set Dimension = " + std::to_string(dim) + "\n" + text);
+    const auto parameters =
+      read_parameters("set Dimension = " + std::to_string(dim) + "\n" + text);
     Scene<dim>                                scene(*parameters);
     parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
     scene.make_mesh(triangulation);

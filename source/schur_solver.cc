@@ -8,66 +8,10 @@
 
 #include <cmath>
 
-extern "C"
-{
-  // BLAS on triangular matrices stored by columns.
-  void
-  dtrmv_(const char   *uplo,
-         const char   *trans,
-         const char   *diag,
-         const int    *n,
-         const double *a,
-         const int    *lda,
-         double       *x,
-         const int    *incx);
-  void
-  dtrsv_(const char   *uplo,
-         const char   *trans,
-         const char   *diag,
-         const int    *n,
-         const double *a,
-         const int    *lda,
-         double       *x,
-         const int    *incx);
-  void
-  dsyrk_(const char   *uplo,
-         const char   *trans,
-         const int    *n,
-         const int    *k,
-         const double *alpha,
-         const double *a,
-         const int    *lda,
-         const double *beta,
-         double       *c,
-         const int    *ldc);
-}
-
 namespace Viscoplastic
 {
   namespace
   {
-    void
-    multiply_triangular(const std::vector<double> &L,
-                        const bool                 transposed,
-                        Vector<double>            &x)
-    {
-      const int n = x.size(), one = 1;
-      if (n > 0)
-        dtrmv_("L", transposed ? "T" : "N", "N", &n, L.data(), &n, &x[0], &one);
-    }
-
-
-
-    void
-    solve_triangular(const std::vector<double> &L, Vector<double> &x)
-    {
-      const int n = x.size(), one = 1;
-      if (n > 0)
-        dtrsv_("L", "N", "N", &n, L.data(), &n, &x[0], &one);
-    }
-
-
-
     /// The Schur complement on the truncated space, with springs.
     struct TruncatedFace
     {
@@ -306,7 +250,7 @@ namespace Viscoplastic
 
     const int              n     = face.n_dofs();
     const SuiteSparse_long first = unknowns.size() - n;
-    face_factor.assign(std::size_t(n) * n, 0.);
+    face_factor.reinit(n, n);
     for (std::size_t s = 0; s < L.nsuper; ++s)
       for (SuiteSparse_long j = std::max(super[s], first); j < super[s + 1];
            ++j)
@@ -314,17 +258,15 @@ namespace Viscoplastic
           const SuiteSparse_long n_rows = pi[s + 1] - pi[s];
           const SuiteSparse_long local  = j - super[s];
           for (SuiteSparse_long i = local; i < n_rows; ++i)
-            face_factor[std::size_t(j - first) * n + rows[pi[s] + i] - first] =
+            face_factor(rows[pi[s] + i] - first, j - first) =
               x[px[s] + local * n_rows + i];
         }
 
+    face_factor.set_property(LAPACKSupport::lower_triangular);
+    LAPACKFullMatrix<double> product_matrix(n, n);
+    face_factor.mTmult(product_matrix, face_factor);
     FullMatrix<double> S(n, n);
-    const double       one = 1., zero = 0.;
-    dsyrk_("L", "N", &n, &n, &one, face_factor.data(), &n, &zero, &S(0, 0), &n);
-    // Lower by columns is upper by rows.
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < i; ++j)
-        S(i, j) = S(j, i);
+    S                = product_matrix;
     schur_complement = std::make_unique<DenseFaceMatrix>(face, std::move(S));
 
     face_load.reinit(n);
@@ -391,7 +333,8 @@ namespace Viscoplastic
       squared_norm += y[i] * y[i];
     for (unsigned int i = 0; i < face.n_dofs(); ++i)
       face_load[i] = y[n_interior + i];
-    multiply_triangular(face_factor, false, face_load);
+    const Vector<double> y_face(face_load);
+    face_factor.vmult(face_load, y_face);
     face_change = 0.;
   }
 
@@ -437,7 +380,7 @@ namespace Viscoplastic
     // dual norm is that of the Schur complement.
     face_residual(product);
     product -= force;
-    solve_triangular(face_factor, product);
+    face_factor.solve(product);
     return product.l2_norm();
   }
 
@@ -446,8 +389,8 @@ namespace Viscoplastic
   double
   SchurSolver::energy_norm() const
   {
-    Vector<double> c(face_change);
-    multiply_triangular(face_factor, true, c);
+    Vector<double> c(face_change.size());
+    face_factor.Tvmult(c, face_change);
     return std::sqrt(squared_norm + c.norm_sqr());
   }
 
@@ -524,8 +467,8 @@ namespace Viscoplastic
   unsigned int
   SchurSolver::finish()
   {
-    Vector<double> c(face_change);
-    multiply_triangular(face_factor, true, c);
+    Vector<double> c(face_change.size());
+    face_factor.Tvmult(c, face_change);
     const unsigned int n_interior = unknowns.size() - face.n_dofs();
     for (unsigned int i = 0; i < face.n_dofs(); ++i)
       y[n_interior + i] = c[i];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/lac/lapack_full_matrix.h>
+
 #include <viscoplastic_contact/bulk_solver.h>
 
 #include <memory>
@@ -96,8 +98,8 @@ namespace Viscoplastic
     std::unique_ptr<Factor>  factor;
     /// Position in u of each unknown in the order of the factorisation.
     std::vector<unsigned int> unknowns;
-    /// Factor of the Schur complement, lower triangular, by columns.
-    std::vector<double>              face_factor;
+    /// Factor of the Schur complement, lower triangular.
+    LAPACKFullMatrix<double>         face_factor;
     std::unique_ptr<DenseFaceMatrix> schur_complement;
 
     // The solve under way.

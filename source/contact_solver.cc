@@ -392,6 +392,142 @@ namespace Viscoplastic
       state = old_state;
       return {};
     }
+
+
+    Tensor<1, 2>
+    clip(const Tensor<1, 2> &multiplier, const double bound)
+    {
+      const double size = multiplier.norm();
+      return size <= bound ? multiplier : multiplier * (bound / size);
+    }
+
+
+
+    /// Multipliers that bound the error: those of fit_multipliers() but for
+    /// the points listed.
+    struct Certificate
+    {
+      Vector<double> force;
+      /// sum of rho |s| - lambda . s.
+      double                                             defect = 0.;
+      std::vector<std::pair<unsigned int, Tensor<1, 2>>> replaced;
+    };
+
+    /**
+     * A point that has hardly begun to slip in the plane has a direction s/|s|
+     * blurred by rounding: its multiplier rho s/|s| misses the residual by more
+     * than its slip is worth. There the clipped residual is the better
+     * multiplier, at the price of a small defect of complementarity.
+     */
+    Certificate
+    certify(const FrictionFace              &face,
+            const std::vector<double>       &bounds,
+            const Vector<double>            &residual,
+            const std::vector<Tensor<2, 3>> &diagonal,
+            const FrictionState             &state,
+            const Vector<double>            &force)
+    {
+      Certificate result;
+      result.force = force;
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        {
+          const unsigned int         p     = face.first_point[node];
+          const FrictionFace::Point &point = face.points[p];
+          if (face.n_node_points(node) != 1 || point.n_tangents != 2 ||
+              state.sticks[p] || bounds[p] == 0.)
+            continue;
+          const Tensor<1, 2> here =
+            slip(point, face.node_values(residual, node));
+          if ((here - state.multiplier[p]).norm() <=
+              diagonal[node].norm() * state.slip[p].norm())
+            continue;
+          const Tensor<1, 2> multiplier = clip(here, bounds[p]);
+          result.defect += std::max(0.,
+                                    bounds[p] * state.slip[p].norm() -
+                                      multiplier * state.slip[p]);
+          result.replaced.emplace_back(p, multiplier);
+          face.set_node_values(node_force(point, multiplier),
+                               node,
+                               result.force);
+        }
+      return result;
+    }
+
+
+
+    /// Least-norm multipliers of the sticking points of a node with several
+    /// points whose forces make up for @p missing, as far as the balls allow.
+    void
+    fit_node(const FrictionFace        &face,
+             const unsigned int         begin,
+             const unsigned int         end,
+             const std::vector<double> &bounds,
+             Tensor<1, 3>              &missing,
+             FrictionState             &state)
+    {
+      // lambda = B (B^T B)^+ missing.
+      SymmetricTensor<2, 3> gram;
+      for (unsigned int p = begin; p < end; ++p)
+        if (state.sticks[p])
+          for (unsigned int i = 0; i < face.points[p].n_tangents; ++i)
+            gram += symmetrize(
+              outer_product(face.points[p].map[i], face.points[p].map[i]));
+      const auto   pairs = eigenvectors(gram);
+      Tensor<1, 3> solution;
+      for (const auto &[value, vector] : pairs)
+        if (value > 1e-12 * pairs[0].first)
+          solution += (vector * missing) / value * vector;
+      bool                      inside = true;
+      std::vector<Tensor<1, 2>> lambda(end - begin), z, old;
+      for (unsigned int p = begin; p < end; ++p)
+        if (state.sticks[p])
+          {
+            const Tensor<1, 2> free = slip(face.points[p], solution);
+            lambda[p - begin]       = clip(free, bounds[p]);
+            inside &= free.norm() <= bounds[p];
+          }
+      // Where that leaves a ball: accelerated projected gradients.
+      if (!inside)
+        {
+          const double L        = pairs[0].first;
+          double       momentum = 1.;
+          z                     = lambda;
+          for (unsigned int step = 0; step < 3000; ++step)
+            {
+              old                 = lambda;
+              Tensor<1, 3> remain = missing;
+              for (unsigned int p = begin; p < end; ++p)
+                remain -= node_force(face.points[p], z[p - begin]);
+              double change = 0., size = 0., uphill = 0.;
+              for (unsigned int p = begin; p < end; ++p)
+                if (state.sticks[p])
+                  {
+                    auto &l = lambda[p - begin];
+                    l = clip(z[p - begin] + slip(face.points[p], remain) / L,
+                             bounds[p]);
+                    uphill += (z[p - begin] - l) * (l - old[p - begin]);
+                    change += (z[p - begin] - l).norm();
+                    size += l.norm();
+                  }
+              if (change <= 1e-15 * size)
+                break;
+              const double next =
+                uphill > 0. ?
+                  1. :
+                  0.5 * (1. + std::sqrt(1. + 4. * momentum * momentum));
+              const double beta = uphill > 0. ? 0. : (momentum - 1.) / next;
+              momentum          = next;
+              for (unsigned int p = 0; p < lambda.size(); ++p)
+                z[p] = lambda[p] + beta * (lambda[p] - old[p]);
+            }
+        }
+      for (unsigned int p = begin; p < end; ++p)
+        if (state.sticks[p])
+          {
+            state.multiplier[p] = lambda[p - begin];
+            missing -= node_force(face.points[p], state.multiplier[p]);
+          }
+    }
   } // namespace
 
 
@@ -446,10 +582,6 @@ namespace Viscoplastic
                   FrictionState             &state,
                   Vector<double>            &force)
   {
-    const auto clip = [](const Tensor<1, 2> &multiplier, const double bound) {
-      const double size = multiplier.norm();
-      return size <= bound ? multiplier : multiplier * (bound / size);
-    };
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
         const unsigned int begin   = face.first_point[node];
@@ -468,30 +600,17 @@ namespace Viscoplastic
                 slipping_multiplier(bounds[p], state.slip[p]);
             missing -= node_force(face.points[p], state.multiplier[p]);
           }
-        // The maps have rows of norm at most one, so 1/(points) is a stable
-        // step; with one point of orthonormal rows the first is exact.
-        const unsigned int n_steps = n_stick == 0                       ? 0 :
-                                     (n_stick == 1 && end - begin == 1) ? 1 :
-                                                                          200;
-        for (unsigned int step = 0; step < n_steps; ++step)
-          {
-            Tensor<1, 3> new_missing = missing;
-            for (unsigned int p = begin; p < end; ++p)
-              if (state.sticks[p])
-                {
-                  const Tensor<1, 2> fitted =
-                    clip(state.multiplier[p] +
-                           slip(face.points[p], missing) / (1. * n_stick),
-                         bounds[p]);
-                  new_missing -=
-                    node_force(face.points[p], fitted - state.multiplier[p]);
-                  state.multiplier[p] = fitted;
-                }
-            const double change = (new_missing - missing).norm();
-            missing             = new_missing;
-            if (change <= 1e-15 * face.node_values(residual, node).norm())
-              break;
-          }
+        // One point of orthonormal rows: the residual, clipped.
+        if (n_stick == 1)
+          for (unsigned int p = begin; p < end; ++p)
+            if (state.sticks[p] && end - begin == 1)
+              {
+                state.multiplier[p] =
+                  clip(slip(face.points[p], missing), bounds[p]);
+                missing -= node_force(face.points[p], state.multiplier[p]);
+              }
+        if (n_stick > 0 && end - begin > 1)
+          fit_node(face, begin, end, bounds, missing, state);
         face.set_node_values(face.node_values(residual, node) - missing,
                              node,
                              force);
@@ -573,15 +692,24 @@ namespace Viscoplastic
         const FaceTruncation truncation =
           make_truncation(face, bounds, state, inverse);
         bulk.set_truncation(truncation);
-        const double error    = bulk.dual_norm(force);
+        const Certificate certificate =
+          certify(face, bounds, residual, diagonal, state, force);
+        const double dual_norm = bulk.dual_norm(certificate.force);
+        const double error =
+          0.5 *
+          (dual_norm + std::sqrt(square(dual_norm) + 4. * certificate.defect));
         const double size     = bulk.energy_norm();
-        report.duality_gap    = 0.5 * square(error);
+        report.duality_gap    = 0.5 * square(dual_norm) + certificate.defect;
         report.relative_error = size > 0. ? error / size : 0.;
         AssertThrow(std::isfinite(error),
                     ExcMessage("The contact solver met a value that is not "
                                "finite."));
         if (error <= tolerance * size)
-          break;
+          {
+            for (const auto &[point, multiplier] : certificate.replaced)
+              state.multiplier[point] = multiplier;
+            break;
+          }
         best_error = std::min(best_error, report.relative_error);
         if (iteration == max_iterations)
           {
@@ -638,6 +766,21 @@ namespace Viscoplastic
         bulk.take_step(search_result.step);
         x.add(search_result.step, w);
         ++report.iterations;
+
+        // (4) Gauss-Seidel with the bulk at rest and corrections that a kink of
+        // J stops may jam. Then the bulk follows the face: with (1) a descent
+        // over two blocks, which converges since only the face has kinks.
+        if (!(-search_result.energy_change > 0.1 * report.duality_gap))
+          {
+            FaceTruncation held;
+            held.projector.resize(face.n_nodes());
+            held.spring.resize(face.n_nodes());
+            bulk.set_truncation(held);
+            report.linear_iterations += bulk.correct(force, 0.05, w);
+            const BulkSolver::SearchTerms follow = bulk.search_terms(w);
+            if (follow.curvature > 0.)
+              bulk.take_step(follow.slope / follow.curvature);
+          }
       }
     report.linear_iterations += bulk.finish();
 

@@ -15,7 +15,7 @@ namespace Viscoplastic
     unsigned int linear_iterations = 0;
     /// Primal minus dual energy, a bound on half the squared energy error.
     double duality_gap = 0.;
-    /// sqrt(2 gap) over the energy norm of the solution.
+    /// That bound on the error over the energy norm of the solution.
     double relative_error = 0.;
   };
 
@@ -37,8 +37,11 @@ namespace Viscoplastic
    * where (1) covers all unknowns; here the linear solve covers the bulk).
    *
    * The iteration stops when the duality gap bounds the error: with
-   * multipliers in their balls that satisfy the friction law exactly and the
-   * remaining residual R, gap = 1/2 |R|^2 in the dual energy norm.
+   * multipliers in their balls, the remaining residual R and the defect
+   * eps = sum rho |s| - lambda . s of complementarity, gap = 1/2 |R|^2 + eps in
+   * the dual energy norm and |error| <= (|R| + sqrt(|R|^2 + 4 eps))/2. The
+   * multipliers satisfy the friction law exactly (eps = 0), except at points
+   * that have hardly begun to slip.
    */
   class ContactSolver
   {

@@ -2,10 +2,10 @@
 
 // The viscoplastic laws, their registry, and the elastic tensor they share.
 
+#include <deal.II/lac/lapack_full_matrix.h>
+
 #include <viscoplastic_contact/stiffness.h>
 #include <viscoplastic_contact/viscoplastic_law.h>
-
-#include <deal.II/lac/lapack_full_matrix.h>
 
 #include <gtest/gtest.h>
 

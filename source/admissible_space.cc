@@ -492,23 +492,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  bool
-  AdmissibleSpace<dim>::has_prescribed_values() const
-  {
-    for (const auto &pair : scene.boundary)
-      {
-        if (pair.second.foundation_displacement)
-          return true;
-        for (const auto &component : pair.second.displacement)
-          if (component && !component->is_zero())
-            return true;
-      }
-    return false;
-  }
-
-
-
   template class AdmissibleSpace<2>;
   template class AdmissibleSpace<3>;
 } // namespace Viscoplastic

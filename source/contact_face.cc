@@ -301,7 +301,8 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const Node &node = nodes[face.points[p].node];
-        if (!space.owned.is_element(node.first_dof))
+        if (!space.owned.is_element(node.first_dof) ||
+            face.n_node_points(face.points[p].node) > 1)
           continue;
         Tensor<1, dim> density;
         for (unsigned int d = 0; d < dim; ++d)

@@ -324,13 +324,27 @@ namespace Viscoplastic
         density.assign(density.size(), Tensor<1, dim>());
       double square = 0.;
       for (const unsigned int q : face_values.quadrature_point_indices())
-        square += boundary_residual(condition,
-                                    face_values.quadrature_point(q),
-                                    t,
-                                    traction[q],
-                                    density[q])
-                    .norm_square() *
-                  face_values.JxW(q);
+        {
+          // Nodal multipliers respect nodal bounds; between nodes the density
+          // exceeds a bound that jumps.
+          if (condition.has_friction())
+            {
+              const Tensor<1, dim> tangential =
+                density[q] - (density[q] * condition.normal) * condition.normal;
+              const double excess =
+                tangential.norm() -
+                condition.bound(face_values.quadrature_point(q), t);
+              if (excess > 0.)
+                square += excess * excess * face_values.JxW(q);
+            }
+          square += boundary_residual(condition,
+                                      face_values.quadrature_point(q),
+                                      t,
+                                      traction[q],
+                                      density[q])
+                      .norm_square() *
+                    face_values.JxW(q);
+        }
       estimate[cell->active_cell_index()] += cell->face(f)->diameter() * square;
     };
 

@@ -42,7 +42,7 @@ namespace Viscoplastic
     space.to_frames(state.u, forces.u);
     matrix.vmult(forces.internal, forces.u);
     forces.strain_energy = 0.5 * (forces.u * forces.internal);
-    if (!state.z.empty())
+    if (space.scene.has_irreversible_stress()) // collective
       {
         DistributedVector irreversible = space.owned_vector();
         add_irreversible_load(sampling, state.z, irreversible);

@@ -38,20 +38,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  bool
-  Loads<dim>::depends_on_time() const
-  {
-    if (space.scene.body_force && space.scene.body_force->depends_on_time())
-      return true;
-    for (const auto &pair : space.scene.boundary)
-      if (depends_on_time(pair.second))
-        return true;
-    return false;
-  }
-
-
-
-  template <int dim>
   void
   Loads<dim>::add(const double t,
                   const bool   time_dependent,

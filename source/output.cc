@@ -219,6 +219,8 @@ namespace Viscoplastic
                              DataOut<dim>::type_dof_data,
                              is_vector);
 
+    // The same fields on all ranks, also on those without cells.
+    const bool         has_z      = scene.has_irreversible_stress();
     constexpr auto     components = stress_components<dim>();
     const unsigned int n          = components.size();
     const std::vector<SymmetricTensor<2, 3>> stress =
@@ -226,7 +228,7 @@ namespace Viscoplastic
     std::vector<Vector<double>> stresses(n,
                                          Vector<double>(tria.n_active_cells()));
     std::vector<Vector<double>> irreversible(
-      state.z.empty() ? 0 : n, Vector<double>(tria.n_active_cells()));
+      has_z ? n : 0, Vector<double>(tria.n_active_cells()));
     Vector<double> mises(tria.n_active_cells());
     Vector<double> subdomain(tria.n_active_cells());
     std::size_t    owned_cell = 0;
@@ -239,7 +241,7 @@ namespace Viscoplastic
           for (unsigned int c = 0; c < n; ++c)
             stresses[c][i] =
               stress[owned_cell][components[c].first][components[c].second];
-          if (!state.z.empty())
+          if (has_z)
             {
               const auto z =
                 sampling.mean(owned_cell,
@@ -256,7 +258,7 @@ namespace Viscoplastic
         const std::string suffix = std::string("_") + xyz[components[c].first] +
                                    xyz[components[c].second];
         data_out.add_data_vector(stresses[c], "stress" + suffix);
-        if (!state.z.empty())
+        if (has_z)
           data_out.add_data_vector(irreversible[c],
                                    "irreversible_stress" + suffix);
       }
@@ -299,7 +301,7 @@ namespace Viscoplastic
     add_vector("slip_rate");
 
     // Tractions and sets live at the nodes of friction points.
-    // Where there is none, other conditions hold the face: it does not slip.
+    // Where a frictional piece has none, other conditions prescribe the node.
     DistributedVector density, bound, utilisation, slipping;
     if (face != nullptr)
       {
@@ -368,9 +370,13 @@ namespace Viscoplastic
                     store(condition.has_friction() ?
                             -1. * tangential(vector(density)) :
                             Tensor<1, dim>());
-                    patch.data(row++, v) = bound.begin()[node];
-                    patch.data(row++, v) = utilisation.begin()[node];
-                    patch.data(row++, v) = 1. - slipping.begin()[node];
+                    const bool frictional = condition.has_friction();
+                    patch.data(row++, v) =
+                      frictional ? bound.begin()[node] : 0.;
+                    patch.data(row++, v) =
+                      frictional ? utilisation.begin()[node] : 0.;
+                    patch.data(row++, v) =
+                      frictional ? 1. - slipping.begin()[node] : 0.;
                   }
               }
             output.patches.push_back(patch);

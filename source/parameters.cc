@@ -298,22 +298,34 @@ namespace Viscoplastic
 
 
 
-  Parameters::Parameters(const std::string &file)
-    : file(file)
+  void
+  Parameters::find_boundaries(const std::string &name, const unsigned int depth)
   {
-    // The ids of `subsection Boundary <id>' decide what is declared.
-    std::ifstream input(file);
-    AssertThrow(input,
+    AssertThrow(depth < 10,
                 ExcMessage("The parameter file '" + file +
+                           "' includes itself, or files too deep."));
+    std::ifstream input(name);
+    AssertThrow(input,
+                ExcMessage("The parameter file '" + name +
                            "' cannot be opened."));
-    const std::regex boundary("^\\s*subsection\\s+Boundary\\s+(\\d{1,9})\\s*"
-                              "(#.*)?$");
+    const std::regex boundary(
+      "^\\s*subsection\\s+Boundary\\s+(\\d{1,9})\\s*(#.*)?$");
+    const std::regex include("^\\s*include\\s+([^#]*[^#\\s])\\s*(#.*)?$");
     std::string      line;
     std::smatch      match;
     while (std::getline(input, line))
       if (std::regex_match(line, match, boundary))
         boundaries[std::stoul(match[1])];
+      else if (std::regex_match(line, match, include))
+        find_boundaries(match[1], depth + 1);
+  }
 
+
+
+  Parameters::Parameters(const std::string &file)
+    : file(file)
+  {
+    find_boundaries(file, 0);
     declare();
     handler.parse_input(file);
     refinement.check();

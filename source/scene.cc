@@ -212,6 +212,10 @@ namespace Viscoplastic
     for (const auto &[id, boundary_parameters] : parameters.boundaries)
       boundary.emplace(id, BoundaryCondition<dim>(id, boundary_parameters));
 
+    for (const Expression<dim> *modulus : {&youngs_modulus, &poissons_ratio})
+      AssertThrow(!modulus->depends_on_time(),
+                  ExcMessage("'Material/Young's modulus' and 'Poisson's ratio' "
+                             "may depend on position, but not on t."));
     for (const std::string &point :
          Utilities::split_string_list(parameters.output.points, ';'))
       if (!point.empty())

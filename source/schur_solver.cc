@@ -366,7 +366,8 @@ namespace Viscoplastic
 
 
   void
-  SchurSolver::set_truncation(const FaceTruncation &truncation_)
+  SchurSolver::set_truncation(const FaceTruncation &truncation_,
+                              const bool /*may_rebuild*/)
   {
     truncation = truncation_;
   }
@@ -382,6 +383,15 @@ namespace Viscoplastic
     product -= force;
     face_factor.solve(product);
     return product.l2_norm();
+  }
+
+
+
+  double
+  SchurSolver::confirmed_dual_norm(const Vector<double> &force,
+                                   unsigned int & /*iterations*/)
+  {
+    return dual_norm(force);
   }
 
 

@@ -6,10 +6,8 @@
 #include <viscoplastic_contact/error_estimator.h>
 #include <viscoplastic_contact/initial_state.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
-#include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
-#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <sstream>
@@ -129,6 +127,7 @@ namespace Viscoplastic
     TimerOutput::Scope scope(timer, "set-up");
     dof_handler.distribute_dofs(fe);
     // The old one goes first: matrices and factors are what fills memory.
+    is_solved_on_mesh = false;
     discretisation.reset();
     discretisation = std::make_unique<Discretisation>(dof_handler, scene);
     if (forces.u.size() == 0) // the first time
@@ -266,7 +265,7 @@ namespace Viscoplastic
     Discretisation             &d     = *discretisation;
     const AdmissibleSpace<dim> &space = d.space;
     DistributedVector           right_side(load.values);
-    if (!new_state.z.empty())
+    if (scene.has_irreversible_stress()) // collective, also without cells
       add_irreversible_load(d.sampling, new_state.z, right_side);
 
     // Start from the last displacement, moved on by the last velocity except
@@ -308,7 +307,7 @@ namespace Viscoplastic
     else
       {
         // An elastic body whose data have not changed does not move.
-        if (!scene.has_viscosity() && old_state.n > 0)
+        if (!scene.has_viscosity() && is_solved_on_mesh)
           {
             DistributedVector displacement_change(old_u);
             space.set_prescribed(t, displacement_change);
@@ -336,6 +335,7 @@ namespace Viscoplastic
         u /= k;
         space.to_cartesian(u, new_state.velocity);
       }
+    is_solved_on_mesh = true;
     return report;
   }
 

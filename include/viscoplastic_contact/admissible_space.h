@@ -94,10 +94,6 @@ namespace Viscoplastic
     void
     set_prescribed(const double t, DistributedVector &in_frames) const;
 
-    /// Whether some prescribed value is not identically zero.
-    bool
-    has_prescribed_values() const;
-
     /// Owned degrees of freedom that are no unknowns: prescribed or hanging;
     /// one entry for each owned index.
     const std::vector<bool> &

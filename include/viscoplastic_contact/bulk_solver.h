@@ -60,9 +60,11 @@ namespace Viscoplastic
     virtual void
     move_face(const Vector<double> &change) = 0;
 
-    /// How the calls below treat the face.
+    /// How the calls below treat the face. A truncation that is only tried
+    /// must not be what a solver adapts its set-up to.
     virtual void
-    set_truncation(const FaceTruncation &truncation) = 0;
+    set_truncation(const FaceTruncation &truncation,
+                   const bool            may_rebuild = true) = 0;
 
     /**
      * The norm of l - A u - force in the dual of the energy norm; @p force is a
@@ -71,6 +73,12 @@ namespace Viscoplastic
      */
     virtual double
     dual_norm(const Vector<double> &force) = 0;
+
+    /// dual_norm() without the quality of a preconditioner in it, for the
+    /// final word; adds its iterations to @p iterations.
+    virtual double
+    confirmed_dual_norm(const Vector<double> &force,
+                        unsigned int         &iterations) = 0;
 
     /// A norm of the solution to compare dual_norm() with.
     virtual double

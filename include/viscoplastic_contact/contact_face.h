@@ -76,7 +76,8 @@ namespace Viscoplastic
     DistributedVector
     density(const FrictionState &state) const;
 
-    /// The inverse: multipliers m_c * density, for a face on a new mesh.
+    /// The inverse where a node has one point, for a face on a new mesh; at
+    /// corners, where the density is that of all points, zero.
     /// @p ghosted_density is Cartesian. Collective.
     std::vector<Tensor<1, 2>>
     multipliers(const DistributedVector &ghosted_density) const;

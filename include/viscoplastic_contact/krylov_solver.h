@@ -56,10 +56,15 @@ namespace Viscoplastic
     move_face(const Vector<double> &change) override;
 
     void
-    set_truncation(const FaceTruncation &truncation) override;
+    set_truncation(const FaceTruncation &truncation,
+                   const bool            may_rebuild = true) override;
 
     double
     dual_norm(const Vector<double> &force) override;
+
+    double
+    confirmed_dual_norm(const Vector<double> &force,
+                        unsigned int         &iterations) override;
 
     double
     energy_norm() const override;

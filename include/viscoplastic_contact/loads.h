@@ -32,9 +32,6 @@ namespace Viscoplastic
     Load<dim>
     assemble(const double t) const;
 
-    bool
-    depends_on_time() const;
-
   private:
     using Cell = typename DoFHandler<dim>::active_cell_iterator;
 

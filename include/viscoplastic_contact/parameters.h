@@ -154,5 +154,10 @@ namespace Viscoplastic
   private:
     void
     declare();
+
+    /// The ids of `subsection Boundary <id>' in a file and in those that it
+    /// includes decide what is declared.
+    void
+    find_boundaries(const std::string &name, const unsigned int depth);
   };
 } // namespace Viscoplastic

@@ -89,7 +89,8 @@ namespace Viscoplastic
     void
     set_initial_state();
 
-    /// One step: a pure function of the state, its forces and the time step.
+    /// One step: a function of the state, its forces and the time step. It
+    /// keeps nothing but what a linear solver knows of its preconditioner.
     Step
     advance(const State<dim>  &old_state,
             const Forces<dim> &old_forces,
@@ -148,6 +149,8 @@ namespace Viscoplastic
     ContactReport  initial_report;
     Accounts       accounts;
     Vector<double> squared_estimate; // eta_K^2, only in adaptive scenes
+    /// Whether the state is a solution on the present mesh.
+    bool is_solved_on_mesh = false;
 
     std::optional<Output<dim>>   output;
     std::unique_ptr<Statistics>  statistics; // on rank 0

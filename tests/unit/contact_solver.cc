@@ -566,7 +566,8 @@ namespace
     }
 
     void
-    set_truncation(const FaceTruncation &truncation_) override
+    set_truncation(const FaceTruncation &truncation_,
+                   const bool /*may_rebuild*/) override
     {
       truncation = truncation_;
     }
@@ -575,6 +576,13 @@ namespace
     dual_norm(const Vector<double> &force) override
     {
       return std::sqrt(inverse.matrix_norm_square(unbalanced(force)));
+    }
+
+    double
+    confirmed_dual_norm(const Vector<double> &force,
+                        unsigned int & /*iterations*/) override
+    {
+      return dual_norm(force);
     }
 
     double
@@ -832,7 +840,11 @@ namespace
           {
             const Tensor<1, 2> s = result.state.slip[c];
             EXPECT_GT(s.norm(), 0.);
-            EXPECT_LE((lambda - bound * s / s.norm()).norm(), 1e-13 * bound);
+            // Rounding blurs the direction of a slip that has hardly begun;
+            // the solver then certifies with the residual instead.
+            const bool is_blurred = s.norm() < 1e-9 * result.u.linfty_norm();
+            EXPECT_LE((lambda - bound * s / s.norm()).norm(),
+                      (is_blurred ? 1e-5 : 1e-13) * bound);
           }
         else
           {

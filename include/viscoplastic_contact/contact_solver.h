@@ -2,7 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/bulk_solver.h>
-#include <viscoplastic_contact/friction_face.h>
+#include <viscoplastic_contact/friction_points.h>
 
 namespace Viscoplastic
 {
@@ -68,38 +68,4 @@ namespace Viscoplastic
     const double       tolerance;
     const unsigned int max_iterations;
   };
-
-
-  /**
-   * The frictional problem of a single point: the multiplier that minimises
-   * 1/2 lambda . C lambda - q . lambda over |lambda| <= rho, with C the
-   * symmetric flexibility seen by the point and q its slip at lambda = 0.
-   * |lambda| < rho (or C lambda = q) means stick, otherwise the slip
-   * q - C lambda is parallel to lambda.
-   */
-  struct PointSolution
-  {
-    Tensor<1, 2> multiplier;
-    bool         sticks;
-  };
-
-  PointSolution
-  solve_friction_point(const Tensor<2, 2> &flexibility,
-                       const Tensor<1, 2> &free_slip,
-                       const unsigned int  n_tangents,
-                       const double        bound);
-
-  /**
-   * Multipliers inside their balls that fit @p residual = l - A u on the face
-   * best and obey the friction law exactly: rho s/|s| where slipping, the
-   * residual clipped where sticking. Where pieces meet, the fit may leave a
-   * choice: the one of least norm is taken. Gives the face vector of their
-   * forces, too.
-   */
-  void
-  fit_multipliers(const FrictionFace        &face,
-                  const std::vector<double> &bounds,
-                  const Vector<double>      &residual,
-                  FrictionState             &state,
-                  Vector<double>            &force);
 } // namespace Viscoplastic

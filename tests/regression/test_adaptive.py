@@ -200,6 +200,23 @@ class Combinations(TestCase):
                 self.check_identities(result)
                 self.assertNotEqual(result["cells"][0], result["cells"][-1])
 
+    def test_load_at_rest_is_solved_on_each_new_mesh(self):
+        """Without viscosity an unchanged load needs no solve, but for a new
+        mesh: the interpolated displacement is not in equilibrium."""
+        result = run(
+            "elastic_frictionless",
+            {
+                "Boundary 1/Traction": "0.1*min(t, 1)*y; 0",
+                "Mesh refinement/Strategy": "residual",
+                "Mesh refinement/Maximal level": 2,
+            },
+        )
+        self.check_identities(result)
+        cells = result["cells"]
+        changed = cells[1:] != cells[:-1]
+        self.assertTrue(changed[4:].any())  # while the load rests
+        self.assertTrue((result["linear_iterations"][1:][changed] > 0).all())
+
 
 if __name__ == "__main__":
     main()

@@ -104,6 +104,11 @@ class Ranks(TestCase):
         """A foundation of two faces, most ranks without any."""
         self.compare("corner_tresca_150_2d", {"Geometry/Global refinements": 1})
 
+    def test_ranks_without_cells(self):
+        """Two cells on three ranks, with an irreversible stress."""
+        self.compare("slab", {"Geometry/Arguments": "2, 1 : 0, 0 : 2, 1 : true",
+                              "Time/Phases": "1: 4"})
+
     def test_corner_across_ranks(self):
         self.compare("corner_coulomb_90_2d")
 

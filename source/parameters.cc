@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/patterns.h>
-#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/parameters.h>
 #include <viscoplastic_contact/viscoplastic_law.h>
-
-#include <fstream>
-#include <regex>
 
 namespace Viscoplastic
 {
@@ -23,6 +19,26 @@ namespace Viscoplastic
                       "GridGenerator::generate_from_name_and_arguments() reads "
                       "them: separated by colons, e.g. numbers of cells, lower "
                       "and upper corner, colorize.");
+    prm.add_parameter("File",
+                      file,
+                      "A mesh file that replaces the generator, relative to "
+                      "the parameter file that names it; empty for none.");
+    prm.add_parameter("File format",
+                      file_format,
+                      "Format of that file: Gmsh (.msh 2 and 4), AVS UCD, VTK "
+                      "or ABAQUS (.inp); `automatic' decides by the file's "
+                      "name and first line.",
+                      Patterns::Selection("automatic|msh|ucd|vtk|abaqus"));
+    prm.add_parameter("Boundary ids",
+                      boundary_ids,
+                      "The boundary id of each face of the coarse mesh as an "
+                      "expression of its centre x, y, (z) and of `id', what it "
+                      "has from the file or the generator; empty to keep "
+                      "these. An id must not change within a face.");
+    prm.add_parameter("Material ids",
+                      material_ids,
+                      "The material id of each cell of the coarse mesh, "
+                      "likewise.");
     prm.add_parameter("Rotation angle",
                       rotation_angle,
                       "Rotation of the generated mesh about the origin, in "
@@ -39,6 +55,16 @@ namespace Viscoplastic
     prm.add_parameter("Global refinements",
                       global_refinements,
                       "How often every cell is halved in each direction.");
+    prm.add_parameter("Boundary refinements",
+                      boundary_refinements,
+                      "Further refinements of the cells at boundaries, as "
+                      "`boundary id: times' separated by commas, e.g. `2: 3, "
+                      "4: 1'; empty for none.");
+    prm.add_parameter("Flatness tolerance",
+                      flatness_tolerance,
+                      "How many degrees the normals of a contact or symmetry "
+                      "piece may deviate from their mean.",
+                      Patterns::Double(0., 10.));
   }
 
 
@@ -54,10 +80,26 @@ namespace Viscoplastic
                       poissons_ratio,
                       "nu in (-1, 1/2) as an expression of position; taken at "
                       "the centre of each cell.");
+    prm.add_parameter("Voigt matrix",
+                      voigt_matrix,
+                      "Anisotropic elasticity, in place of Young's modulus "
+                      "and Poisson's ratio: the symmetric positive definite "
+                      "matrix of E in Voigt's order xx, yy, zz, yz, xz, xy "
+                      "with engineering shear strains; six rows separated by "
+                      "semicolons, numbers by commas. Unit: stress. Empty for "
+                      "isotropic bodies.");
     prm.add_parameter("Law",
                       law,
                       "The function G of (1.1). " + viscoplastic_law_help(),
                       Patterns::Selection(viscoplastic_law_names()));
+    declare_viscoplastic_law_parameters(prm);
+  }
+
+
+
+  void
+  StressParameters::declare(ParameterHandler &prm)
+  {
     prm.add_parameter(
       "Volumetric integration",
       volumetric_integration,
@@ -73,7 +115,6 @@ namespace Viscoplastic
       "piecewise constant stress; `quadrature points' keeps z at each "
       "quadrature point, which long creep on coarse meshes needs.",
       Patterns::Selection("cell means|quadrature points"));
-    declare_viscoplastic_law_parameters(prm);
   }
 
 
@@ -140,8 +181,9 @@ namespace Viscoplastic
       friction_law,
       "For the role contact: `tresca' is bilateral contact with a given "
       "friction bound (5.22); `coulomb' has a given normal stress and the "
-      "bound mu |S| (5.6); `none' is bilateral contact without friction.",
-      Patterns::Selection("none|tresca|coulomb"));
+      "bound mu |S| (5.6); `none' is bilateral contact without friction; "
+      "`glued' holds the body fast to the foundation.",
+      Patterns::Selection("none|tresca|coulomb|glued"));
     prm.add_parameter("Friction bound",
                       friction_bound,
                       "g(x,t) >= 0 of the law tresca. Unit: stress.");
@@ -156,6 +198,13 @@ namespace Viscoplastic
                       foundation_displacement,
                       "d(x,t) of bilateral contact: u_nu = d, nu pointing out "
                       "of the body, so that d < 0 presses. Unit: length.");
+    prm.add_parameter("Foundation motion",
+                      foundation_motion,
+                      "w(x,t), components separated by semicolons: how far the "
+                      "foundation has moved along its face since t = 0, e.g. "
+                      "`20*t; 0' for a conveyor. Slip is relative to it; its "
+                      "normal part does not count. Empty for a foundation at "
+                      "rest. Unit: length.");
   }
 
 
@@ -268,66 +317,5 @@ namespace Viscoplastic
                       "Points of the body, coordinates separated by commas and "
                       "points by semicolons, whose displacement goes into "
                       "statistics.csv.");
-  }
-
-
-
-  void
-  Parameters::declare()
-  {
-    const auto in_subsection = [this](const std::string &name, auto &struct_) {
-      handler.enter_subsection(name);
-      struct_.declare(handler);
-      handler.leave_subsection();
-    };
-    handler.add_parameter("Dimension",
-                          dimension,
-                          "2 (plane strain) or 3.",
-                          Patterns::Integer(2, 3));
-    in_subsection("Geometry", geometry);
-    in_subsection("Material", material);
-    in_subsection("Loads", loads);
-    in_subsection("Initial state", initial_state);
-    for (auto &[id, boundary] : boundaries)
-      in_subsection("Boundary " + std::to_string(id), boundary);
-    in_subsection("Time", time);
-    in_subsection("Solver", solver);
-    in_subsection("Mesh refinement", refinement);
-    in_subsection("Output", output);
-  }
-
-
-
-  void
-  Parameters::find_boundaries(const std::string &name, const unsigned int depth)
-  {
-    AssertThrow(depth < 10,
-                ExcMessage("The parameter file '" + file +
-                           "' includes itself, or files too deep."));
-    std::ifstream input(name);
-    AssertThrow(input,
-                ExcMessage("The parameter file '" + name +
-                           "' cannot be opened."));
-    const std::regex boundary(
-      "^\\s*subsection\\s+Boundary\\s+(\\d{1,9})\\s*(#.*)?$");
-    const std::regex include("^\\s*include\\s+([^#]*[^#\\s])\\s*(#.*)?$");
-    std::string      line;
-    std::smatch      match;
-    while (std::getline(input, line))
-      if (std::regex_match(line, match, boundary))
-        boundaries[std::stoul(match[1])];
-      else if (std::regex_match(line, match, include))
-        find_boundaries(match[1], depth + 1);
-  }
-
-
-
-  Parameters::Parameters(const std::string &file)
-    : file(file)
-  {
-    find_boundaries(file, 0);
-    declare();
-    handler.parse_input(file);
-    refinement.check();
   }
 } // namespace Viscoplastic

@@ -3,7 +3,6 @@
 
 #include <deal.II/base/parameter_handler.h>
 
-#include <map>
 #include <string>
 
 namespace Viscoplastic
@@ -17,20 +16,35 @@ namespace Viscoplastic
   {
     std::string  generator      = "subdivided_hyper_rectangle";
     std::string  arguments      = "8, 8 : 0, 0 : 1, 1 : true";
+    std::string  file;
+    std::string  file_format = "automatic";
+    std::string  boundary_ids, material_ids;
     double       rotation_angle = 0.;
     std::string  rotation_axis  = "0, 0, 1";
     std::string  translation;
     unsigned int global_refinements = 0;
+    std::string  boundary_refinements;
+    double       flatness_tolerance = 1e-4;
 
     void
     declare(ParameterHandler &prm);
   };
 
+  /// Of one material; the entries of its law are read by the law itself.
   struct MaterialParameters
   {
-    std::string youngs_modulus         = "1";
-    std::string poissons_ratio         = "0.3";
-    std::string law                    = "elastic";
+    std::string youngs_modulus = "1";
+    std::string poissons_ratio = "0.3";
+    std::string voigt_matrix;
+    std::string law = "elastic";
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
+  /// How stresses are discretised, the same for all materials.
+  struct StressParameters
+  {
     std::string volumetric_integration = "automatic";
     std::string stress_history         = "cell means";
 
@@ -65,6 +79,7 @@ namespace Viscoplastic
     std::string friction_coefficient    = "0";
     std::string normal_stress           = "0";
     std::string foundation_displacement = "0";
+    std::string foundation_motion;
 
     void
     declare(ParameterHandler &prm);
@@ -114,50 +129,5 @@ namespace Viscoplastic
 
     void
     declare(ParameterHandler &prm);
-  };
-
-
-  /**
-   * A parameter file, read and checked as far as that is possible without a
-   * mesh. Expressions stay texts here: their number of components depends on
-   * the dimension, so Scene<dim> parses them.
-   */
-  class Parameters
-  {
-  public:
-    /**
-     * Read @p file. Subsections `Boundary <id>` are declared for the ids that
-     * the file names. Throws ExcMessage or an exception of ParameterHandler.
-     */
-    explicit Parameters(const std::string &file);
-
-    /// The structs below are bound to entries of the handler.
-    Parameters(const Parameters &) = delete;
-    Parameters &
-    operator=(const Parameters &) = delete;
-
-    const std::string                          file;
-    unsigned int                               dimension = 2;
-    GeometryParameters                         geometry;
-    MaterialParameters                         material;
-    LoadParameters                             loads;
-    InitialStateParameters                     initial_state;
-    std::map<unsigned int, BoundaryParameters> boundaries;
-    TimeParameters                             time;
-    SolverParameters                           solver;
-    RefinementParameters                       refinement;
-    OutputParameters                           output;
-
-    /// The same with every entry, for law parameters and for the record.
-    mutable ParameterHandler handler;
-
-  private:
-    void
-    declare();
-
-    /// The ids of `subsection Boundary <id>' in a file and in those that it
-    /// includes decide what is declared.
-    void
-    find_boundaries(const std::string &name, const unsigned int depth);
   };
 } // namespace Viscoplastic

@@ -4,7 +4,7 @@
 #include <deal.II/distributed/tria.h>
 
 #include <viscoplastic_contact/expression.h>
-#include <viscoplastic_contact/parameters.h>
+#include <viscoplastic_contact/parameter_file.h>
 #include <viscoplastic_contact/time_schedule.h>
 #include <viscoplastic_contact/viscoplastic_law.h>
 

@@ -31,6 +31,17 @@ namespace Viscoplastic
     static Stiffness
     isotropic(const double youngs_modulus, const double poissons_ratio);
 
+    /**
+     * A general elastic tensor: the 6 x 6 matrix in Voigt's order xx, yy, zz,
+     * yz, xz, xy with engineering shear strains. Throws ExcMessage unless it
+     * is symmetric and positive definite, naming the smallest eigenvalue.
+     */
+    static Stiffness
+    anisotropic(const FullMatrix<double> &voigt_matrix);
+
+    bool
+    is_isotropic() const;
+
     /// E strain.
     SymmetricTensor<2, 3>
     stress(const SymmetricTensor<2, 3> &strain) const;
@@ -39,11 +50,11 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     strain(const SymmetricTensor<2, 3> &stress) const;
 
-    /// mu, unit of stress.
+    /// mu, unit of stress; of anisotropic bodies Voigt's average.
     double
     shear_modulus() const;
 
-    /// K = lambda + 2 mu/3, unit of stress.
+    /// K = lambda + 2 mu/3, unit of stress; or Voigt's average.
     double
     bulk_modulus() const;
 
@@ -53,6 +64,14 @@ namespace Viscoplastic
      */
     double
     largest_deviatoric_eigenvalue() const;
+
+    /// The smallest one on deviators: a lower bound of the energy, 2 mu here.
+    double
+    smallest_deviatoric_eigenvalue() const;
+
+    /// (3 K - 2 mu)/(6 K + 2 mu).
+    double
+    poissons_ratio() const;
 
     /// E itself, for linearisations; stress() is the cheaper way to apply it.
     SymmetricTensor<4, 3>

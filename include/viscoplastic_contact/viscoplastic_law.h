@@ -6,21 +6,66 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <viscoplastic_contact/expression.h>
 #include <viscoplastic_contact/stiffness.h>
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// Where and when a law is evaluated (in 2D, z = 0).
+  /**
+   * A number in a law, such as a viscosity: an expression of x, y, (z,) and t
+   * of the parameter file, with the range that it must have everywhere.
+   */
+  class LawParameter
+  {
+  public:
+    enum class Range
+    {
+      positive,
+      non_negative,
+      any // finite
+    };
+
+    /**
+     * Read @p entry of the current subsection. Throws ExcMessage if it cannot
+     * be parsed, or is constant and out of range.
+     */
+    LawParameter(const ParameterHandler &prm,
+                 const std::string      &entry,
+                 const Range             range);
+
+    /// Throws ExcMessage naming entry, value, range, place and time if out of
+    /// range.
+    double
+    value(const Point<3> &x, const double t) const;
+
+    bool
+    depends_on_position() const;
+
+    bool
+    depends_on_time() const;
+
+  private:
+    std::string   entry;
+    Range         range;
+    Expression<3> expression;
+  };
+
+
+  /// Where and when a law is evaluated (in 2D, z = 0), and what the
+  /// parameters of the law are there, in the order of its constructor.
   struct LawPoint
   {
-    Point<3> x;
-    double   t = 0;
+    Point<3>              x;
+    double                t = 0;
+    std::array<double, 6> parameters{};
   };
 
   /**
@@ -40,6 +85,25 @@ namespace Viscoplastic
   {
   public:
     virtual ~ViscoplasticLaw() = default;
+
+    /// The point with the values of the parameters there. Evaluates
+    /// expressions: keep the result where they do not change.
+    LawPoint
+    point(const Point<3> &x, const double t) const;
+
+    bool
+    depends_on_position() const;
+
+    bool
+    depends_on_time() const;
+
+    /**
+     * Whether the law goes with this elastic tensor; throws ExcMessage if not,
+     * e.g. for a long-term modulus beyond the elastic one.
+     */
+    virtual void
+    check(const Stiffness & /*stiffness*/, const LawPoint & /*point*/) const
+    {}
 
     /// G, stress per time.
     virtual SymmetricTensor<2, 3>
@@ -86,6 +150,59 @@ namespace Viscoplastic
      */
     virtual bool
     deviatoric_flow() const = 0;
+
+    /**
+     * A: the flow dissipates the power -G : A, unit of strain. E^-1 sigma
+     * unless part of the energy is stored elsewhere.
+     */
+    virtual SymmetricTensor<2, 3>
+    driving_strain(const SymmetricTensor<2, 3> &stress,
+                   const SymmetricTensor<2, 3> &strain,
+                   const Stiffness             &stiffness,
+                   const LawPoint              &point) const;
+
+    /// Whether stored_energy() is other than 1/2 sigma : E^-1 sigma.
+    virtual bool
+    has_own_energy() const
+    {
+      return false;
+    }
+
+    /// Stored energy, per volume.
+    virtual double
+    stored_energy(const SymmetricTensor<2, 3> &stress,
+                  const SymmetricTensor<2, 3> &strain,
+                  const Stiffness             &stiffness,
+                  const LawPoint              &point) const;
+
+    /// Whether the law is continued linearly beyond a cap on the stress, as a
+    /// power must be to be Lipschitz.
+    virtual bool
+    has_cap() const
+    {
+      return false;
+    }
+
+    virtual bool
+    is_beyond_cap(const SymmetricTensor<2, 3> & /*stress*/,
+                  const LawPoint & /*point*/) const
+    {
+      return false;
+    }
+
+    /// What the user should know of this law at the start of a run, such as
+    /// its cap; may be empty.
+    virtual std::string
+    announcement() const
+    {
+      return "";
+    }
+
+  protected:
+    explicit ViscoplasticLaw(const std::vector<LawParameter> &parameters);
+
+  private:
+    const std::vector<LawParameter> parameters;
   };
 
 
@@ -132,19 +249,4 @@ namespace Viscoplastic
    */
   std::unique_ptr<ViscoplasticLaw>
   make_viscoplastic_law(const std::string &name, ParameterHandler &prm);
-
-  /**
-   * The value of a number in the current subsection, which must be finite and
-   * positive. Throws ExcMessage naming law, entry, value and range.
-   */
-  double
-  get_positive(const ParameterHandler &prm,
-               const std::string      &law,
-               const std::string      &entry);
-
-  /// As get_positive(), but zero is allowed, too.
-  double
-  get_non_negative(const ParameterHandler &prm,
-                   const std::string      &law,
-                   const std::string      &entry);
 } // namespace Viscoplastic

@@ -39,7 +39,8 @@ namespace Viscoplastic
 
 
   void
-  Parameters::find_numbered_subsections(const std::string &name, const unsigned int depth)
+  Parameters::find_numbered_subsections(const std::string &name,
+                                        const unsigned int depth)
   {
     AssertThrow(depth < 10,
                 ExcMessage("The parameter file '" + file +

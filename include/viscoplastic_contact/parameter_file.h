@@ -26,12 +26,12 @@ namespace Viscoplastic
     Parameters &
     operator=(const Parameters &) = delete;
 
-    const std::string                          file;
-    unsigned int                               dimension = 2;
-    GeometryParameters                         geometry;
+    const std::string  file;
+    unsigned int       dimension = 2;
+    GeometryParameters geometry;
     /// Of all cells, or of none where there are numbered materials.
-    MaterialParameters                         material;
-    StressParameters                           stress;
+    MaterialParameters material;
+    StressParameters   stress;
     /// By material id of the cells.
     std::map<unsigned int, MaterialParameters> materials;
     LoadParameters                             loads;
@@ -52,6 +52,7 @@ namespace Viscoplastic
     /// The ids of `subsection Boundary <id>' and `Material <id>' in a file and
     /// in those that it includes decide what is declared.
     void
-    find_numbered_subsections(const std::string &name, const unsigned int depth);
+    find_numbered_subsections(const std::string &name,
+                              const unsigned int depth);
   };
 } // namespace Viscoplastic

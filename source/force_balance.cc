@@ -110,6 +110,7 @@ namespace Viscoplastic
   template <int dim>
   FrictionIdentities
   check_friction(const ContactFace<dim>    &face,
+                 const FrictionState       &old_state,
                  const FrictionState       &state,
                  const std::vector<double> &bounds,
                  const DistributedVector   &change,
@@ -122,7 +123,8 @@ namespace Viscoplastic
       {
         const std::vector<Tensor<1, 2>> carried = face.slips(foundation_step);
         for (unsigned int p = 0; p < carried.size(); ++p)
-          result.foundation_work -= state.multiplier[p] * carried[p];
+          result.foundation_work -=
+            0.5 * (old_state.multiplier[p] + state.multiplier[p]) * carried[p];
       }
     for (unsigned int p = 0; p < slips.size(); ++p)
       {
@@ -164,6 +166,7 @@ namespace Viscoplastic
                                      const Forces<dim> &,          \
                                      const Forces<dim> &);         \
   template FrictionIdentities check_friction<dim>(const ContactFace<dim> &,    \
+                                                  const FrictionState &,       \
                                                   const FrictionState &,       \
                                                   const std::vector<double> &, \
                                                   const DistributedVector &,   \

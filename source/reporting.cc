@@ -79,6 +79,7 @@ namespace Viscoplastic
     if (d.face)
       {
         friction       = check_friction(*d.face,
+                                  old_state.friction,
                                   step.state.friction,
                                   is_initial ? d.face->bounds(0.) : step.bounds,
                                   change,

@@ -25,15 +25,18 @@ namespace Viscoplastic
 
   template <int dim>
   Expression<dim>::Expression(const std::string &text_,
-                              const std::string &entry_)
+                              const std::string &entry_,
+                              const std::string &variables_)
     : text(Utilities::trim(text_))
     , entry(entry_)
+    , variables(variables_)
     , time_dependent(mentions(text, "t"))
-    , position_dependent(mentions(text, "x") || mentions(text, "y") ||
-                         (dim == 3 && mentions(text, "z")))
+    , position_dependent(false)
     , constant(0.)
     , parser(std::make_unique<FunctionParser<dim>>(1))
   {
+    for (const std::string &variable : Utilities::split_string_list(variables))
+      position_dependent = position_dependent || mentions(text, variable);
     AssertThrow(!text.empty(),
                 ExcMessage("The expression of '" + entry + "' is empty."));
     // deal.II prints what muParser says to std::cerr; the user gets it in our
@@ -42,7 +45,7 @@ namespace Viscoplastic
     std::streambuf    *original = std::cerr.rdbuf(printed.rdbuf());
     try
       {
-        parser->initialize(FunctionParser<dim>::default_variable_names() + ",t",
+        parser->initialize(variables + ",t",
                            text,
                            {{"pi", numbers::PI}, {"Pi", numbers::PI}},
                            /* time_dependent = */ true);
@@ -80,8 +83,11 @@ namespace Viscoplastic
       {
         std::ostringstream message;
         message << "The expression '" << text << "' of '" << entry
-                << "' has the value " << result << " at x = (" << x
-                << "), t = " << t << "; it must be finite.";
+                << "' has the value " << result << " at "
+                << (variables == FunctionParser<dim>::default_variable_names() ?
+                      "x" :
+                      variables)
+                << " = (" << x << "), t = " << t << "; it must be finite.";
         AssertThrow(false, ExcMessage(message.str()));
       }
     return result;

@@ -15,6 +15,12 @@ namespace Viscoplastic
   maxwell_description();
   LawDescription
   perzyna_description();
+  LawDescription
+  zener_description();
+  LawDescription
+  norton_description();
+  LawDescription
+  parsed_description();
 
   namespace
   {
@@ -26,8 +32,13 @@ namespace Viscoplastic
     const std::vector<LawDescription> &
     registered_laws()
     {
-      static const std::vector<LawDescription> laws = {maxwell_description(),
-                                                       perzyna_description()};
+      static const std::vector<LawDescription> laws = {
+        maxwell_description(),
+        zener_description(),
+        perzyna_description(),
+        norton_description(),
+        parsed_description(),
+      };
       return laws;
     }
 

@@ -11,9 +11,9 @@
 namespace
 {
   void
-  run(const std::string &file)
+  run(const std::vector<std::string> &files)
   {
-    const Viscoplastic::Parameters parameters(file);
+    const Viscoplastic::Parameters parameters(files);
     if (parameters.dimension == 2)
       Viscoplastic::ViscoplasticContact<2>(parameters).run();
     else
@@ -32,15 +32,16 @@ main(int argc, char *argv[])
   const bool is_parallel =
     dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1;
 
-  if (argc != 2)
+  if (argc < 2)
     {
       if (rank == 0)
-        std::cerr << "Usage: viscoplastic_contact scene.prm" << std::endl;
+        std::cerr << "Usage: viscoplastic_contact scene.prm [more.prm ...]"
+                  << std::endl;
       return 2;
     }
   try
     {
-      run(argv[1]);
+      run({argv + 1, argv + argc});
       return 0;
     }
   catch (const std::exception &exception)

@@ -54,7 +54,8 @@ namespace Viscoplastic
                       Patterns::List(Patterns::Double()));
     prm.add_parameter("Global refinements",
                       global_refinements,
-                      "How often every cell is halved in each direction.");
+                      "How often every cell is halved in each direction.",
+                      Patterns::Integer(0));
     prm.add_parameter("Boundary refinements",
                       boundary_refinements,
                       "Further refinements of the cells at boundaries, as "
@@ -268,10 +269,12 @@ namespace Viscoplastic
                       Patterns::Double(0., 1.));
     prm.add_parameter("Minimal level",
                       minimal_level,
-                      "No cell is coarsened below this level.");
+                      "No cell is coarsened below this level.",
+                      Patterns::Integer(0));
     prm.add_parameter("Maximal level",
                       maximal_level,
-                      "No cell is refined above this level.");
+                      "No cell is refined above this level.",
+                      Patterns::Integer(0));
     prm.add_parameter("Cell budget",
                       cell_budget,
                       "Number of cells beyond which refinement only keeps pace "
@@ -306,7 +309,8 @@ namespace Viscoplastic
     prm.add_parameter("Fields every",
                       fields_every,
                       "Steps between outputs of fields; 0 writes only the "
-                      "first and the last state.");
+                      "first and the last state.",
+                      Patterns::Integer(0));
     prm.add_parameter("Fields interval",
                       fields_interval,
                       "Time between outputs of fields; where positive, it "

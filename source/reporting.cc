@@ -22,10 +22,26 @@ namespace Viscoplastic
         << " MPI rank(s)\nEffects:\n";
     for (const std::string &effect : scene.effects())
       out << "  " << effect << '\n';
+    for (const std::string &warning : scene.warnings)
+      out << "Warning: " << warning << '\n';
     const std::string advice = advice_on_blas_kernel();
     if (!advice.empty())
       out << "Note: " << advice << '\n';
     out << std::flush;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::announce_mesh() const
+  {
+    out << "Mesh: " << triangulation.n_global_active_cells() << " cells, "
+        << dof_handler.n_dofs() << " degrees of freedom";
+    if (discretisation->face)
+      out << ", " << discretisation->face->layout().points.size()
+          << " friction points";
+    out << (discretisation->mean_dilatation ? ", mean dilatation\n" : "\n");
   }
 
 
@@ -42,7 +58,7 @@ namespace Viscoplastic
     // All ranks compute; rank 0 writes.
     TimerOutput::Scope  phase(timer, "balance");
     const StressSummary stress =
-      summarise_stress(d.sampling, old_state, step.state);
+      summarise_stress(d.laws, old_state, step.state);
     const double stored_energy = step.forces.strain_energy +
                                  step.forces.irreversible_work +
                                  stress.irreversible_energy;
@@ -63,9 +79,11 @@ namespace Viscoplastic
     if (d.face)
       {
         friction       = check_friction(*d.face,
+                                  old_state.friction,
                                   step.state.friction,
                                   is_initial ? d.face->bounds(0.) : step.bounds,
                                   change,
+                                  step.foundation_step,
                                   max_displacement);
         friction_force = d.face->resultant(step.state.friction);
       }
@@ -85,7 +103,8 @@ namespace Viscoplastic
       accounts.initial_energy = stored_energy;
     else
       {
-        accounts.external_work += external_work(d.space, forces, step.forces);
+        accounts.external_work += external_work(d.space, forces, step.forces) +
+                                  friction.foundation_work;
         accounts.viscous_dissipation += stress.viscous_dissipation;
         accounts.friction_dissipation += friction.dissipation;
       }
@@ -114,6 +133,8 @@ namespace Viscoplastic
         row.add("dofs", dof_handler.n_dofs());
         if (scene.has_viscosity())
           row.add("step_limit", step.step_limit);
+        if (d.laws.any_cap)
+          row.add("capped_volume", step.capped_volume);
         if (d.face)
           {
             row.add("contact_iterations", step.report.iterations);
@@ -212,7 +233,7 @@ namespace Viscoplastic
         out << "Stress within cells, norm(sigma - P0 sigma)/norm(sigma): "
             << fluctuation << '\n';
         if (fluctuation > 0.2 &&
-            parameters.material.stress_history == "cell means")
+            parameters.stress.stress_history == "cell means")
           out << "  This is large: cell means may be too stiff in long creep; "
                  "refine the mesh or set 'Material/Stress history' = "
                  "quadrature points.\n";

@@ -47,17 +47,10 @@ namespace Viscoplastic
                const Stiffness &stiffness,
                const LawPoint  &point) const override
       {
-        const SymmetricTensor<2, 3> s     = deviator(stress);
-        const Slopes                slope = slopes(von_mises(stress), point);
-
-        // Along s the strain rate grows with the tangent; across s it turns.
-        SymmetricTensor<4, 3> flow = slope.secant * deviator_tensor<3>();
-        if (s.norm() > 0)
-          flow += (slope.tangent - slope.secant) *
-                  outer_product(s / s.norm(), s / s.norm());
-
-        Tangents tangents;
-        tangents.stress = -1.5 * stiffness.tensor() * flow;
+        const Slopes slope = slopes(von_mises(stress), point);
+        Tangents     tangents;
+        tangents.stress = -1. * stiffness.tensor() *
+                          flow_tangent(stress, slope.secant, slope.tangent);
         return tangents;
       }
 

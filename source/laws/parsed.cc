@@ -67,14 +67,11 @@ namespace Viscoplastic
         const Slopes   slope          = slopes(state, stiffness, point);
 
         SymmetricTensor<4, 3> by_stress =
-          1.5 * slope.secant * deviator_tensor<3>();
+          flow_tangent(stress, slope.secant, slope.by[0]);
         SymmetricTensor<4, 3> by_strain;
         if (s.norm() > 0)
           {
-            // ds/sigma_eq turns across s; along s the rate changes with f.
             const SymmetricTensor<2, 3> e = s / s.norm();
-            by_stress +=
-              1.5 * (slope.by[0] - slope.secant) * outer_product(e, e);
             by_stress -= std::sqrt(1.5) / 3. * slope.by[1] *
                          outer_product(e, unit_symmetric_tensor<3>());
 

@@ -108,10 +108,27 @@ namespace Viscoplastic
       {
         const SymmetricTensor<2, 3> q =
           stress - long_term_stress(strain, point);
-        SymmetricTensor<2, 3> result;
-        const Spectrum        B = relaxing_modes(stiffness, point);
-        const double tolerance  = 1e-10 * (2 * stiffness.shear_modulus() +
+        const double tolerance = 1e-10 * (2 * stiffness.shear_modulus() +
                                           3 * stiffness.bulk_modulus());
+        SymmetricTensor<2, 3> result;
+        if (stiffness.is_isotropic())
+          {
+            // The general case takes a thousand times longer.
+            const bool   relaxes_fully = point.parameters[youngs_modulus] == 0;
+            const double mu =
+              stiffness.shear_modulus() -
+              (relaxes_fully ? 0. : long_term(point).shear_modulus());
+            const double bulk =
+              stiffness.bulk_modulus() -
+              (relaxes_fully ? 0. : long_term(point).bulk_modulus());
+            if (2 * mu > tolerance)
+              result += deviator(q) / (2 * mu);
+            if (3 * bulk > tolerance)
+              result += trace(q) / (9 * bulk) * unit_symmetric_tensor<3>();
+            return result;
+          }
+
+        const Spectrum B = relaxing_modes(stiffness, point);
         for (unsigned int mode = 0; mode < 6; ++mode)
           if (B.values[mode] > tolerance)
             result += (B.modes[mode] * q) / B.values[mode] * B.modes[mode];

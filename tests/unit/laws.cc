@@ -14,14 +14,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <iomanip>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
+
+namespace Viscoplastic
+{
+  // The worked example of doc/adding_a_law.md; not in the registry.
+  LawDescription
+  garofalo_description();
+} // namespace Viscoplastic
 
 namespace
 {
@@ -259,6 +268,22 @@ namespace
 
 
 
+  std::unique_ptr<ViscoplasticLaw>
+  garofalo(const double rate_factor,
+           const double stress_scale,
+           const double cap)
+  {
+    const LawDescription law = garofalo_description();
+    ParameterHandler     prm;
+    law.declare(prm);
+    prm.set("Rate factor", exact(rate_factor));
+    prm.set("Stress scale", exact(stress_scale));
+    prm.set("Stress cap", exact(cap));
+    return law.make({prm, "Material/garofalo", 3});
+  }
+
+
+
   FullMatrix<double>
   voigt(const std::array<std::array<double, 6>, 6> &rows)
   {
@@ -319,6 +344,9 @@ namespace
         add("norton, n = 1", norton(0.2, 1., 1e-3), 1.5 * r * 0.2);
         add("norton, n = 1.2", norton(0.2, 1.2, 1.), 1.5 * r * 0.2 * 1.2);
         add("parsed", parsed("0.3*sigma_eq", "2"), 1.5 * r * 0.6);
+        add("example",
+            garofalo(0.4, 0.8, 1.2),
+            1.5 * r * 0.4 / 0.8 * std::cosh(1.5));
         add("parsed, all arguments",
             parsed("0.1*sigma_eq^2*(1 + 0.5*tanh(p))/(1 + eps_eq)"),
             0.);
@@ -1359,6 +1387,56 @@ namespace
           }
         EXPECT_TRUE(std::isnan(rate[0][0])) << c.name;
       }
+  }
+
+
+
+  TEST(ExampleLaw, RateByHand)
+  {
+    // sinh(log 2) = 3/4, cosh(log 2) = 5/4.
+    const Body body(garofalo(2., 1., 10.));
+    expect_near(stiffness.strain(body.rate(symmetric(std::log(2.), 0, 0))),
+                symmetric(-1.5, 0.75, 0.75),
+                1e-14);
+    EXPECT_NEAR(body.relaxation_rate(symmetric(std::log(2.), 0, 0)),
+                1.5 * 0.8 * 2.5,
+                1e-14);
+    expect_near(Body(garofalo(2., 1., std::log(2.)))
+                  .rate(symmetric(std::log(2.) + 1, 0, 0)),
+                stiffness.stress(symmetric(-4, 2, 2)),
+                1e-14);
+  }
+
+
+
+  // What the manual shows is what is compiled here, and the registry looks as
+  // the manual says.
+  TEST(ExampleLaw, IsTheOneInTheManual)
+  {
+    const auto contents = [](const std::string &name) {
+      std::ifstream file(VISCOPLASTIC_CONTACT_SOURCE_DIR "/" + name);
+      EXPECT_TRUE(file) << name;
+      return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    const std::string manual  = contents("doc/adding_a_law.md");
+    const std::string example = contents("tests/unit/example_law.cc");
+    EXPECT_NE(manual.find("```cpp\n" + example + "```\n"), std::string::npos);
+
+    // Each line of the manual's list, the new one excepted.
+    const std::string registry = contents("source/viscoplastic_law.cc");
+    const std::size_t begin    = manual.find("#define VISCOPLASTIC_LAWS");
+    ASSERT_NE(begin, std::string::npos);
+    std::istringstream list(
+      manual.substr(begin, manual.find("```", begin) - begin));
+    std::string  line;
+    unsigned int n_lines = 0;
+    while (std::getline(list, line))
+      if (line.find("garofalo") == std::string::npos)
+        {
+          EXPECT_NE(registry.find(line), std::string::npos) << line;
+          ++n_lines;
+        }
+    EXPECT_EQ(n_lines, 6);
   }
 
 

@@ -8,26 +8,34 @@
 #include <utility>
 #include <vector>
 
+// The registry, one line a law: the file source/laws/<name>.cc defines
+// <name>_description(). It is a list, not a set of self-registering objects: a
+// linker drops object files of a static library that nobody refers to, and with
+// them laws would silently disappear.
+// clang-format off
+#define VISCOPLASTIC_LAWS(LAW) \
+  LAW(maxwell)                 \
+  LAW(zener)                   \
+  LAW(perzyna)                 \
+  LAW(norton)                  \
+  LAW(parsed)
+// clang-format on
+
 namespace Viscoplastic
 {
-  // Each is defined in the file of its law.
-  LawDescription
-  maxwell_description();
-  LawDescription
-  perzyna_description();
+#define DECLARE_LAW(name) LawDescription name##_description();
+  VISCOPLASTIC_LAWS(DECLARE_LAW)
+#undef DECLARE_LAW
 
   namespace
   {
-    /**
-     * The registry. It is a list, not a set of self-registering objects: a
-     * linker drops object files of a static library that nobody refers to, and
-     * with them laws would silently disappear.
-     */
     const std::vector<LawDescription> &
     registered_laws()
     {
-      static const std::vector<LawDescription> laws = {maxwell_description(),
-                                                       perzyna_description()};
+#define DESCRIBE_LAW(name) name##_description(),
+      static const std::vector<LawDescription> laws = {
+        VISCOPLASTIC_LAWS(DESCRIBE_LAW)};
+#undef DESCRIBE_LAW
       return laws;
     }
 
@@ -153,6 +161,22 @@ namespace Viscoplastic
                                  const LawPoint & /*point*/) const
   {
     return 0.5 * (stress * stiffness.strain(stress));
+  }
+
+
+
+  SymmetricTensor<4, 3>
+  flow_tangent(const SymmetricTensor<2, 3> &stress,
+               const double                 secant,
+               const double                 tangent)
+  {
+    SymmetricTensor<4, 3>       result = 1.5 * secant * deviator_tensor<3>();
+    const SymmetricTensor<2, 3> s      = deviator(stress);
+    const double                length = s.norm();
+    if (length > 0)
+      result +=
+        1.5 * (tangent - secant) * outer_product(s / length, s / length);
+    return result;
   }
 
 

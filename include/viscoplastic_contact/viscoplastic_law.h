@@ -248,6 +248,20 @@ namespace Viscoplastic
 
 
 
+  /**
+   * The derivative, with respect to stress, of the strain rate
+   * 3/2 f dev(stress)/sigma_eq of a flow along the deviator, where f depends
+   * on the von Mises stress sigma_eq. @p secant is f/sigma_eq and @p tangent
+   * is df/dsigma_eq, both 1/(stress time): along the deviator the strain rate
+   * grows with the tangent; across it, it only turns.
+   */
+  SymmetricTensor<4, 3>
+  flow_tangent(const SymmetricTensor<2, 3> &stress,
+               const double                 secant,
+               const double                 tangent);
+
+
+
   /// What the registry knows of a law.
   struct LawDescription
   {

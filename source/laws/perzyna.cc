@@ -56,13 +56,16 @@ namespace Viscoplastic
         const SymmetricTensor<2, 3> s      = deviator(stress);
         const double                length = s.norm();
         const double R = radius(stress, strain, stiffness, point);
-        if (length <= R)
+        if (length <= R && R > 0)
           return tangents;
 
-        // Along s the excess grows one to one; across s it only turns.
+        // Along s the excess grows one to one; across s it only turns. With
+        // R = 0 it does not matter what e is, and |s| may be zero.
         const SymmetricTensor<4, 3> E     = stiffness.tensor();
-        const SymmetricTensor<2, 3> e     = s / length;
-        const double                ratio = R / length;
+        const double                ratio = R > 0 ? R / length : 0.;
+        SymmetricTensor<2, 3>       e;
+        if (length > 0)
+          e = s / length;
         tangents.stress =
           E *
           ((1 - ratio) * deviator_tensor<3>() + ratio * outer_product(e, e)) /

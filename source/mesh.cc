@@ -62,21 +62,24 @@ namespace Viscoplastic
       for (std::size_t n = 0; n < file.nodes.size(); ++n)
         for (unsigned int d = 0; d < dim; ++d)
           vertices[n][d] = file.nodes[n][d];
+      // Both of cells and of faces.
+      const auto set_vertices = [&](auto &object, const auto &element) {
+        for (std::size_t n = 0; n < object.vertices.size(); ++n)
+          object.vertices[n] = element.nodes[order[n]];
+      };
       std::vector<CellData<dim>> cells;
       for (const auto &element : file.cells)
         {
-          cells.emplace_back(element.nodes.size());
-          for (std::size_t n = 0; n < element.nodes.size(); ++n)
-            cells.back().vertices[n] = element.nodes[order[n]];
+          cells.emplace_back(1 << dim);
+          set_vertices(cells.back(), element);
           cells.back().material_id = element.id;
         }
       SubCellData faces;
       const auto  add_faces = [&](auto &boundary_objects) {
         for (const auto &element : file.faces)
           {
-            boundary_objects.emplace_back(element.nodes.size());
-            for (std::size_t n = 0; n < element.nodes.size(); ++n)
-              boundary_objects.back().vertices[n] = element.nodes[order[n]];
+            boundary_objects.emplace_back(1 << (dim - 1));
+            set_vertices(boundary_objects.back(), element);
             boundary_objects.back().boundary_id = element.id;
           }
       };

@@ -91,8 +91,9 @@ namespace Viscoplastic
 
     // Forces on the body: loads, reactions, minus the multipliers.
     Tensor<1, dim> balance = step.forces.load.resultant - friction_force;
-    double         size    = step.forces.load.resultant.norm();
-    size                   = std::max(size, friction_force.norm());
+    double        &size    = accounts.largest_force;
+    size                   = std::max(
+      {size, step.forces.load.resultant.norm(), friction_force.norm()});
     for (const auto &pair : reaction_forces)
       {
         balance += pair.second;

@@ -102,6 +102,9 @@ namespace Viscoplastic
     {
       double initial_energy = 0., external_work = 0., viscous_dissipation = 0.,
              friction_dissipation = 0.;
+      /// The largest load, reaction or friction force so far: the scale of
+      /// defects of balance, also where all forces pass through zero.
+      double largest_force = 0.;
       /// What changes of the mesh did to the stored energy.
       double       adaptation_energy  = 0.;
       unsigned int contact_iterations = 0, linear_iterations = 0;

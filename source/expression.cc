@@ -24,32 +24,25 @@ namespace Viscoplastic
 
 
   template <int dim>
-  Expression<dim>::Expression(const std::string &text_,
-                              const std::string &entry_,
-                              const std::string &variables_)
-    : text(Utilities::trim(text_))
-    , entry(entry_)
-    , variables(variables_)
-    , time_dependent(mentions(text, "t"))
-    , position_dependent(false)
-    , constant(0.)
-    , parser(std::make_unique<FunctionParser<dim>>(1))
+  std::unique_ptr<FunctionParser<dim>>
+  parse_expression(const std::string &text,
+                   const std::string &variables,
+                   const std::string &entry)
   {
-    for (const std::string &variable : Utilities::split_string_list(variables))
-      position_dependent = position_dependent || mentions(text, variable);
-    AssertThrow(!text.empty(),
+    AssertThrow(!Utilities::trim(text).empty(),
                 ExcMessage("The expression of '" + entry + "' is empty."));
+    auto parser = std::make_unique<FunctionParser<dim>>(1);
     // deal.II prints what muParser says to std::cerr; the user gets it in our
     // sentence instead.
     std::ostringstream printed;
     std::streambuf    *original = std::cerr.rdbuf(printed.rdbuf());
     try
       {
-        parser->initialize(variables + ",t",
+        parser->initialize(variables,
                            text,
                            {{"pi", numbers::PI}, {"Pi", numbers::PI}},
                            /* time_dependent = */ true);
-        constant = parser->value(Point<dim>());
+        parser->value(Point<dim>()); // deal.II parses at the first value
         std::cerr.rdbuf(original);
       }
     catch (const std::exception &exception)
@@ -65,6 +58,51 @@ namespace Viscoplastic
                     ExcMessage("The expression '" + text + "' of '" + entry +
                                "' cannot be parsed: " + why));
       }
+    return parser;
+  }
+
+
+
+  template <int dim>
+  Point<dim>
+  parse_point(const std::string &text, const std::string &entry)
+  {
+    std::vector<double> numbers;
+    try
+      {
+        numbers =
+          Utilities::string_to_double(Utilities::split_string_list(text, ','));
+      }
+    catch (const std::exception &)
+      {
+        numbers.clear(); // refused below
+      }
+    AssertThrow(numbers.size() == dim,
+                ExcMessage("'" + entry + "' = " + text + " needs " +
+                           std::to_string(dim) + " numbers."));
+    Point<dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      result[d] = numbers[d];
+    return result;
+  }
+
+
+
+  template <int dim>
+  Expression<dim>::Expression(const std::string &text_,
+                              const std::string &entry_,
+                              const std::string &variables_)
+    : text(Utilities::trim(text_))
+    , entry(entry_)
+    , variables(variables_)
+    , time_dependent(mentions(text, "t"))
+    , position_dependent(false)
+    , constant(0.)
+    , parser(parse_expression<dim>(text, variables + ",t", entry))
+  {
+    for (const std::string &variable : Utilities::split_string_list(variables))
+      position_dependent = position_dependent || mentions(text, variable);
+    constant = parser->value(Point<dim>());
   }
 
 
@@ -169,6 +207,18 @@ namespace Viscoplastic
 
 
 
+  template std::unique_ptr<FunctionParser<2>>
+  parse_expression<2>(const std::string &,
+                      const std::string &,
+                      const std::string &);
+  template std::unique_ptr<FunctionParser<3>>
+  parse_expression<3>(const std::string &,
+                      const std::string &,
+                      const std::string &);
+  template Point<2>
+  parse_point<2>(const std::string &, const std::string &);
+  template Point<3>
+  parse_point<3>(const std::string &, const std::string &);
   template class Expression<2>;
   template class Expression<3>;
   template class VectorExpression<2>;

@@ -9,7 +9,6 @@
 #include <viscoplastic_contact/mesh_adaptation.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
-#include <iostream>
 #include <limits>
 #include <sstream>
 
@@ -75,16 +74,19 @@ namespace Viscoplastic
 
 
   template <int dim>
-  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters)
+  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
+                                                Console          &console)
     : communicator(MPI_COMM_WORLD)
     , parameters(parameters)
-    , out(std::cout, Utilities::MPI::this_mpi_process(communicator) == 0)
+    , console(console)
+    , out(console.stream(), Utilities::MPI::this_mpi_process(communicator) == 0)
     , scene(parameters)
     , triangulation(communicator)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
     , contact_solver(parameters.solver.contact_tolerance,
                      parameters.solver.maximal_iterations)
+    , progress(console, scene.schedule.n_steps())
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
   {}
 

@@ -13,6 +13,27 @@ namespace Viscoplastic
   using namespace dealii;
 
   /**
+   * A muParser function of @p variables, e.g. "x,y,t", of which the last is
+   * what set_time() sets. @p entry names the parameter in error messages.
+   * Throws ExcMessage when @p text cannot be parsed.
+   */
+  template <int dim>
+  std::unique_ptr<FunctionParser<dim>>
+  parse_expression(const std::string &text,
+                   const std::string &variables,
+                   const std::string &entry);
+
+
+  /**
+   * A point or vector of the parameter file: dim numbers separated by commas.
+   * Throws ExcMessage naming @p entry.
+   */
+  template <int dim>
+  Point<dim>
+  parse_point(const std::string &text, const std::string &entry);
+
+
+  /**
    * A scalar datum of the scene: a muParser expression of x, y, (z,) t given
    * in the parameter file. It knows what it does not depend on, so that its
    * users need not evaluate what cannot change.

@@ -7,6 +7,7 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 
+#include <viscoplastic_contact/console.h>
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/flow_laws.h>
@@ -14,6 +15,8 @@
 #include <viscoplastic_contact/loads.h>
 #include <viscoplastic_contact/output.h>
 #include <viscoplastic_contact/point_probe.h>
+#include <viscoplastic_contact/progress.h>
+#include <viscoplastic_contact/run_summary.h>
 #include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
 
@@ -39,7 +42,7 @@ namespace Viscoplastic
   {
   public:
     /// Throws ExcMessage with a sentence for the user, as run() does.
-    explicit ViscoplasticContact(const Parameters &parameters);
+    ViscoplasticContact(const Parameters &parameters, Console &console);
 
     void
     run();
@@ -171,7 +174,8 @@ namespace Viscoplastic
 
     const MPI_Comm                            communicator;
     const Parameters                         &parameters;
-    ConditionalOStream                        out;
+    Console                                  &console;
+    ConditionalOStream                        out; // the console on rank 0
     Scene<dim>                                scene;
     parallel::distributed::Triangulation<dim> triangulation;
     const FESystem<dim>                       fe;
@@ -190,9 +194,12 @@ namespace Viscoplastic
     std::optional<Output<dim>>   output;
     std::unique_ptr<Statistics>  statistics; // on rank 0
     std::vector<PointProbe<dim>> probes;
+    Progress                     progress;
+    RunSummary<dim>              summary;
     /// Wall time by phase over the run, and what it was a step ago.
     TimerOutput                   timer;
     std::map<std::string, double> last_seconds;
+    double                        first_set_up_seconds = 0.;
     Timer                         run_timer;
   };
 } // namespace Viscoplastic

@@ -149,7 +149,7 @@ def measure(executable, work, dim, n, solver, n_steps, tolerance):
     steps = rows[N_PLAIN + 2 :]
     unit = statistics.median(row["wall_contact"] for row in plain)
     cost = [sum(row[column] for column in WORK) / unit for row in steps]
-    set_up = re.search(r"^ *set-up +(\S+)$", process.stdout, re.MULTILINE)
+    set_up = re.search(r"^ *set-up +(\S+) ", process.stdout, re.MULTILINE)
     face = rows[1]["stick_area"]
     return {
         "case": f"{dim}D {solver}",

@@ -234,8 +234,8 @@ namespace Viscoplastic
                   "The boundary conditions leave a rigid motion free: " +
                   free_motions +
                   ". Prescribe displacements that prevent it "
-                  "(clamped, displacement, symmetry or bilateral "
-                  "contact; friction does not count)."));
+                  "(clamped, displacement, symmetry, bilateral or "
+                  "glued contact; friction does not count)."));
   }
 
 
@@ -473,6 +473,10 @@ namespace Viscoplastic
               datum[i] =
                 condition.displacement[frame.condition_component[i]]->value(
                   node.position, t);
+            else if (condition.is_glued())
+              datum[i] =
+                condition.glued_displacement(node.position,
+                                             t)[frame.condition_component[i]];
             else if (condition.foundation_displacement)
               datum[i] =
                 condition.foundation_displacement->value(node.position, t);

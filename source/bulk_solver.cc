@@ -36,6 +36,36 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  is_direct(const AdmissibleSpace<dim> &space,
+            const unsigned int          n_face_dofs,
+            const std::string          &choice,
+            const double                max_poissons_ratio,
+            const unsigned int          n_solves)
+  {
+    const unsigned int n_ranks =
+      Utilities::MPI::n_mpi_processes(space.communicator);
+    AssertThrow(choice != "direct" || n_ranks == 1,
+                ExcMessage("'Solver/Linear solver' = direct works on one MPI "
+                           "rank, but the run has " +
+                           std::to_string(n_ranks) +
+                           "; use multigrid or automatic."));
+    AssertThrow(choice == "automatic" || choice == "direct" ||
+                  choice == "multigrid",
+                ExcMessage("'Solver/Linear solver' = " + choice +
+                           " is unknown; it must be automatic, direct or "
+                           "multigrid."));
+    return choice == "direct" || (choice == "automatic" && n_ranks == 1 &&
+                                  prefer_direct(dim,
+                                                space.dof_handler.n_dofs(),
+                                                n_face_dofs,
+                                                max_poissons_ratio,
+                                                n_solves));
+  }
+
+
+
+  template <int dim>
   std::unique_ptr<BulkSolver>
   make_bulk_solver(const AdmissibleSpace<dim>                 &space,
                    const DistributedMatrix                    &matrix,
@@ -45,31 +75,27 @@ namespace Viscoplastic
                    const double       max_poissons_ratio,
                    const unsigned int n_solves)
   {
-    const unsigned int n_ranks =
-      Utilities::MPI::n_mpi_processes(space.communicator);
-    AssertThrow(choice != "direct" || n_ranks == 1,
-                ExcMessage("'Solver/Linear solver' = direct works on one MPI "
-                           "rank, but the run has " +
-                           std::to_string(n_ranks) +
-                           "; use multigrid or automatic."));
-    if (choice == "direct" || (choice == "automatic" && n_ranks == 1 &&
-                               prefer_direct(dim,
-                                             space.dof_handler.n_dofs(),
-                                             face.n_dofs(),
-                                             max_poissons_ratio,
-                                             n_solves)))
+    if (is_direct(space, face.n_dofs(), choice, max_poissons_ratio, n_solves))
       return std::make_unique<SchurSolver>(
         matrix, space.excluded(), face, face_dofs, dim);
-    AssertThrow(choice == "automatic" || choice == "multigrid",
-                ExcMessage("'Solver/Linear solver' = " + choice +
-                           " is unknown; it must be automatic, direct or "
-                           "multigrid."));
     return std::make_unique<KrylovSolver>(
       matrix, space.excluded(), space.rigid_body_modes(), face, face_dofs, dim);
   }
 
 
 
+  template bool
+  is_direct<2>(const AdmissibleSpace<2> &,
+               const unsigned int,
+               const std::string &,
+               const double,
+               const unsigned int);
+  template bool
+  is_direct<3>(const AdmissibleSpace<3> &,
+               const unsigned int,
+               const std::string &,
+               const double,
+               const unsigned int);
   template std::unique_ptr<BulkSolver>
   make_bulk_solver<2>(const AdmissibleSpace<2> &,
                       const DistributedMatrix &,

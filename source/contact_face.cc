@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace Viscoplastic
 {
@@ -258,14 +259,58 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::vector<Tensor<1, 2>>
-  ContactFace<dim>::slips(const DistributedVector &change) const
+  Vector<double>
+  ContactFace<dim>::foundation_step(const double t_old, const double t) const
   {
-    const Vector<double>      x = face_vector(change);
+    if (!space.scene.has_moving_foundation())
+      return {};
+    Vector<double> result(face.n_dofs());
+    for (unsigned int n = 0; n < face.n_nodes(); ++n)
+      {
+        const Node                  &node = nodes[n];
+        std::set<types::boundary_id> ids;
+        for (unsigned int p = face.first_point[n]; p < face.first_point[n + 1];
+             ++p)
+          ids.insert(boundary_ids[p].begin(), boundary_ids[p].end());
+        Tensor<1, dim> step;
+        for (const types::boundary_id id : ids)
+          {
+            const BoundaryCondition<dim> &condition =
+              space.scene.boundary.at(id);
+            step += (condition.sliding(node.position, t) -
+                     condition.sliding(node.position, t_old)) /
+                    static_cast<double>(ids.size());
+          }
+        step = transpose(node.directions) * step;
+        for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+          result[face.first_dof[n] + i] = step[node.components[i]];
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<Tensor<1, 2>>
+  ContactFace<dim>::slips(const Vector<double> &change) const
+  {
     std::vector<Tensor<1, 2>> result;
     for (const auto &point : face.points)
-      result.push_back(slip(point, face.node_values(x, point.node)));
+      result.push_back(slip(point, face.node_values(change, point.node)));
     return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<Tensor<1, 2>>
+  ContactFace<dim>::slips(const DistributedVector &change,
+                          const Vector<double>    &foundation_step) const
+  {
+    Vector<double> x = face_vector(change);
+    if (foundation_step.size() > 0)
+      x -= foundation_step;
+    return slips(x);
   }
 
 

@@ -5,42 +5,24 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <viscoplastic_contact/elasticity.h>
-#include <viscoplastic_contact/messages.h>
-
-#include <sstream>
-
 namespace Viscoplastic
 {
   template <int dim>
   ElasticModuli<dim>::ElasticModuli(const AdmissibleSpace<dim> &space)
-    : max_nu(-1.)
+    : is_uniform(space.scene.materials.size() == 1 &&
+                 space.scene.materials[0]->is_uniform())
+    , max_nu(-1.)
   {
     const Scene<dim> &scene = space.scene;
-    const auto        make  = [&](const Point<dim> &x) {
-      const double E  = scene.youngs_modulus.value(x, 0.);
-      const double nu = scene.poissons_ratio.value(x, 0.);
-      max_nu          = std::max(max_nu, nu);
-      try
-        {
-          return Stiffness::isotropic(E, nu);
-        }
-      catch (const std::exception &exception)
-        {
-          std::ostringstream message;
-          message << "'Material' at x = (" << x << "): " << reason(exception);
-          AssertThrow(false, ExcMessage(message.str()));
-          throw;
-        }
-    };
-    if (scene.youngs_modulus.depends_on_position() ||
-        scene.poissons_ratio.depends_on_position())
-      {
-        for (const auto &cell : space.dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned())
-            moduli.push_back(make(cell->center()));
-      }
+    if (is_uniform)
+      moduli.push_back(scene.materials[0]->stiffness(Point<dim>()));
     else
-      moduli.push_back(make(Point<dim>()));
+      for (const auto &cell : space.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          moduli.push_back(
+            scene.material(cell->material_id()).stiffness(cell->center()));
+    for (const Stiffness &stiffness : moduli)
+      max_nu = std::max(max_nu, stiffness.poissons_ratio());
     max_nu = Utilities::MPI::max(max_nu, space.communicator);
   }
 
@@ -49,7 +31,8 @@ namespace Viscoplastic
   template <int dim>
   ElasticModuli<dim>::ElasticModuli(const Stiffness &stiffness)
     : moduli(1, stiffness)
-    , max_nu(0.)
+    , is_uniform(true)
+    , max_nu(stiffness.poissons_ratio())
   {}
 
 

@@ -20,37 +20,53 @@ namespace Viscoplastic
 
   template <int dim>
   StressSummary
-  summarise_stress(const StressSampling<dim> &sampling,
-                   const State<dim>          &old_state,
-                   const State<dim>          &state)
+  summarise_stress(const FlowLaws<dim> &laws,
+                   const State<dim>    &old_state,
+                   const State<dim>    &state)
   {
-    const unsigned int                 n = sampling.n_samples;
+    const StressSampling<dim>         &sampling = laws.sampling;
+    const unsigned int                 n        = sampling.n_samples;
+    const auto                         now      = laws.at(state.t);
     std::vector<SymmetricTensor<2, 3>> strain(n), old_strain(n);
     const bool                         has_z = !state.z.empty();
     StressSummary                      result;
     double                             volume = 0.;
     for (std::size_t c = 0; c < sampling.n_cells(); ++c)
       {
-        const Stiffness &stiffness = sampling.moduli(c);
+        const Stiffness       &stiffness = sampling.moduli(c);
+        const ViscoplasticLaw *law       = now.law(c);
         sampling.strains(c, state.u.begin(), strain.data());
         SymmetricTensor<2, 3> mean =
           stiffness.stress(sampling.mean(c, strain.data()));
         if (has_z)
           {
             mean += sampling.mean(c, &state.z[c * n]);
-            sampling.strains(c, old_state.u.begin(), old_strain.data());
+            if (law)
+              sampling.strains(c, old_state.u.begin(), old_strain.data());
             for (unsigned int s = 0; s < n; ++s)
               {
-                const auto  &z         = state.z[c * n + s];
-                const auto  &old_z     = old_state.z[c * n + s];
-                const double weight    = sampling.weight(c, s);
-                const auto   inverse_z = stiffness.strain(z);
-                result.irreversible_energy += 0.5 * weight * (inverse_z * z);
-                const SymmetricTensor<2, 3> middle =
-                  0.5 *
-                  (stiffness.stress(strain[s] + old_strain[s]) + z + old_z);
+                const auto  &z      = state.z[c * n + s];
+                const double weight = sampling.weight(c, s);
+                result.irreversible_energy +=
+                  0.5 * weight * (stiffness.strain(z) * z);
+                if (law == nullptr)
+                  continue;
+                const auto    &old_z  = old_state.z[c * n + s];
+                const LawPoint point  = now.point(c, s);
+                const auto     stress = stiffness.stress(strain[s]) + z;
+                const auto old_stress = stiffness.stress(old_strain[s]) + old_z;
                 result.viscous_dissipation -=
-                  weight * (stiffness.strain(z - old_z) * middle);
+                  weight *
+                  ((z - old_z) *
+                   law->driving_strain(0.5 * (old_stress + stress),
+                                       0.5 * (old_strain[s] + strain[s]),
+                                       stiffness,
+                                       point));
+                if (law->has_own_energy())
+                  result.irreversible_energy +=
+                    weight *
+                    (law->stored_energy(stress, strain[s], stiffness, point) -
+                     0.5 * (stiffness.strain(stress) * stress));
               }
           }
         const double mises   = von_mises(mean);
@@ -113,13 +129,9 @@ namespace Viscoplastic
 
 
   template StressSummary
-  summarise_stress<2>(const StressSampling<2> &,
-                      const State<2> &,
-                      const State<2> &);
+  summarise_stress<2>(const FlowLaws<2> &, const State<2> &, const State<2> &);
   template StressSummary
-  summarise_stress<3>(const StressSampling<3> &,
-                      const State<3> &,
-                      const State<3> &);
+  summarise_stress<3>(const FlowLaws<3> &, const State<3> &, const State<3> &);
   template double
   relative_stress_fluctuation<2>(const StressSampling<2> &, const State<2> &);
   template double

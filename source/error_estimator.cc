@@ -99,8 +99,6 @@ namespace Viscoplastic
     {
       const AdmissibleSpace<dim> &space       = sampling.space;
       const DoFHandler<dim>      &dof_handler = space.dof_handler;
-      const bool varying = space.scene.youngs_modulus.depends_on_position() ||
-                           space.scene.poissons_ratio.depends_on_position();
 
       FEValues<dim>       fe_values(dof_handler.get_fe(),
                               QGauss<dim>(2),
@@ -131,12 +129,9 @@ namespace Viscoplastic
                 here.z = sampling.mean(index, &z[index * sampling.n_samples]);
               ++index;
             }
-          else if (varying)
-            here.stiffness = Stiffness::isotropic(
-              space.scene.youngs_modulus.value(cell->center(), 0.),
-              space.scene.poissons_ratio.value(cell->center(), 0.));
           else
-            here.stiffness = sampling.moduli(0);
+            here.stiffness = space.scene.material(cell->material_id())
+                               .stiffness(cell->center());
         }
 
       // A rank without cells has an empty z in every scene.
@@ -238,6 +233,8 @@ namespace Viscoplastic
             residual = tangential(traction);
             break;
           case BoundaryRole::contact:
+            if (condition.is_glued())
+              break;
             residual = tangential(traction + multiplier_density);
             if (condition.friction_law == FrictionLaw::coulomb)
               residual += (traction * condition.normal -
@@ -433,7 +430,7 @@ namespace Viscoplastic
     for (const auto &cell : space.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         estimate[cell->active_cell_index()] /=
-          2. * stress.stiffness(cell).shear_modulus();
+          stress.stiffness(cell).smallest_deviatoric_eigenvalue();
     return estimate;
   }
 

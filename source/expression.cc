@@ -90,19 +90,18 @@ namespace Viscoplastic
 
   template <int dim>
   Expression<dim>::Expression(const std::string &text_,
-                              const std::string &entry_)
+                              const std::string &entry_,
+                              const std::string &variables_)
     : text(Utilities::trim(text_))
     , entry(entry_)
+    , variables(variables_)
     , time_dependent(mentions(text, "t"))
-    , position_dependent(mentions(text, "x") || mentions(text, "y") ||
-                         (dim == 3 && mentions(text, "z")))
+    , position_dependent(false)
     , constant(0.)
-    , parser(
-        parse_expression<dim>(text,
-                              FunctionParser<dim>::default_variable_names() +
-                                ",t",
-                              entry))
+    , parser(parse_expression<dim>(text, variables + ",t", entry))
   {
+    for (const std::string &variable : Utilities::split_string_list(variables))
+      position_dependent = position_dependent || mentions(text, variable);
     constant = parser->value(Point<dim>());
   }
 
@@ -122,8 +121,11 @@ namespace Viscoplastic
       {
         std::ostringstream message;
         message << "The expression '" << text << "' of '" << entry
-                << "' has the value " << result << " at x = (" << x
-                << "), t = " << t << "; it must be finite.";
+                << "' has the value " << result << " at "
+                << (variables == FunctionParser<dim>::default_variable_names() ?
+                      "x" :
+                      variables)
+                << " = (" << x << "), t = " << t << "; it must be finite.";
         AssertThrow(false, ExcMessage(message.str()));
       }
     return result;

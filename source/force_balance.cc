@@ -110,13 +110,22 @@ namespace Viscoplastic
   template <int dim>
   FrictionIdentities
   check_friction(const ContactFace<dim>    &face,
+                 const FrictionState       &old_state,
                  const FrictionState       &state,
                  const std::vector<double> &bounds,
                  const DistributedVector   &change,
+                 const Vector<double>      &foundation_step,
                  const double               max_displacement)
   {
     FrictionIdentities              result;
-    const std::vector<Tensor<1, 2>> slips = face.slips(change);
+    const std::vector<Tensor<1, 2>> slips = face.slips(change, foundation_step);
+    if (foundation_step.size() > 0)
+      {
+        const std::vector<Tensor<1, 2>> carried = face.slips(foundation_step);
+        for (unsigned int p = 0; p < carried.size(); ++p)
+          result.foundation_work -=
+            0.5 * (old_state.multiplier[p] + state.multiplier[p]) * carried[p];
+      }
     for (unsigned int p = 0; p < slips.size(); ++p)
       {
         const double size = slips[p].norm(), weight = face.weights()[p];
@@ -158,8 +167,10 @@ namespace Viscoplastic
                                      const Forces<dim> &);         \
   template FrictionIdentities check_friction<dim>(const ContactFace<dim> &,    \
                                                   const FrictionState &,       \
+                                                  const FrictionState &,       \
                                                   const std::vector<double> &, \
                                                   const DistributedVector &,   \
+                                                  const Vector<double> &,      \
                                                   const double);
 
   INSTANTIATE(2)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/parameter_description.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <chrono>
@@ -10,14 +12,62 @@
 
 namespace
 {
+  using namespace Viscoplastic;
+
+  template <int dim>
   void
-  run(const std::string &file)
+  run(const Parameters &parameters, const bool only_check, Console &console)
   {
-    const Viscoplastic::Parameters parameters(file);
-    if (parameters.dimension == 2)
-      Viscoplastic::ViscoplasticContact<2>(parameters).run();
+    ViscoplasticContact<dim> problem(parameters, console);
+    if (only_check)
+      problem.check();
     else
-      Viscoplastic::ViscoplasticContact<3>(parameters).run();
+      problem.run();
+  }
+
+
+
+  void
+  run(const CommandLine &command_line)
+  {
+    Console console(MPI_COMM_WORLD, command_line.quiet, command_line.log);
+    try
+      {
+        const Parameters parameters(command_line.files, command_line.overrides);
+        const bool only_check = command_line.task == CommandLine::Task::check;
+        if (parameters.dimension == 2)
+          run<2>(parameters, only_check, console);
+        else
+          run<3>(parameters, only_check, console);
+      }
+    catch (const std::exception &exception)
+      {
+        console.log() << reason(exception) << std::endl;
+        throw;
+      }
+  }
+
+
+
+  /// What a task prints that needs no scene.
+  std::string
+  text_of(const CommandLine::Task task)
+  {
+    switch (task)
+      {
+        case CommandLine::Task::guide:
+          return guide_text();
+        case CommandLine::Task::help:
+          return help_text();
+        case CommandLine::Task::version:
+          return version_text();
+        case CommandLine::Task::describe:
+          return describe_parameters();
+        case CommandLine::Task::describe_as_markdown:
+          return describe_parameters_as_markdown();
+        default:
+          return "";
+      }
   }
 } // namespace
 
@@ -26,22 +76,45 @@ namespace
 int
 main(int argc, char *argv[])
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  // The libraries that MPI_InitFinalize starts must not see our arguments:
+  // PETSc has a --help of its own.
+  int                                      n_hidden_arguments = 1;
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(n_hidden_arguments, argv, 1);
   const unsigned int                       rank =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
   const bool is_parallel =
     dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1;
 
-  if (argc != 2)
-    {
-      if (rank == 0)
-        std::cerr << "Usage: viscoplastic_contact scene.prm" << std::endl;
-      return 2;
-    }
+  const auto complain = [](const std::exception &exception) {
+    std::cerr << "viscoplastic_contact: " << reason(exception) << std::endl;
+  };
+
+  CommandLine command_line;
   try
     {
-      run(argv[1]);
-      return 0;
+      command_line = read_command_line(arguments);
+    }
+  catch (const std::exception &exception)
+    {
+      if (rank == 0)
+        complain(exception);
+      return 2;
+    }
+
+  try
+    {
+      const std::string text = text_of(command_line.task);
+      if (text.empty())
+        {
+          run(command_line);
+          return 0;
+        }
+      // A batch script that forgets the scene must not go on.
+      const bool is_guide = command_line.task == CommandLine::Task::guide;
+      if (rank == 0)
+        (is_guide ? std::cerr : std::cout) << text << std::flush;
+      return is_guide ? 2 : 0;
     }
   catch (const std::exception &exception)
     {
@@ -49,8 +122,7 @@ main(int argc, char *argv[])
       // alone must speak, too, and end the others.
       if (rank > 0)
         std::this_thread::sleep_for(std::chrono::seconds(2));
-      std::cerr << "viscoplastic_contact: " << Viscoplastic::reason(exception)
-                << std::endl;
+      complain(exception);
       if (is_parallel)
         MPI_Abort(MPI_COMM_WORLD, 1);
       return 1;

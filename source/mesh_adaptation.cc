@@ -153,6 +153,7 @@ namespace Viscoplastic
     , handle(numbers::invalid_unsigned_int)
     , n(state.n)
     , t(state.t)
+    , k(state.k)
   {
     std::vector<const DistributedVector *> present;
     for (const DistributedVector &field : old_fields)
@@ -250,6 +251,7 @@ namespace Viscoplastic
     Result result;
     result.state.n = n;
     result.state.t = t;
+    result.state.k = k;
 
     const std::array<DistributedVector *, 4> targets{
       {&result.state.u,

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
-#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/messages.h>
 
-#include <regex>
 #include <sstream>
 
 namespace Viscoplastic
@@ -17,7 +15,10 @@ namespace Viscoplastic
       e->print_info(message);
     else
       message << exception.what();
-    return dealii::Utilities::trim(
-      std::regex_replace(message.str(), std::regex("\\s+"), " "));
+    std::istringstream words(message.str());
+    std::string        line, word;
+    while (words >> word)
+      line += (line.empty() ? "" : " ") + word;
+    return line;
   }
 } // namespace Viscoplastic

@@ -137,6 +137,10 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           if (condition->displacement[d])
             require(axis<dim>(d), condition->id, d);
+    for (const auto *condition : conditions)
+      if (condition->is_glued())
+        for (unsigned int d = 0; d < dim; ++d)
+          require(axis<dim>(d), condition->id, d);
     for (const BoundaryRole role :
          {BoundaryRole::symmetry, BoundaryRole::contact})
       for (const auto *condition : conditions)

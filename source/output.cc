@@ -359,11 +359,19 @@ namespace Viscoplastic
                   return value - (value * condition.normal) * condition.normal;
                 };
                 const Tensor<1, dim> u = vector(state.u);
+                const Tensor<1, dim> w =
+                  condition.sliding(patch.vertices[v], state.t);
                 store(u);
                 store(tangential(state.initial_u.size() > 0 ?
                                    u - vector(state.initial_u) :
-                                   u));
-                store(tangential(vector(state.velocity)));
+                                   u) -
+                      w);
+                Tensor<1, dim> rate = tangential(vector(state.velocity));
+                if (state.k > 0. && condition.foundation_motion)
+                  rate -= (w - condition.sliding(patch.vertices[v],
+                                                 state.t - state.k)) /
+                          state.k;
+                store(rate);
                 if (face != nullptr)
                   {
                     // On the body: minus the multiplier.

@@ -50,11 +50,12 @@ namespace Viscoplastic
     prm.add_parameter("Translation",
                       translation,
                       "Shift of the mesh after the rotation, one number a "
-                      "direction; empty for none.",
+                      "direction; empty for none. Unit: length.",
                       Patterns::List(Patterns::Double()));
     prm.add_parameter("Global refinements",
                       global_refinements,
-                      "How often every cell is halved in each direction.");
+                      "How often every cell is halved in each direction.",
+                      Patterns::Integer(0));
     prm.add_parameter("Boundary refinements",
                       boundary_refinements,
                       "Further refinements of the cells at boundaries, as "
@@ -90,7 +91,9 @@ namespace Viscoplastic
                       "isotropic bodies.");
     prm.add_parameter("Law",
                       law,
-                      "The function G of (1.1). " + viscoplastic_law_help(),
+                      "The function G of (1.1), the viscous part of the "
+                      "stress rate. " +
+                        viscoplastic_law_help(),
                       Patterns::Selection(viscoplastic_law_names()));
     declare_viscoplastic_law_parameters(prm);
   }
@@ -136,11 +139,12 @@ namespace Viscoplastic
     prm.add_parameter("Displacement",
                       displacement,
                       "u0(x), components separated by semicolons; empty for "
-                      "zero.");
+                      "zero. Unit: length.");
     prm.add_parameter("Stress",
                       stress,
                       "sigma0(x) as xx; yy; zz; xy in 2D and "
-                      "xx; yy; zz; xy; xz; yz in 3D; empty for zero.");
+                      "xx; yy; zz; xy; xz; yz in 3D; empty for zero. Unit: "
+                      "stress.");
     prm.add_parameter("Equilibrate",
                       equilibrate,
                       "Whether to put the body into equilibrium with the loads "
@@ -171,7 +175,7 @@ namespace Viscoplastic
                       displacement,
                       "For the role displacement: components as expressions of "
                       "position and t separated by semicolons; the word `free' "
-                      "leaves a component free.");
+                      "leaves a component free. Unit: length.");
     prm.add_parameter("Traction",
                       traction,
                       "For the role traction: F(x,t), components separated by "
@@ -189,7 +193,7 @@ namespace Viscoplastic
                       "g(x,t) >= 0 of the law tresca. Unit: stress.");
     prm.add_parameter("Friction coefficient",
                       friction_coefficient,
-                      "mu(x,t) >= 0 of the law coulomb.");
+                      "mu(x,t) >= 0 of the law coulomb, a pure number.");
     prm.add_parameter("Normal stress",
                       normal_stress,
                       "S(x,t) of the law coulomb, negative in compression. "
@@ -215,7 +219,8 @@ namespace Viscoplastic
     prm.add_parameter("Phases",
                       phases,
                       "Phases of equal time steps as `end time: number of "
-                      "steps', separated by commas, starting at t = 0.");
+                      "steps', separated by commas, starting at t = 0; a "
+                      "phase begins where the one before it ends. Unit: time.");
   }
 
 
@@ -268,10 +273,12 @@ namespace Viscoplastic
                       Patterns::Double(0., 1.));
     prm.add_parameter("Minimal level",
                       minimal_level,
-                      "No cell is coarsened below this level.");
+                      "No cell is coarsened below this level.",
+                      Patterns::Integer(0));
     prm.add_parameter("Maximal level",
                       maximal_level,
-                      "No cell is refined above this level.");
+                      "No cell is refined above this level.",
+                      Patterns::Integer(0));
     prm.add_parameter("Cell budget",
                       cell_budget,
                       "Number of cells beyond which refinement only keeps pace "
@@ -306,16 +313,17 @@ namespace Viscoplastic
     prm.add_parameter("Fields every",
                       fields_every,
                       "Steps between outputs of fields; 0 writes only the "
-                      "first and the last state.");
+                      "first and the last state.",
+                      Patterns::Integer(0));
     prm.add_parameter("Fields interval",
                       fields_interval,
                       "Time between outputs of fields; where positive, it "
-                      "replaces the entry above.",
+                      "replaces the entry above. Unit: time.",
                       Patterns::Double(0.));
     prm.add_parameter("Points",
                       points,
                       "Points of the body, coordinates separated by commas and "
                       "points by semicolons, whose displacement goes into "
-                      "statistics.csv.");
+                      "statistics.csv. Unit: length.");
   }
 } // namespace Viscoplastic

@@ -8,7 +8,7 @@
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <iomanip>
-#include <iostream>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -22,10 +22,26 @@ namespace Viscoplastic
         << " MPI rank(s)\nEffects:\n";
     for (const std::string &effect : scene.effects())
       out << "  " << effect << '\n';
+    for (const std::string &warning : scene.warnings)
+      console.remark("Warning: " + warning);
     const std::string advice = advice_on_blas_kernel();
     if (!advice.empty())
-      out << "Note: " << advice << '\n';
+      console.remark("Note: " + advice);
     out << std::flush;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::announce_mesh() const
+  {
+    out << "Mesh: " << triangulation.n_global_active_cells() << " cells, "
+        << dof_handler.n_dofs() << " degrees of freedom";
+    if (discretisation->face)
+      out << ", " << discretisation->face->layout().points.size()
+          << " friction points";
+    out << (discretisation->mean_dilatation ? ", mean dilatation\n" : "\n");
   }
 
 
@@ -42,7 +58,7 @@ namespace Viscoplastic
     // All ranks compute; rank 0 writes.
     TimerOutput::Scope  phase(timer, "balance");
     const StressSummary stress =
-      summarise_stress(d.sampling, old_state, step.state);
+      summarise_stress(d.laws, old_state, step.state);
     const double stored_energy = step.forces.strain_energy +
                                  step.forces.irreversible_work +
                                  stress.irreversible_energy;
@@ -63,9 +79,11 @@ namespace Viscoplastic
     if (d.face)
       {
         friction       = check_friction(*d.face,
+                                  old_state.friction,
                                   step.state.friction,
                                   is_initial ? d.face->bounds(0.) : step.bounds,
                                   change,
+                                  step.foundation_step,
                                   max_displacement);
         friction_force = d.face->resultant(step.state.friction);
       }
@@ -85,7 +103,8 @@ namespace Viscoplastic
       accounts.initial_energy = stored_energy;
     else
       {
-        accounts.external_work += external_work(d.space, forces, step.forces);
+        accounts.external_work += external_work(d.space, forces, step.forces) +
+                                  friction.foundation_work;
         accounts.viscous_dissipation += stress.viscous_dissipation;
         accounts.friction_dissipation += friction.dissipation;
       }
@@ -114,6 +133,8 @@ namespace Viscoplastic
         row.add("dofs", dof_handler.n_dofs());
         if (scene.has_viscosity())
           row.add("step_limit", step.step_limit);
+        if (d.laws.any_cap)
+          row.add("capped_volume", step.capped_volume);
         if (d.face)
           {
             row.add("contact_iterations", step.report.iterations);
@@ -168,28 +189,53 @@ namespace Viscoplastic
         row.end_row();
       }
 
-    // Progress.
-    const unsigned int n_steps = scene.schedule.n_steps();
-    if (is_initial)
-      return;
-    out << "Step "
-        << std::setw(static_cast<int>(std::to_string(n_steps).size()))
-        << time_step.n << '/' << n_steps << "  t = " << std::setprecision(5)
-        << time_step.t;
-    if (scene.is_adaptive())
-      out << "  cells " << triangulation.n_global_active_cells();
-    if (d.face)
-      out << "  contact iterations " << step.report.iterations << "  slipping "
-          << std::lround(100. * friction.slip_area /
-                         std::max(friction.slip_area + friction.stick_area,
-                                  std::numeric_limits<double>::min()))
-          << " %";
-    if (scene.is_adaptive())
-      out << "  error estimate " << std::setprecision(3) << estimate;
+    // Progress, and what is said at the end.
     const double elapsed = run_timer.wall_time();
-    out << "  left "
-        << std::lround(elapsed / time_step.n * (n_steps - time_step.n)) << " s"
-        << std::endl;
+    StepProgress progress_of_step{time_step.n,
+                                  time_step.t,
+                                  time_step.k,
+                                  static_cast<double>(
+                                    triangulation.n_global_active_cells())};
+    summary.t                     = time_step.t;
+    summary.reactions             = reaction_forces;
+    summary.stored_energy         = stored_energy;
+    summary.external_work         = accounts.external_work;
+    summary.energy_balance_defect = defect;
+    summary.displacement.update(max_displacement, time_step.t);
+    summary.von_mises.update(stress.max_von_mises, time_step.t);
+    if (scene.has_viscosity())
+      summary.viscous_dissipation = accounts.viscous_dissipation;
+    if (d.face)
+      {
+        summary.friction_force       = friction_force;
+        summary.friction_dissipation = accounts.friction_dissipation;
+        summary.friction_area        = friction.slip_area + friction.stick_area;
+        summary.slip_area.update(friction.slip_area, time_step.t);
+        progress_of_step.contact_iterations = step.report.iterations;
+        if (summary.friction_area > 0.)
+          progress_of_step.slipping =
+            friction.slip_area / summary.friction_area;
+      }
+    if (scene.is_adaptive())
+      {
+        summary.adaptation_energy       = accounts.adaptation_energy;
+        summary.error_estimate          = estimate;
+        progress_of_step.error_estimate = estimate;
+      }
+    if (summary.capped_volume.value == 0. && step.capped_volume > 0.)
+      {
+        std::ostringstream volume;
+        volume << step.capped_volume << " at t = " << time_step.t;
+        console.remark("Warning: the stress has passed the cap of a law, in "
+                       "the volume " +
+                       volume.str() +
+                       "; beyond it the law is continued linearly.");
+      }
+    summary.capped_volume.update(step.capped_volume, time_step.t);
+    if (is_initial)
+      first_set_up_seconds =
+        timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
+    progress.report(progress_of_step, elapsed);
   }
 
 
@@ -198,33 +244,40 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::close()
   {
-    const unsigned int n = scene.schedule.n_steps();
-    out << '\n' << std::setprecision(3);
-    if (discretisation->face)
-      out << "Active set iterations per step: "
-          << static_cast<double>(accounts.contact_iterations) / n << '\n';
-    out << "Linear iterations per step: "
-        << static_cast<double>(accounts.linear_iterations) / n << '\n';
+    const unsigned int       n       = scene.schedule.n_steps();
+    std::vector<std::string> remarks = console.remarks();
     if (scene.has_viscosity())
       {
         const double fluctuation =
           relative_stress_fluctuation(discretisation->sampling, state);
-        out << "Stress within cells, norm(sigma - P0 sigma)/norm(sigma): "
-            << fluctuation << '\n';
         if (fluctuation > 0.2 &&
-            parameters.material.stress_history == "cell means")
-          out << "  This is large: cell means may be too stiff in long creep; "
-                 "refine the mesh or set 'Material/Stress history' = "
-                 "quadrature points.\n";
+            parameters.stress.stress_history == "cell means")
+          {
+            std::ostringstream text;
+            text << std::setprecision(3)
+                 << "Note: the stress varies within cells by " << fluctuation
+                 << " of its norm, so that cell means may be too stiff in long "
+                    "creep; refine the mesh or set 'Material/Stress history' = "
+                    "quadrature points.";
+            remarks.push_back(text.str());
+          }
       }
-    out << "Seconds by phase:\n";
-    for (const auto &[name, time] :
-         timer.get_summary_data(TimerOutput::total_wall_time))
-      out << "  " << std::left << std::setw(12) << name << std::right << time
-          << '\n';
-    out << "  " << std::left << std::setw(12) << "whole run" << std::right
-        << run_timer.wall_time() << '\n'
-        << "Results in " << output->directory() << std::endl;
+
+    out << '\n';
+    summary.print(console.stream());
+    out << "Iterations per step: ";
+    if (discretisation->face)
+      out << static_cast<double>(accounts.contact_iterations) / n
+          << " of the active set, ";
+    out << static_cast<double>(accounts.linear_iterations) / n << " linear\n";
+    print_seconds(console.stream(),
+                  timer.get_summary_data(TimerOutput::total_wall_time),
+                  first_set_up_seconds,
+                  run_timer.wall_time(),
+                  discretisation->face != nullptr);
+    for (const std::string &remark : remarks)
+      out << remark << '\n';
+    out << "Results in " << output->directory() << std::endl;
   }
 
 

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_values.h>
-#include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/grid_tools.h>
-#include <deal.II/physics/transformations.h>
+#include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/scene.h>
 
 #include <sstream>
@@ -57,10 +51,12 @@ namespace Viscoplastic
         return FrictionLaw::tresca;
       if (name == "coulomb")
         return FrictionLaw::coulomb;
+      if (name == "glued")
+        return FrictionLaw::glued;
       AssertThrow(false,
                   ExcMessage("'" + entry(id, "Friction law") + "' = " + name +
-                             " is unknown; it must be none, tresca or "
-                             "coulomb."));
+                             " is unknown; it must be none, tresca, coulomb or "
+                             "glued."));
       return FrictionLaw::none;
     }
 
@@ -78,6 +74,18 @@ namespace Viscoplastic
       if (expression.is_zero())
         return {};
       return expression;
+    }
+
+
+
+    template <typename Id>
+    std::string
+    list(const std::set<Id> &ids)
+    {
+      std::string result;
+      for (const Id id : ids)
+        result += (result.empty() ? "" : ", ") + std::to_string(id);
+      return result;
     }
 
 
@@ -152,6 +160,11 @@ namespace Viscoplastic
         if (friction_law == FrictionLaw::tresca)
           friction_bound.emplace(parameters.friction_bound,
                                  entry(id, "Friction bound"));
+        if (has_friction() || is_glued())
+          foundation_motion =
+            optional_vector<dim>(parameters.foundation_motion,
+                                 dim,
+                                 entry(id, "Foundation motion"));
       }
   }
 
@@ -180,6 +193,32 @@ namespace Viscoplastic
 
 
   template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::sliding(const Point<dim> &x, const double t) const
+  {
+    if (!foundation_motion)
+      return {};
+    const Tensor<1, dim> w =
+      foundation_motion->vector(x, t) - foundation_motion->vector(x, 0.);
+    return w - (w * normal) * normal;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::glued_displacement(const Point<dim> &x,
+                                             const double      t) const
+  {
+    Tensor<1, dim> u = sliding(x, t);
+    if (foundation_displacement)
+      u += foundation_displacement->value(x, t) * normal;
+    return u;
+  }
+
+
+
+  template <int dim>
   bool
   BoundaryCondition<dim>::bound_depends_on_time() const
   {
@@ -193,10 +232,6 @@ namespace Viscoplastic
   template <int dim>
   Scene<dim>::Scene(const Parameters &parameters)
     : parameters(parameters)
-    , youngs_modulus(parameters.material.youngs_modulus,
-                     "Material/Young's modulus")
-    , poissons_ratio(parameters.material.poissons_ratio,
-                     "Material/Poisson's ratio")
     , body_force(optional_vector<dim>(parameters.loads.body_force,
                                       dim,
                                       "Loads/Body force"))
@@ -212,96 +247,33 @@ namespace Viscoplastic
     for (const auto &[id, boundary_parameters] : parameters.boundaries)
       boundary.emplace(id, BoundaryCondition<dim>(id, boundary_parameters));
 
-    for (const Expression<dim> *modulus : {&youngs_modulus, &poissons_ratio})
-      AssertThrow(!modulus->depends_on_time(),
-                  ExcMessage("'Material/Young's modulus' and 'Poisson's ratio' "
-                             "may depend on position, but not on t."));
     for (const std::string &point :
          Utilities::split_string_list(parameters.output.points, ';'))
       if (!point.empty())
         output_points.push_back(parse_vector<dim>(point, "Output/Points"));
-
-    parameters.handler.enter_subsection("Material");
-    law = make_viscoplastic_law(parameters.material.law, parameters.handler);
-    parameters.handler.leave_subsection();
   }
 
 
 
   template <int dim>
   void
-  Scene<dim>::make_mesh(
-    parallel::distributed::Triangulation<dim> &triangulation) const
-  {
-    const GeometryParameters &geometry = parameters.geometry;
-    try
-      {
-        GridGenerator::generate_from_name_and_arguments(triangulation,
-                                                        geometry.generator,
-                                                        geometry.arguments);
-      }
-    catch (const std::exception &exception)
-      {
-        AssertThrow(false,
-                    ExcMessage("The mesh generator '" + geometry.generator +
-                               "' refuses the arguments '" +
-                               geometry.arguments + "': " + reason(exception)));
-      }
-    AssertThrow(triangulation.all_reference_cells_are_hyper_cube(),
-                ExcMessage("The mesh must consist of quadrilaterals or "
-                           "hexahedra; simplices are not supported."));
-
-    const bool rotated = geometry.rotation_angle != 0.;
-    const bool shifted = !geometry.translation.empty();
-    if (rotated || shifted)
-      {
-        for (const types::manifold_id id : triangulation.get_manifold_ids())
-          AssertThrow(id == numbers::flat_manifold_id,
-                      ExcMessage("'Geometry/Rotation angle' and 'Translation' "
-                                 "apply to meshes with straight edges only; '" +
-                                 geometry.generator + "' has curved ones."));
-        const double angle = geometry.rotation_angle * numbers::PI / 180.;
-        if (rotated)
-          {
-            if constexpr (dim == 2)
-              GridTools::rotate(angle, triangulation);
-            else
-              {
-                const Point<3> axis = parse_vector<3>(geometry.rotation_axis,
-                                                      "Geometry/Rotation axis");
-                AssertThrow(axis.norm() > 0.,
-                            ExcMessage("'Geometry/Rotation axis' must not be "
-                                       "zero."));
-                GridTools::rotate(Tensor<1, 3>(axis / axis.norm()),
-                                  angle,
-                                  triangulation);
-              }
-          }
-        if (shifted)
-          GridTools::shift(parse_vector<dim>(geometry.translation,
-                                             "Geometry/Translation"),
-                           triangulation);
-      }
-    triangulation.refine_global(geometry.global_refinements);
-  }
-
-
-
-  template <int dim>
-  void
-  Scene<dim>::inspect_boundary(
+  Scene<dim>::inspect(
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
-    const MPI_Comm comm = triangulation.get_communicator();
+    warnings.clear();
+    inspect_boundary_ids(boundary_ids(triangulation));
+    inspect_flatness(triangulation);
+    inspect_junctions(triangulation);
+    make_materials(material_ids(triangulation));
+  }
 
-    // The ids of the mesh, agreed upon by all ranks.
-    std::set<types::boundary_id> ids;
-    for (const auto &local_ids :
-         Utilities::MPI::all_gather(comm, triangulation.get_boundary_ids()))
-      ids.insert(local_ids.begin(), local_ids.end());
-    std::string list;
-    for (const types::boundary_id id : ids)
-      list += (list.empty() ? "" : ", ") + std::to_string(id);
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_boundary_ids(
+    const std::set<types::boundary_id> &ids) const
+  {
     for (const types::boundary_id id : ids)
       AssertThrow(boundary.count(id) == 1,
                   ExcMessage("Boundary id " + std::to_string(id) +
@@ -310,72 +282,136 @@ namespace Viscoplastic
                              std::to_string(id) +
                              "' with a role (free, if it carries no load). "
                              "The mesh has the ids " +
-                             list + "."));
+                             list(ids) + "."));
     for (const auto &pair : boundary)
       AssertThrow(ids.count(pair.first) == 1,
                   ExcMessage("'Boundary " + std::to_string(pair.first) +
                              "' has a role, but the mesh has no such boundary "
                              "id; it has the ids " +
-                             list + "."));
+                             list(ids) + "."));
+  }
 
-    // The mean normal of each piece, and how far any face deviates from it.
-    const FE_Q<dim>   fe(1);
-    FEFaceValues<dim> face_values(fe,
-                                  QGauss<dim - 1>(2),
-                                  update_normal_vectors | update_JxW_values);
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_flatness(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    const double tolerance = parameters.geometry.flatness_tolerance;
     for (auto &[id, condition] : boundary)
-      {
-        if (condition.role != BoundaryRole::symmetry &&
-            condition.role != BoundaryRole::contact)
-          continue;
-        const auto for_each_normal = [&](const auto &visit) {
-          for (const auto &cell : triangulation.active_cell_iterators())
-            if (cell->is_locally_owned())
-              for (const unsigned int f : cell->face_indices())
-                if (cell->face(f)->at_boundary() &&
-                    cell->face(f)->boundary_id() == id)
-                  {
-                    face_values.reinit(cell, f);
-                    for (const unsigned int q :
-                         face_values.quadrature_point_indices())
-                      visit(face_values.normal_vector(q), face_values.JxW(q));
-                  }
-        };
-        Tensor<1, dim> sum;
-        for_each_normal([&](const Tensor<1, dim> &normal, const double JxW) {
-          sum += normal * JxW;
-        });
-        sum = Utilities::MPI::sum(sum, comm);
+      if (condition.role == BoundaryRole::symmetry ||
+          condition.role == BoundaryRole::contact)
+        {
+          const PieceNormal<dim> piece = piece_normal(triangulation, id);
+          condition.normal             = piece.normal;
+          std::ostringstream message;
+          message << "Boundary " << id << " has the role "
+                  << (condition.role == BoundaryRole::contact ? "contact" :
+                                                                "symmetry")
+                  << " but is not flat: its normals deviate by "
+                  << piece.deviation
+                  << " degrees from their mean, and 'Geometry/Flatness "
+                     "tolerance' is "
+                  << tolerance
+                  << "; give each flat piece a boundary id of its own.";
+          AssertThrow(piece.deviation <= tolerance, ExcMessage(message.str()));
+        }
+  }
 
-        double deviation = sum.norm() > 0. ? 0. : 1.;
-        if (sum.norm() > 0.)
-          {
-            condition.normal = sum / sum.norm();
-            // Exact axes keep the nodal frames of axis-parallel bodies trivial.
-            for (unsigned int d = 0; d < dim; ++d)
-              if (std::abs(std::abs(condition.normal[d]) - 1.) < 1e-12)
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_junctions(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    // On the coarse mesh, which all ranks know.
+    std::map<types::boundary_id, std::set<unsigned int>> vertices;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          for (const unsigned int v : cell->face(f)->vertex_indices())
+            vertices[cell->face(f)->boundary_id()].insert(
+              cell->face(f)->vertex_index(v));
+    for (const auto &[id, condition] : boundary)
+      if (condition.role == BoundaryRole::clamped || condition.is_glued())
+        for (const auto &[other_id, other] : boundary)
+          if (other.has_friction())
+            for (const unsigned int v : vertices[id])
+              if (vertices[other_id].count(v) == 1)
                 {
-                  const double sign   = condition.normal[d] > 0. ? 1. : -1.;
-                  condition.normal    = 0.;
-                  condition.normal[d] = sign;
+                  warnings.push_back(
+                    "Boundary " + std::to_string(id) + " (" +
+                    (condition.is_glued() ? "glued" : "clamped") +
+                    ") touches boundary " + std::to_string(other_id) +
+                    " (friction); the theory keeps the closures of Gamma_1 "
+                    "and Gamma_3 apart, and stresses may be singular where "
+                    "they meet.");
+                  break;
                 }
-            for_each_normal([&](const Tensor<1, dim> &normal, const double) {
-              deviation =
-                std::max(deviation, (normal - condition.normal).norm());
-            });
-            deviation = Utilities::MPI::max(deviation, comm);
-          }
-        std::ostringstream message;
-        message << "Boundary " << id << " has the role "
-                << (condition.role == BoundaryRole::contact ? "contact" :
-                                                              "symmetry")
-                << " but is not flat: its normals deviate by "
-                << deviation * 180. / numbers::PI
-                << " degrees, and 1e-6 are allowed; give each flat piece a "
-                   "boundary id of its own.";
-        AssertThrow(deviation * 180. / numbers::PI <= 1e-6,
-                    ExcMessage(message.str()));
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::make_materials(const std::set<types::material_id> &ids)
+  {
+    materials.clear();
+    material_of_id.clear();
+    if (parameters.materials.empty())
+      {
+        materials.push_back(std::make_unique<const Material<dim>>(
+          "Material", parameters.material, parameters.handler));
+        for (const types::material_id id : ids)
+          material_of_id[id] = materials[0].get();
+        return;
       }
+
+    for (const types::material_id id : ids)
+      {
+        const auto section = "Material " + std::to_string(id);
+        const auto given   = parameters.materials.find(id);
+        AssertThrow(given != parameters.materials.end(),
+                    ExcMessage("Cells of the mesh have the material id " +
+                               std::to_string(id) +
+                               ", but there is no `subsection " + section +
+                               "'; the mesh has the material ids " + list(ids) +
+                               "."));
+        materials.push_back(std::make_unique<const Material<dim>>(
+          section, given->second, parameters.handler));
+        material_of_id[id] = materials.back().get();
+      }
+    for (const auto &pair : parameters.materials)
+      if (ids.count(pair.first) == 0)
+        warnings.push_back("'Material " + std::to_string(pair.first) +
+                           "' is not used: the mesh has the material ids " +
+                           list(ids) + ".");
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_viscosity() const
+  {
+    for (const auto &material : materials)
+      if (material->law)
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_moving_foundation() const
+  {
+    for (const auto &pair : boundary)
+      if (pair.second.has_friction() && pair.second.foundation_motion)
+        return true;
+    return false;
   }
 
 
@@ -410,10 +446,20 @@ namespace Viscoplastic
   {
     std::vector<std::string> result{dim == 2 ? "elasticity (plane strain)" :
                                                "elasticity (3D)"};
-    if (has_viscosity())
-      result.push_back("viscoplastic flow (" + parameters.material.law +
-                       ", history at " + parameters.material.stress_history +
-                       ")");
+    for (const auto &material : materials)
+      {
+        const std::string of =
+          materials.size() > 1 ? " of " + material->section : "";
+        if (material->is_anisotropic())
+          result.push_back("anisotropic elasticity" + of);
+        if (!material->law)
+          continue;
+        const std::string announcement = material->law->announcement();
+        result.push_back("viscoplastic flow" + of + " (" + material->law_name +
+                         ", history at " + parameters.stress.stress_history +
+                         (announcement.empty() ? "" : "; " + announcement) +
+                         ")");
+      }
     const auto boundaries = [&](const auto &condition) {
       std::string ids;
       for (const auto &[id, data] : boundary)
@@ -421,31 +467,36 @@ namespace Viscoplastic
           ids += (ids.empty() ? "" : ", ") + std::to_string(id);
       return ids;
     };
-    const auto list = [&](const std::string &name, const std::string &ids) {
+    const auto add = [&](const std::string &name, const std::string &ids) {
       if (!ids.empty())
         result.push_back(name + " on boundary " + ids);
     };
-    list("bilateral contact with Tresca friction",
-         boundaries([](const auto &b) {
-           return b.friction_law == FrictionLaw::tresca;
-         }));
-    list("Coulomb friction with given normal stress",
-         boundaries([](const auto &b) {
-           return b.friction_law == FrictionLaw::coulomb;
-         }));
-    list("frictionless bilateral contact", boundaries([](const auto &b) {
-           return b.role == BoundaryRole::contact && !b.has_friction();
-         }));
-    list("moving foundation", boundaries([](const auto &b) {
-           return b.foundation_displacement.has_value();
-         }));
+    add("bilateral contact with Tresca friction", boundaries([](const auto &b) {
+          return b.friction_law == FrictionLaw::tresca;
+        }));
+    add("Coulomb friction with given normal stress",
+        boundaries([](const auto &b) {
+          return b.friction_law == FrictionLaw::coulomb;
+        }));
+    add("frictionless bilateral contact", boundaries([](const auto &b) {
+          return b.role == BoundaryRole::contact &&
+                 b.friction_law == FrictionLaw::none;
+        }));
+    add("glued contact",
+        boundaries([](const auto &b) { return b.is_glued(); }));
+    add("foundation moving in normal direction", boundaries([](const auto &b) {
+          return b.foundation_displacement.has_value();
+        }));
+    add("foundation moving in tangential direction",
+        boundaries(
+          [](const auto &b) { return b.foundation_motion.has_value(); }));
     if (body_force)
       result.push_back("body force");
-    list("surface traction",
-         boundaries([](const auto &b) { return b.traction.has_value(); }));
-    list("prescribed displacement", boundaries([](const auto &b) {
-           return b.role == BoundaryRole::displacement;
-         }));
+    add("surface traction",
+        boundaries([](const auto &b) { return b.traction.has_value(); }));
+    add("prescribed displacement", boundaries([](const auto &b) {
+          return b.role == BoundaryRole::displacement;
+        }));
     if (initial_displacement || initial_stress)
       result.push_back("initial displacement or stress");
     if (is_adaptive())

@@ -168,42 +168,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  FlowStep<dim>
-  advance_irreversible_stress(const StressSampling<dim> &sampling,
-                              const ViscoplasticLaw     &law,
-                              const DistributedVector   &ghosted_u,
-                              const IrreversibleStress  &z,
-                              const double               t,
-                              const double               k)
-  {
-    FlowStep<dim>                      result{z, 0.};
-    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
-    LawPoint                           point;
-    point.t = t;
-    for (std::size_t c = 0, i = 0; c < sampling.n_cells(); ++c)
-      {
-        const Stiffness &stiffness = sampling.moduli(c);
-        sampling.strains(c, ghosted_u.begin(), strain.data());
-        for (unsigned int s = 0; s < sampling.n_samples; ++s, ++i)
-          {
-            for (unsigned int d = 0; d < dim; ++d)
-              point.x[d] = sampling.position(c, s)[d];
-            const SymmetricTensor<2, 3> stress =
-              stiffness.stress(strain[s]) + z[i];
-            result.z[i] += k * law.rate(stress, strain[s], stiffness, point);
-            result.relaxation_rate = std::max(
-              result.relaxation_rate,
-              law.relaxation_rate(stress, strain[s], stiffness, point));
-          }
-      }
-    result.relaxation_rate =
-      Utilities::MPI::max(result.relaxation_rate, sampling.space.communicator);
-    return result;
-  }
-
-
-
-  template <int dim>
   void
   add_irreversible_load(const StressSampling<dim> &sampling,
                         const IrreversibleStress  &z,
@@ -223,20 +187,6 @@ namespace Viscoplastic
   template class StressSampling<2>;
   template class StressSampling<3>;
 
-  template FlowStep<2>
-  advance_irreversible_stress<2>(const StressSampling<2> &,
-                                 const ViscoplasticLaw &,
-                                 const DistributedVector &,
-                                 const IrreversibleStress &,
-                                 const double,
-                                 const double);
-  template FlowStep<3>
-  advance_irreversible_stress<3>(const StressSampling<3> &,
-                                 const ViscoplasticLaw &,
-                                 const DistributedVector &,
-                                 const IrreversibleStress &,
-                                 const double,
-                                 const double);
   template void
   add_irreversible_load<2>(const StressSampling<2> &,
                            const IrreversibleStress &,

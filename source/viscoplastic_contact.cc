@@ -5,10 +5,10 @@
 #include <viscoplastic_contact/elasticity.h>
 #include <viscoplastic_contact/error_estimator.h>
 #include <viscoplastic_contact/initial_state.h>
+#include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
-#include <iostream>
 #include <limits>
 #include <sstream>
 
@@ -21,10 +21,13 @@ namespace Viscoplastic
     use_mean_dilatation(const Scene<dim> &scene, const double max_nu)
     {
       const std::string &choice =
-        scene.parameters.material.volumetric_integration;
-      if (choice == "automatic")
-        return (scene.law && scene.law->deviatoric_flow()) || max_nu > 0.4;
-      return choice == "mean dilatation";
+        scene.parameters.stress.volumetric_integration;
+      if (choice != "automatic")
+        return choice == "mean dilatation";
+      for (const auto &material : scene.materials)
+        if (material->law && material->law->deviatoric_flow())
+          return true;
+      return max_nu > 0.4;
     }
   } // namespace
 
@@ -40,23 +43,30 @@ namespace Viscoplastic
     , sampling(space,
                moduli,
                scene.has_viscosity() &&
-                 scene.parameters.material.stress_history ==
-                   "quadrature points",
+                 scene.parameters.stress.stress_history == "quadrature points",
                mean_dilatation)
+    , laws(sampling)
     , loads(space)
+    , n_solves(scene.is_adaptive() ? scene.parameters.refinement.every_n_steps :
+                                     scene.schedule.n_steps())
   {
-    assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
     if (scene.has_friction())
       face = std::make_unique<ContactFace<dim>>(space);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::Discretisation::make_solver()
+  {
     static const std::vector<types::global_dof_index> no_dofs;
-    const unsigned int n_solves = scene.is_adaptive() ?
-                                    scene.parameters.refinement.every_n_steps :
-                                    scene.schedule.n_steps();
-    solver                      = make_bulk_solver(space,
+    assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
+    solver = make_bulk_solver(space,
                               matrix,
                               face ? face->layout() : no_face,
                               face ? face->dofs() : no_dofs,
-                              scene.parameters.solver.linear_solver,
+                              space.scene.parameters.solver.linear_solver,
                               moduli.max_poissons_ratio(),
                               n_solves);
   }
@@ -64,16 +74,19 @@ namespace Viscoplastic
 
 
   template <int dim>
-  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters)
+  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
+                                                Console          &console)
     : communicator(MPI_COMM_WORLD)
     , parameters(parameters)
-    , out(std::cout, Utilities::MPI::this_mpi_process(communicator) == 0)
+    , console(console)
+    , out(console.stream(), Utilities::MPI::this_mpi_process(communicator) == 0)
     , scene(parameters)
     , triangulation(communicator)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
     , contact_solver(parameters.solver.contact_tolerance,
                      parameters.solver.maximal_iterations)
+    , progress(console, scene.schedule.n_steps())
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
   {}
 
@@ -83,9 +96,7 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::run()
   {
-    announce();
-    scene.make_mesh(triangulation);
-    scene.inspect_boundary(triangulation);
+    make_mesh();
     set_up();
     set_initial_state();
     output.emplace(scene, communicator);
@@ -96,7 +107,9 @@ namespace Viscoplastic
                  forces,
                  initial_report,
                  {},
-                 std::numeric_limits<double>::infinity()};
+                 std::numeric_limits<double>::infinity(),
+                 0.,
+                 {}};
     record(state, initial, {0, 0., 0., 0.});
     write_fields();
 
@@ -122,6 +135,17 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ViscoplasticContact<dim>::make_mesh()
+  {
+    Viscoplastic::make_mesh(parameters.geometry, triangulation);
+    scene.inspect(triangulation);
+    announce();
+  }
+
+
+
+  template <int dim>
+  void
   ViscoplasticContact<dim>::set_up()
   {
     TimerOutput::Scope scope(timer, "set-up");
@@ -130,16 +154,12 @@ namespace Viscoplastic
     is_solved_on_mesh = false;
     discretisation.reset();
     discretisation = std::make_unique<Discretisation>(dof_handler, scene);
+    discretisation->make_solver();
     if (forces.u.size() == 0) // the first time
-      out << "Mesh: " << triangulation.n_global_active_cells() << " cells, "
-          << dof_handler.n_dofs() << " degrees of freedom"
-          << (discretisation->face ?
-                ", " +
-                  std::to_string(discretisation->face->layout().points.size()) +
-                  " friction points" :
-                "")
-          << (discretisation->mean_dilatation ? ", mean dilatation" : "")
-          << "\nLinear solver: " << discretisation->solver->name() << std::endl;
+      {
+        announce_mesh();
+        out << "Linear solver: " << discretisation->solver->name() << std::endl;
+      }
     probes.clear();
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(discretisation->space, x);
@@ -163,27 +183,58 @@ namespace Viscoplastic
         forces = evaluate_forces(d.sampling, d.matrix, load, start);
         if (d.face)
           state.friction = FrictionState(bounds.size());
-        initial_report  = solve(start, forces, 0., 0., load, bounds, state);
+        initial_report  = solve(start, forces, load, bounds, {}, state);
         state.initial_u = state.u;
       }
     else
       {
-        const double violation =
-          compatibility_violation(d.space, load, d.face.get(), state.friction);
-        std::ostringstream message;
-        message << "The initial data are not in equilibrium with the loads at "
-                   "t = 0, (2.12): the relative violation is "
-                << violation << ", and "
-                << "'Initial state/Compatibility tolerance' is "
-                << initial.compatibility_tolerance
-                << "; start with loads that the initial stress balances, or "
-                   "set 'Initial state/Equilibrate'.";
-        AssertThrow(violation <= initial.compatibility_tolerance,
-                    ExcMessage(message.str()));
+        check_compatibility(load);
       }
     forces = evaluate_forces(d.sampling, d.matrix, load, state);
     if (scene.is_adaptive())
       estimate(state);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_compatibility(const Load<dim> &load)
+  {
+    const Discretisation &d = *discretisation;
+    const double tolerance  = parameters.initial_state.compatibility_tolerance;
+    const double violation =
+      compatibility_violation(d.space, load, d.face.get(), state.friction);
+    std::ostringstream message;
+    message << "The initial data are not in equilibrium with the loads at "
+               "t = 0, (2.12): the relative violation is "
+            << violation << ", and 'Initial state/Compatibility tolerance' is "
+            << tolerance
+            << "; start with loads that the initial stress balances, or set "
+               "'Initial state/Equilibrate'.";
+    AssertThrow(violation <= tolerance, ExcMessage(message.str()));
+  }
+
+
+
+  template <int dim>
+  FlowStep<dim>
+  ViscoplasticContact<dim>::flow(const State<dim> &old_state,
+                                 const TimeStep   &time_step) const
+  {
+    FlowStep<dim>      flow = advance_irreversible_stress(discretisation->laws,
+                                                     old_state.u,
+                                                     old_state.z,
+                                                     time_step.t_old,
+                                                     time_step.k);
+    std::ostringstream message;
+    message << "The time step " << time_step.k << " of step " << time_step.n
+            << " (t = " << time_step.t << ") exceeds the stability limit 2/r = "
+            << 2. / flow.relaxation_rate
+            << " of forward Euler; take more steps in 'Time/Phases'.";
+    AssertThrow(time_step.k * flow.relaxation_rate <= 2. * (1. + 1e-10),
+                ExcMessage(message.str()));
+    return flow;
   }
 
 
@@ -197,51 +248,43 @@ namespace Viscoplastic
     const Discretisation &d = *discretisation;
     Step                  step;
     step.step_limit      = std::numeric_limits<double>::infinity();
+    step.capped_volume   = 0.;
     step.state.n         = time_step.n;
     step.state.t         = time_step.t;
+    step.state.k         = time_step.k;
     step.state.initial_u = old_state.initial_u;
     {
       TimerOutput::Scope phase(timer, "rate");
-      step.state.z = old_state.z;
       if (scene.has_viscosity())
         {
-          FlowStep<dim> flow = advance_irreversible_stress(d.sampling,
-                                                           *scene.law,
-                                                           old_state.u,
-                                                           old_state.z,
-                                                           time_step.t_old,
-                                                           time_step.k);
-          step.state.z       = std::move(flow.z);
-          if (flow.relaxation_rate > 0.)
-            step.step_limit = 2. / flow.relaxation_rate;
+          FlowStep<dim> z_step = flow(old_state, time_step);
+          step.state.z         = std::move(z_step.z);
+          step.capped_volume   = z_step.capped_volume;
+          if (z_step.relaxation_rate > 0.)
+            step.step_limit = 2. / z_step.relaxation_rate;
         }
+      else
+        step.state.z = old_state.z;
     }
-    if (time_step.k > step.step_limit * (1. + 1e-10))
-      {
-        std::ostringstream message;
-        message << "The time step " << time_step.k << " of step " << time_step.n
-                << " (t = " << time_step.t
-                << ") exceeds the stability limit 2/r = " << step.step_limit
-                << " of forward Euler for the law " << parameters.material.law
-                << "; take more steps in 'Time/Phases'.";
-        AssertThrow(false, ExcMessage(message.str()));
-      }
 
     Load<dim> load;
     {
       TimerOutput::Scope phase(timer, "load");
       load = d.loads.assemble(time_step.t);
       if (d.face)
-        step.bounds = d.face->bounds(time_step.t);
+        {
+          step.bounds = d.face->bounds(time_step.t);
+          step.foundation_step =
+            d.face->foundation_step(time_step.t_old, time_step.t);
+        }
     }
     {
       TimerOutput::Scope phase(timer, "contact");
       step.report = solve(old_state,
                           old_forces,
-                          time_step.t,
-                          time_step.k,
                           load,
                           step.bounds,
+                          step.foundation_step,
                           step.state);
     }
     TimerOutput::Scope phase(timer, "balance");
@@ -256,20 +299,20 @@ namespace Viscoplastic
   ContactReport
   ViscoplasticContact<dim>::solve(const State<dim>          &old_state,
                                   const Forces<dim>         &old_forces,
-                                  const double               t,
-                                  const double               k,
                                   const Load<dim>           &load,
                                   const std::vector<double> &bounds,
+                                  const Vector<double>      &foundation_step,
                                   State<dim>                &new_state)
   {
+    const double                t = new_state.t, k = new_state.k;
     Discretisation             &d     = *discretisation;
     const AdmissibleSpace<dim> &space = d.space;
     DistributedVector           right_side(load.values);
     if (scene.has_irreversible_stress()) // collective, also without cells
       add_irreversible_load(d.sampling, new_state.z, right_side);
 
-    // Start from the last displacement, moved on by the last velocity except
-    // where points stick.
+    // Start from the last displacement, moved on by the last velocity, except
+    // where points stick: they go with the foundation.
     const DistributedVector &old_u = old_forces.u;
     DistributedVector        u(old_u), velocity(old_u);
     space.to_frames(old_state.velocity, velocity);
@@ -289,7 +332,9 @@ namespace Viscoplastic
                 {
                   const auto local =
                     space.owned.index_within_set(d.face->dofs()[i]);
-                  u.begin()[local] = old_u.begin()[local];
+                  u.begin()[local] =
+                    old_u.begin()[local] +
+                    (foundation_step.size() > 0 ? foundation_step[i] : 0.);
                 }
       }
     space.set_prescribed(t, u);
@@ -300,6 +345,8 @@ namespace Viscoplastic
         DistributedVector change(u);
         change -= old_u;
         Vector<double> increment = d.face->face_vector(change);
+        if (foundation_step.size() > 0)
+          increment -= foundation_step;
         d.solver->begin(right_side, u);
         report = contact_solver.solve(
           *d.solver, d.face->layout(), bounds, increment, new_state.friction);
@@ -392,7 +439,12 @@ namespace Viscoplastic
           d.face->multipliers(result.multiplier_density);
         DistributedVector velocity = d.space.owned_vector();
         d.space.to_frames(state.velocity, velocity);
-        const auto slip_rates = d.face->slips(velocity);
+        Vector<double> carried =
+          d.face->foundation_step(state.t - state.k, state.t);
+        if (carried.size() > 0)
+          carried /= state.k;
+        const auto   slip_rates = d.face->slips(velocity, carried);
+        const double max_speed  = velocity.linfty_norm();
         for (unsigned int p = 0; p < bounds.size(); ++p)
           {
             auto        &multiplier = state.friction.multiplier[p];
@@ -400,7 +452,8 @@ namespace Viscoplastic
             if (size > bounds[p])
               multiplier *= bounds[p] / size;
             state.friction.sticks[p] =
-              size < (1. - 1e-6) * bounds[p] || slip_rates[p].norm() == 0.;
+              size < (1. - 1e-6) * bounds[p] ||
+              slip_rates[p].norm() <= 1e-12 * max_speed;
           }
       }
     forces =
@@ -417,8 +470,7 @@ namespace Viscoplastic
   {
     // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
     return its_forces.strain_energy + its_forces.irreversible_work +
-           summarise_stress(discretisation->sampling, of, of)
-             .irreversible_energy;
+           summarise_stress(discretisation->laws, of, of).irreversible_energy;
   }
 
 

@@ -116,6 +116,19 @@ namespace Viscoplastic
 
 
   /**
+   * Whether make_bulk_solver() would take the direct solver. Throws ExcMessage
+   * for a choice that cannot be had.
+   */
+  template <int dim>
+  bool
+  is_direct(const AdmissibleSpace<dim> &space,
+            const unsigned int          n_face_dofs,
+            const std::string          &choice,
+            const double                max_poissons_ratio,
+            const unsigned int          n_solves);
+
+
+  /**
    * Choose and set up a solver. @p choice is `automatic', `direct' or
    * `multigrid'; @p face_dofs are the global indices of the face vector's
    * entries (empty without friction); @p n_solves is how often it will be used

@@ -64,10 +64,23 @@ namespace Viscoplastic
     Vector<double>
     face_vector(const DistributedVector &in_frames) const;
 
+    /**
+     * How far the foundation slides between two times, as a face vector; where
+     * boundary ids with different motions share a node, their mean. Empty if
+     * no foundation moves.
+     */
+    Vector<double>
+    foundation_step(const double t_old, const double t) const;
+
     /// The slip that a change of the displacement (in frames, owned entries)
-    /// means at each point. Collective.
+    /// means at each point, relative to a step of the foundation. Collective.
     std::vector<Tensor<1, 2>>
-    slips(const DistributedVector &change) const;
+    slips(const DistributedVector &change,
+          const Vector<double>    &foundation_step) const;
+
+    /// The same for a face vector on all ranks.
+    std::vector<Tensor<1, 2>>
+    slips(const Vector<double> &change) const;
 
     /**
      * The multiplier as a nodal density lambda_c/m_c, Cartesian and with

@@ -12,13 +12,14 @@ namespace Viscoplastic
 {
   /**
    * The elastic tensor of each owned cell, taken at the cell's centre; one
-   * object if it does not depend on position.
+   * object if it is the same everywhere.
    */
   template <int dim>
   class ElasticModuli
   {
   public:
-    /// Throws ExcMessage naming the entry where E or nu are out of range.
+    /// Throws ExcMessage naming material, place and what is out of range.
+    /// Collective.
     explicit ElasticModuli(const AdmissibleSpace<dim> &space);
 
     /// The same tensor everywhere, e.g. the identity for a projection.
@@ -28,10 +29,10 @@ namespace Viscoplastic
     const Stiffness &
     operator()(const std::size_t cell) const
     {
-      return moduli.size() == 1 ? moduli[0] : moduli[cell];
+      return is_uniform ? moduli[0] : moduli[cell];
     }
 
-    /// Largest Poisson's ratio of the body. Collective result.
+    /// Largest Poisson's ratio of the body, the same on all ranks.
     double
     max_poissons_ratio() const
     {
@@ -40,6 +41,7 @@ namespace Viscoplastic
 
   private:
     std::vector<Stiffness> moduli;
+    bool                   is_uniform;
     double                 max_nu;
   };
 

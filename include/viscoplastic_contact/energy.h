@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/state.h>
 
 namespace Viscoplastic
@@ -12,12 +13,14 @@ namespace Viscoplastic
     double max_von_mises = 0., mean_von_mises = 0.;
     /// (int sigma : sigma)^(1/2) of cell means.
     double stress_norm = 0.;
-    /// 1/2 int E^-1 z : z.
+    /// 1/2 int E^-1 z : z, and what laws with an energy of their own store
+    /// beyond 1/2 int E^-1 sigma : sigma.
     double irreversible_energy = 0.;
     /**
-     * -int E^-1 (z_n - z_{n-1}) : (sigma_{n-1} + sigma_n)/2: the viscous
-     * dissipation of the step; with this mean of stresses the balance of
-     * energy of the bulk is exact, whatever the step size.
+     * -int (z_n - z_{n-1}) : A with the driving strain A of the law,
+     * E^-1 sigma for most, at the mean of the states at t_{n-1} and t_n: the
+     * viscous dissipation of the step; with this mean the balance of energy of
+     * the bulk is exact, whatever the step size.
      */
     double viscous_dissipation = 0.;
   };
@@ -25,9 +28,9 @@ namespace Viscoplastic
   /// Collective. Without a step (initial state), give the same state twice.
   template <int dim>
   StressSummary
-  summarise_stress(const StressSampling<dim> &sampling,
-                   const State<dim>          &old_state,
-                   const State<dim>          &state);
+  summarise_stress(const FlowLaws<dim> &laws,
+                   const State<dim>    &old_state,
+                   const State<dim>    &state);
 
   /**
    * norm(sigma - P0 sigma)/norm(sigma) with sigma = E eps(u) + z: how much of

@@ -43,10 +43,14 @@ namespace Viscoplastic
   {
   public:
     /**
-     * @p entry names the parameter in error messages.
+     * @p entry names the parameter in error messages. @p variables are the
+     * names of the dim arguments before t where these are no coordinates.
      * Throws ExcMessage when @p text cannot be parsed.
      */
-    Expression(const std::string &text, const std::string &entry);
+    Expression(const std::string &text,
+               const std::string &entry,
+               const std::string &variables =
+                 FunctionParser<dim>::default_variable_names());
 
     /// Throws ExcMessage naming entry, place and time if not finite.
     double
@@ -76,7 +80,7 @@ namespace Viscoplastic
     }
 
   private:
-    std::string                          text, entry;
+    std::string                          text, entry, variables;
     bool                                 time_dependent, position_dependent;
     double                               constant;
     std::unique_ptr<FunctionParser<dim>> parser;

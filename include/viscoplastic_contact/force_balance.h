@@ -65,14 +65,20 @@ namespace Viscoplastic
     double stick_area = 0., slip_area = 0.;
     /// sum_c lambda_c . s_c of the step.
     double dissipation = 0.;
+    /// Work of a moving foundation on the body, -sum_c lambda_c . dw_c with
+    /// the mean of the multipliers before and after, as external_work() has.
+    double foundation_work = 0.;
   };
 
-  /// @p change of the displacement in the step, in frames. Collective.
+  /// @p change of the displacement in the step, in frames, and what the
+  /// foundation moved meanwhile (empty: nothing). Collective.
   template <int dim>
   FrictionIdentities
   check_friction(const ContactFace<dim>    &face,
+                 const FrictionState       &old_state,
                  const FrictionState       &state,
                  const std::vector<double> &bounds,
                  const DistributedVector   &change,
+                 const Vector<double>      &foundation_step,
                  const double               max_displacement);
 } // namespace Viscoplastic

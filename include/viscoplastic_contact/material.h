@@ -32,6 +32,12 @@ namespace Viscoplastic
     Stiffness
     stiffness(const Point<dim> &x) const;
 
+    bool
+    is_anisotropic() const
+    {
+      return anisotropic.has_value();
+    }
+
     /// Whether stiffness() is the same everywhere.
     bool
     is_uniform() const;

@@ -102,6 +102,6 @@ namespace Viscoplastic
     std::vector<FullMatrix<double>> prolongation;
 
     unsigned int n;
-    double       t;
+    double       t, k;
   };
 } // namespace Viscoplastic

@@ -57,7 +57,7 @@ namespace Viscoplastic
   /**
    * The frame of a node where @p conditions meet (in the order of their ids).
    * Where conditions compete, those that fix more come first: clamped, given
-   * components, symmetry, bilateral contact; a condition whose direction
+   * components, glued, symmetry, bilateral contact; a condition whose direction
    * depends on the others is dropped.
    */
   template <int dim>

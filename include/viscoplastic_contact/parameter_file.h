@@ -1,24 +1,37 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/parameter_text.h>
 #include <viscoplastic_contact/parameters.h>
 
+#include <boost/property_tree/ptree_fwd.hpp>
+
 #include <map>
+#include <string>
+#include <vector>
 
 namespace Viscoplastic
 {
   /**
-   * A parameter file, read and checked as far as that is possible without a
-   * mesh. Expressions stay texts here: their number of components depends on
-   * the dimension, so Scene<dim> parses them.
+   * One or several parameter files, read and checked as far as that is possible
+   * without a mesh. Expressions stay texts here: their number of components
+   * depends on the dimension, so Scene<dim> parses them.
    */
   class Parameters
   {
   public:
     /**
-     * Read @p file. Subsections `Boundary <id>` are declared for the ids that
-     * the file names. Throws ExcMessage or an exception of ParameterHandler.
+     * Read @p files, of which later ones override earlier ones, and then the
+     * assignments `Section/Entry=value' of @p overrides. Subsections
+     * `Boundary <id>' and `Material <id>' are declared for the ids that these
+     * name. Without files everything has its default.
+     *
+     * Throws ExcMessage with a sentence that says where something unknown or
+     * wrong is, and what would be right.
      */
+    explicit Parameters(const std::vector<std::string> &files,
+                        const std::vector<std::string> &overrides = {});
+
     explicit Parameters(const std::string &file);
 
     /// The structs below are bound to entries of the handler.
@@ -26,12 +39,13 @@ namespace Viscoplastic
     Parameters &
     operator=(const Parameters &) = delete;
 
-    const std::string                          file;
-    unsigned int                               dimension = 2;
-    GeometryParameters                         geometry;
+    /// The first of the files, which gives the scene its name.
+    const std::string  file;
+    unsigned int       dimension = 2;
+    GeometryParameters geometry;
     /// Of all cells, or of none where there are numbered materials.
-    MaterialParameters                         material;
-    StressParameters                           stress;
+    MaterialParameters material;
+    StressParameters   stress;
     /// By material id of the cells.
     std::map<unsigned int, MaterialParameters> materials;
     LoadParameters                             loads;
@@ -49,9 +63,36 @@ namespace Viscoplastic
     void
     declare();
 
-    /// The ids of `subsection Boundary <id>' and `Material <id>' in a file and
-    /// in those that it includes decide what is declared.
+    /// The ids that the names of subsections contain decide what is declared.
     void
-    find_numbered_subsections(const std::string &name, const unsigned int depth);
+    find_numbered_subsections(
+      const std::vector<ParameterStatement> &statements);
+
+    /// Give an entry its value.
+    void
+    apply(const ParameterStatement          &statement,
+          const boost::property_tree::ptree &declared);
+
+    /// Make the name of the mesh file independent of the working directory.
+    void
+    locate_mesh_file(const ParameterStatement &statement);
   };
+
+
+
+  /**
+   * Everything that is declared, in the order of declaration: a node with a
+   * leaf `value' is an entry, with the leaves `default_value', `documentation'
+   * and `pattern_description'; others are subsections.
+   */
+  boost::property_tree::ptree
+  declared_entries(const ParameterHandler &handler);
+
+  /// Whether a node of that tree is an entry.
+  bool
+  is_entry(const boost::property_tree::ptree &node);
+
+  /// What a pattern of ParameterHandler allows, in words: "one of a, b".
+  std::string
+  allowed_values(const std::string &pattern_description);
 } // namespace Viscoplastic

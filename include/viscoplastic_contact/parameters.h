@@ -14,8 +14,8 @@ namespace Viscoplastic
 
   struct GeometryParameters
   {
-    std::string  generator      = "subdivided_hyper_rectangle";
-    std::string  arguments      = "8, 8 : 0, 0 : 1, 1 : true";
+    std::string  generator = "subdivided_hyper_rectangle";
+    std::string  arguments = "8, 8 : 0, 0 : 1, 1 : true";
     std::string  file;
     std::string  file_format = "automatic";
     std::string  boundary_ids, material_ids;

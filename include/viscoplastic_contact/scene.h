@@ -4,13 +4,14 @@
 #include <deal.II/distributed/tria.h>
 
 #include <viscoplastic_contact/expression.h>
+#include <viscoplastic_contact/material.h>
 #include <viscoplastic_contact/parameter_file.h>
 #include <viscoplastic_contact/time_schedule.h>
-#include <viscoplastic_contact/viscoplastic_law.h>
 
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ namespace Viscoplastic
   enum class FrictionLaw
   {
     none,
-    tresca, // bilateral, (5.22)
-    coulomb // given normal stress, (5.6)
+    tresca,  // bilateral, (5.22)
+    coulomb, // given normal stress, (5.6)
+    glued    // no slip whatever the force: rho = infinity
   };
 
 
@@ -51,6 +53,8 @@ namespace Viscoplastic
     std::optional<VectorExpression<dim>> traction;
     /// d of bilateral contact; absent where identically zero.
     std::optional<Expression<dim>> foundation_displacement;
+    /// w, whose tangential part slip is relative to; absent at rest.
+    std::optional<VectorExpression<dim>> foundation_motion;
     /// g of the law tresca.
     std::optional<Expression<dim>> friction_bound;
     /// mu and S of the law coulomb.
@@ -70,8 +74,24 @@ namespace Viscoplastic
     bool
     has_friction() const
     {
-      return friction_law != FrictionLaw::none;
+      return friction_law == FrictionLaw::tresca ||
+             friction_law == FrictionLaw::coulomb;
     }
+
+    /// Whether all of u is prescribed here: glued_displacement().
+    bool
+    is_glued() const
+    {
+      return friction_law == FrictionLaw::glued;
+    }
+
+    /// The tangential part of w(x,t) - w(x,0); zero at rest.
+    Tensor<1, dim>
+    sliding(const Point<dim> &x, const double t) const;
+
+    /// d nu + sliding().
+    Tensor<1, dim>
+    glued_displacement(const Point<dim> &x, const double t) const;
 
     /// Whether some displacement component is prescribed here.
     bool
@@ -106,27 +126,28 @@ namespace Viscoplastic
     /// Throws ExcMessage with a sentence for the user.
     explicit Scene(const Parameters &parameters);
 
-    /// Coarse mesh with its global refinements.
-    void
-    make_mesh(parallel::distributed::Triangulation<dim> &triangulation) const;
-
     /**
-     * Check the roles against the mesh: each boundary id has a role and exists,
-     * symmetry and contact pieces are flat. Sets their normals. Collective.
+     * Hold the roles and materials against the mesh: each boundary id has a
+     * role and exists, symmetry and contact pieces are flat (sets their
+     * normals), each material id has a material. Makes the materials that the
+     * mesh has. Collective.
      */
     void
-    inspect_boundary(
-      const parallel::distributed::Triangulation<dim> &triangulation);
+    inspect(const parallel::distributed::Triangulation<dim> &triangulation);
 
     /// The effects that this scene has, for the user.
     std::vector<std::string>
     effects() const;
 
-    bool
-    has_viscosity() const
+    /// Known after inspect(), like the effects.
+    const Material<dim> &
+    material(const types::material_id id) const
     {
-      return law != nullptr;
+      return *material_of_id.at(id);
     }
+
+    bool
+    has_viscosity() const;
 
     /// Whether there is z = sigma - E eps(u): from viscosity, or from initial
     /// data.
@@ -143,6 +164,9 @@ namespace Viscoplastic
     has_contact() const;
 
     bool
+    has_moving_foundation() const;
+
+    bool
     is_adaptive() const
     {
       return parameters.refinement.strategy != "none";
@@ -150,14 +174,34 @@ namespace Viscoplastic
 
     const Parameters                                    &parameters;
     std::map<types::boundary_id, BoundaryCondition<dim>> boundary;
-    Expression<dim>                        youngs_modulus, poissons_ratio;
-    std::unique_ptr<const ViscoplasticLaw> law; // null: elastic
+    /// Those that some cell has.
+    std::vector<std::unique_ptr<const Material<dim>>> materials;
     /// b, u0, sigma0; absent where identically zero.
     std::optional<VectorExpression<dim>> body_force;
     std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
     TimeSchedule                         schedule;
     /// Points whose displacement is recorded.
     std::vector<Point<dim>> output_points;
+    /// What is allowed but should be known, a sentence each.
+    std::vector<std::string> warnings;
+
+  private:
+    void
+    inspect_boundary_ids(const std::set<types::boundary_id> &ids) const;
+
+    void
+    inspect_flatness(
+      const parallel::distributed::Triangulation<dim> &triangulation);
+
+    /// Pieces with prescribed displacement that touch Gamma_3.
+    void
+    inspect_junctions(
+      const parallel::distributed::Triangulation<dim> &triangulation);
+
+    void
+    make_materials(const std::set<types::material_id> &ids);
+
+    std::map<types::material_id, const Material<dim> *> material_of_id;
   };
 
 

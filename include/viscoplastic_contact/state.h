@@ -14,9 +14,9 @@ namespace Viscoplastic
   template <int dim>
   struct State
   {
-    /// Number of the step that led here, and its time.
+    /// Number of the step that led here, its time and its size.
     unsigned int n = 0;
-    double       t = 0.;
+    double       t = 0., k = 0.;
 
     /// u_n and delta u_n = (u_n - u_{n-1})/k_n: Cartesian, with ghosts.
     DistributedVector u, velocity;

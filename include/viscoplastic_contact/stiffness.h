@@ -4,12 +4,29 @@
 
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/lac/full_matrix.h>
 
+#include <array>
 #include <cmath>
+#include <memory>
 
 namespace Viscoplastic
 {
   using namespace dealii;
+
+  /// Eigenvalues in ascending order, and the eigentensors, orthonormal in the
+  /// scalar product a : b.
+  struct Spectrum
+  {
+    std::array<double, 6>                values;
+    std::array<SymmetricTensor<2, 3>, 6> modes;
+  };
+
+  /// Of a tensor T with a : T : b = b : T : a.
+  Spectrum
+  spectrum(const SymmetricTensor<4, 3> &tensor);
+
+
 
   /**
    * The elastic tensor E of one cell, stress = E strain.
@@ -18,7 +35,8 @@ namespace Viscoplastic
    * plane-strain computation passes eps_zz = eps_xz = eps_yz = 0 and keeps
    * sigma_zz, so everything that works on stresses is written once.
    *
-   * Everything is inline: these calls are made for each cell at each step.
+   * An isotropic tensor is two moduli. Copies share the data of a general one.
+   * What is called for each cell at each step is inline.
    */
   class Stiffness
   {
@@ -34,7 +52,9 @@ namespace Viscoplastic
     /**
      * A general elastic tensor: the 6 x 6 matrix in Voigt's order xx, yy, zz,
      * yz, xz, xy with engineering shear strains. Throws ExcMessage unless it
-     * is symmetric and positive definite, naming the smallest eigenvalue.
+     * is symmetric and positive definite, naming the smallest eigenvalue. This
+     * is the eigenvalue of E as a map of symmetric tensors, which a rotation
+     * of the axes does not change, not that of the matrix.
      */
     static Stiffness
     anisotropic(const FullMatrix<double> &voigt_matrix);
@@ -50,7 +70,7 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     strain(const SymmetricTensor<2, 3> &stress) const;
 
-    /// mu, unit of stress; of anisotropic bodies Voigt's average.
+    /// mu, unit of stress; of an anisotropic tensor Voigt's average.
     double
     shear_modulus() const;
 
@@ -59,13 +79,18 @@ namespace Viscoplastic
     bulk_modulus() const;
 
     /**
-     * The largest eigenvalue of P E P, where P takes the deviator: 2 mu here.
+     * The largest eigenvalue of P E P, where P takes the deviator; 2 mu if
+     * isotropic.
      * It turns the viscosity of a deviatoric flow into its relaxation rate.
      */
     double
     largest_deviatoric_eigenvalue() const;
 
-    /// The smallest one on deviators: a lower bound of the energy, 2 mu here.
+    /**
+     * 1 over the largest eigenvalue of P E^-1 P; 2 mu if isotropic. It bounds
+     * energies below: strain : E strain >= this |dev strain|^2, whatever the
+     * volumetric strain is.
+     */
     double
     smallest_deviatoric_eigenvalue() const;
 
@@ -87,10 +112,17 @@ namespace Viscoplastic
                    << "; it must be larger than -1 and smaller than 0.5.");
 
   private:
+    struct Anisotropic
+    {
+      SymmetricTensor<4, 3> stiffness, compliance;
+      double                largest_deviatoric, smallest_deviatoric;
+    };
+
     Stiffness(const double shear_modulus, const double bulk_modulus);
 
-    double mu;
-    double bulk;
+    double                             mu;
+    double                             bulk;
+    std::shared_ptr<const Anisotropic> anisotropic_data;
   };
 
 
@@ -130,9 +162,20 @@ namespace Viscoplastic
 
 
 
+  inline bool
+  Stiffness::is_isotropic() const
+  {
+    return anisotropic_data == nullptr;
+  }
+
+
+
   inline SymmetricTensor<2, 3>
   Stiffness::stress(const SymmetricTensor<2, 3> &strain) const
   {
+    if (anisotropic_data)
+      return anisotropic_data->stiffness * strain;
+
     SymmetricTensor<2, 3> result   = 2 * mu * strain;
     const double          pressure = (bulk - 2. / 3. * mu) * trace(strain);
     for (unsigned int i = 0; i < 3; ++i)
@@ -145,6 +188,9 @@ namespace Viscoplastic
   inline SymmetricTensor<2, 3>
   Stiffness::strain(const SymmetricTensor<2, 3> &stress) const
   {
+    if (anisotropic_data)
+      return anisotropic_data->compliance * stress;
+
     // The deviator is formed first: with 1/(9K) - 1/(6 mu) in one factor, the
     // small strain of a nearly incompressible body under high pressure would
     // be the difference of large numbers.
@@ -176,7 +222,23 @@ namespace Viscoplastic
   inline double
   Stiffness::largest_deviatoric_eigenvalue() const
   {
-    return 2 * mu;
+    return anisotropic_data ? anisotropic_data->largest_deviatoric : 2 * mu;
+  }
+
+
+
+  inline double
+  Stiffness::smallest_deviatoric_eigenvalue() const
+  {
+    return anisotropic_data ? anisotropic_data->smallest_deviatoric : 2 * mu;
+  }
+
+
+
+  inline double
+  Stiffness::poissons_ratio() const
+  {
+    return (3 * bulk - 2 * mu) / (6 * bulk + 2 * mu);
   }
 
 
@@ -184,6 +246,9 @@ namespace Viscoplastic
   inline SymmetricTensor<4, 3>
   Stiffness::tensor() const
   {
+    if (anisotropic_data)
+      return anisotropic_data->stiffness;
+
     const SymmetricTensor<2, 3> identity = unit_symmetric_tensor<3>();
     return 2 * mu * deviator_tensor<3>() +
            bulk * outer_product(identity, identity);

@@ -98,29 +98,6 @@ namespace Viscoplastic
   };
 
 
-  /// Forward Euler for z, (3.19), and what the step meant.
-  template <int dim>
-  struct FlowStep
-  {
-    IrreversibleStress z;
-    /// The largest relaxation rate r; forward Euler is stable for k <= 2/r.
-    /// Collective result.
-    double relaxation_rate;
-  };
-
-  /**
-   * z_n = z_{n-1} + k G(t_{n-1}, sigma_{n-1}, eps_{n-1}), one evaluation a
-   * sample. Collective.
-   */
-  template <int dim>
-  FlowStep<dim>
-  advance_irreversible_stress(const StressSampling<dim> &sampling,
-                              const ViscoplasticLaw     &law,
-                              const DistributedVector   &ghosted_u,
-                              const IrreversibleStress  &z,
-                              const double               t,
-                              const double               k);
-
   /// Add -(z, eps(v)) to a load vector in frames. Collective.
   template <int dim>
   void

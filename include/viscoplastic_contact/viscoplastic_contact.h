@@ -7,12 +7,16 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 
+#include <viscoplastic_contact/console.h>
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/force_balance.h>
 #include <viscoplastic_contact/loads.h>
 #include <viscoplastic_contact/output.h>
 #include <viscoplastic_contact/point_probe.h>
+#include <viscoplastic_contact/progress.h>
+#include <viscoplastic_contact/run_summary.h>
 #include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
 
@@ -38,10 +42,18 @@ namespace Viscoplastic
   {
   public:
     /// Throws ExcMessage with a sentence for the user, as run() does.
-    explicit ViscoplasticContact(const Parameters &parameters);
+    ViscoplasticContact(const Parameters &parameters, Console &console);
 
     void
     run();
+
+    /**
+     * Everything that can be known without solving: validates the scene with
+     * its mesh, initial data and the data of all times, and prints size,
+     * solver and what memory they need. Source: source/check.cc.
+     */
+    void
+    check();
 
   private:
     /// Everything that depends on the mesh, in the order of dependence.
@@ -50,16 +62,24 @@ namespace Viscoplastic
       Discretisation(const DoFHandler<dim> &dof_handler,
                      const Scene<dim>      &scene);
 
+      /// The costly rest: what solves need.
+      void
+      make_solver();
+
       AdmissibleSpace<dim> space;
       ElasticModuli<dim>   moduli;
       bool                 mean_dilatation;
       StressSampling<dim>  sampling;
-      DistributedMatrix    matrix;
+      FlowLaws<dim>        laws;
       Loads<dim>           loads;
       /// Null without friction.
       std::unique_ptr<ContactFace<dim>> face;
-      FrictionFace                      no_face;
-      std::unique_ptr<BulkSolver>       solver;
+
+      /// How often a solver will be used at least.
+      unsigned int                n_solves;
+      DistributedMatrix           matrix;
+      FrictionFace                no_face;
+      std::unique_ptr<BulkSolver> solver;
     };
 
     /// What a step gives.
@@ -71,6 +91,10 @@ namespace Viscoplastic
       std::vector<double> bounds;
       /// 2/r; infinite without viscosity.
       double step_limit;
+      /// Volume beyond the cap of a law.
+      double capped_volume;
+      /// What the foundation moved, as a face vector; empty at rest.
+      Vector<double> foundation_step;
     };
 
     /// What adds up over the steps.
@@ -84,10 +108,21 @@ namespace Viscoplastic
     };
 
     void
+    make_mesh();
+
+    void
     set_up();
 
     void
     set_initial_state();
+
+    /// Throws ExcMessage if the initial data violate (2.12).
+    void
+    check_compatibility(const Load<dim> &load);
+
+    /// z at the end of a step. Throws ExcMessage beyond the stability limit.
+    FlowStep<dim>
+    flow(const State<dim> &old_state, const TimeStep &time_step) const;
 
     /// One step: a function of the state, its forces and the time step. It
     /// keeps nothing but what a linear solver knows of its preconditioner.
@@ -96,14 +131,14 @@ namespace Viscoplastic
             const Forces<dim> &old_forces,
             const TimeStep    &time_step);
 
-    /// u, multipliers and sets for a given z.
+    /// u, multipliers and sets for a given z, at the time of @p state and
+    /// for its step size.
     ContactReport
     solve(const State<dim>          &old_state,
           const Forces<dim>         &old_forces,
-          const double               t,
-          const double               k,
           const Load<dim>           &load,
           const std::vector<double> &bounds,
+          const Vector<double>      &foundation_step,
           State<dim>                &state);
 
     /// Estimate the error of a state, in scenes that use it.
@@ -122,6 +157,9 @@ namespace Viscoplastic
     void
     announce() const;
 
+    void
+    announce_mesh() const;
+
     /// Add a row to statistics.csv. Time step 0 is the initial state.
     void
     record(const State<dim> &old_state,
@@ -136,7 +174,8 @@ namespace Viscoplastic
 
     const MPI_Comm                            communicator;
     const Parameters                         &parameters;
-    ConditionalOStream                        out;
+    Console                                  &console;
+    ConditionalOStream                        out; // the console on rank 0
     Scene<dim>                                scene;
     parallel::distributed::Triangulation<dim> triangulation;
     const FESystem<dim>                       fe;
@@ -155,9 +194,12 @@ namespace Viscoplastic
     std::optional<Output<dim>>   output;
     std::unique_ptr<Statistics>  statistics; // on rank 0
     std::vector<PointProbe<dim>> probes;
+    Progress                     progress;
+    RunSummary<dim>              summary;
     /// Wall time by phase over the run, and what it was a step ago.
     TimerOutput                   timer;
     std::map<std::string, double> last_seconds;
+    double                        first_set_up_seconds = 0.;
     Timer                         run_timer;
   };
 } // namespace Viscoplastic

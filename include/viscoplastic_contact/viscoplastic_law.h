@@ -19,6 +19,21 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
+  /// The subsection of the parameter file that a law is made from.
+  struct LawSection
+  {
+    /// Inside the subsection.
+    const ParameterHandler &prm;
+
+    /// Names it in messages, such as "Material 2/norton".
+    std::string path;
+
+    /// Of the scene: in 2 dimensions there is no z.
+    unsigned int dim;
+  };
+
+
+
   /**
    * A number in a law, such as a viscosity: an expression of x, y, (z,) and t
    * of the parameter file, with the range that it must have everywhere.
@@ -30,16 +45,18 @@ namespace Viscoplastic
     {
       positive,
       non_negative,
-      any // finite
+      at_least_one,
+      poissons_ratio, // larger than -1 and smaller than 1/2
+      any             // finite
     };
 
     /**
-     * Read @p entry of the current subsection. Throws ExcMessage if it cannot
-     * be parsed, or is constant and out of range.
+     * Read @p entry of the section. Throws ExcMessage if it cannot be parsed,
+     * or is constant and out of range.
      */
-    LawParameter(const ParameterHandler &prm,
-                 const std::string      &entry,
-                 const Range             range);
+    LawParameter(const LawSection  &section,
+                 const std::string &entry,
+                 const Range        range);
 
     /// Throws ExcMessage naming entry, value, range, place and time if out of
     /// range.
@@ -47,16 +64,38 @@ namespace Viscoplastic
     value(const Point<3> &x, const double t) const;
 
     bool
-    depends_on_position() const;
+    depends_on_position() const
+    {
+      return expression->depends_on_position();
+    }
 
     bool
-    depends_on_time() const;
+    depends_on_time() const
+    {
+      return expression->depends_on_time();
+    }
+
+    /// With its section, such as "Material 2/norton/Exponent".
+    const std::string &
+    get_name() const
+    {
+      return name;
+    }
+
+    /// The expression.
+    const std::string &
+    get_text() const
+    {
+      return text;
+    }
 
   private:
-    std::string   entry;
-    Range         range;
-    Expression<3> expression;
+    std::string name, text;
+    Range       range;
+    // Shared, since lists of parameters are copied.
+    std::shared_ptr<const Expression<3>> expression;
   };
+
 
 
   /// Where and when a law is evaluated (in 2D, z = 0), and what the
@@ -79,7 +118,7 @@ namespace Viscoplastic
    * threads. G must be Lipschitz in stress and strain, (2.8).
    *
    * A new law is one file in source/laws and one line in the list of
-   * source/viscoplastic_law.cc.
+   * source/viscoplastic_law.cc, see doc/adding_a_law.md.
    */
   class ViscoplasticLaw
   {
@@ -91,10 +130,12 @@ namespace Viscoplastic
     LawPoint
     point(const Point<3> &x, const double t) const;
 
+    /// Whether point() differs from place to place.
     bool
     depends_on_position() const;
 
-    bool
+    /// Whether a point must be evaluated anew at each time.
+    virtual bool
     depends_on_time() const;
 
     /**
@@ -199,11 +240,25 @@ namespace Viscoplastic
     }
 
   protected:
-    explicit ViscoplasticLaw(const std::vector<LawParameter> &parameters);
+    /// Points will hold the values of the parameters in this order.
+    explicit ViscoplasticLaw(std::vector<LawParameter> parameters);
 
-  private:
     const std::vector<LawParameter> parameters;
   };
+
+
+
+  /**
+   * The derivative, with respect to stress, of the strain rate
+   * 3/2 f dev(stress)/sigma_eq of a flow along the deviator, where f depends
+   * on the von Mises stress sigma_eq. @p secant is f/sigma_eq and @p tangent
+   * is df/dsigma_eq, both 1/(stress time): along the deviator the strain rate
+   * grows with the tangent; across it, it only turns.
+   */
+  SymmetricTensor<4, 3>
+  flow_tangent(const SymmetricTensor<2, 3> &stress,
+               const double                 secant,
+               const double                 tangent);
 
 
 
@@ -219,10 +274,8 @@ namespace Viscoplastic
     /// Declares the entries of the law; called inside its subsection.
     std::function<void(ParameterHandler &)> declare;
 
-    /**
-     * Reads and checks these entries; called inside the law's subsection.
-     */
-    std::function<std::unique_ptr<ViscoplasticLaw>(ParameterHandler &)> make;
+    /// Reads and checks these entries.
+    std::function<std::unique_ptr<ViscoplasticLaw>(const LawSection &)> make;
   };
 
   /**
@@ -243,10 +296,14 @@ namespace Viscoplastic
 
   /**
    * The law of this name, with the parameters of its subsection of the
-   * current subsection. Null for `elastic`: a body without viscosity has no
-   * law object and no irreversible stress. Throws ExcMessage for an unknown
+   * current subsection, which @p section names in messages; @p dim is the
+   * dimension of the scene. Null for `elastic`: a body without viscosity has
+   * no law object and no irreversible stress. Throws ExcMessage for an unknown
    * name and for parameters outside their range.
    */
   std::unique_ptr<ViscoplasticLaw>
-  make_viscoplastic_law(const std::string &name, ParameterHandler &prm);
+  make_viscoplastic_law(const std::string &name,
+                        ParameterHandler  &prm,
+                        const std::string &section = "Material",
+                        const unsigned int dim     = 3);
 } // namespace Viscoplastic

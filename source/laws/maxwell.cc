@@ -16,28 +16,30 @@ namespace Viscoplastic
     class Maxwell : public ViscoplasticLaw
     {
     public:
-      explicit Maxwell(const double viscosity)
-        : viscosity(viscosity)
+      explicit Maxwell(const LawSection &section)
+        : ViscoplasticLaw(
+            {{section, "Viscosity", LawParameter::Range::positive}})
       {}
 
       SymmetricTensor<2, 3>
       rate(const SymmetricTensor<2, 3> &stress,
            const SymmetricTensor<2, 3> & /*strain*/,
            const Stiffness &stiffness,
-           const LawPoint & /*point*/) const override
+           const LawPoint  &point) const override
       {
-        return stiffness.stress(deviator(stress) / (-2 * viscosity));
+        return stiffness.stress(deviator(stress) /
+                                (-2 * point.parameters[viscosity]));
       }
 
       Tangents
       tangents(const SymmetricTensor<2, 3> & /*stress*/,
                const SymmetricTensor<2, 3> & /*strain*/,
                const Stiffness &stiffness,
-               const LawPoint & /*point*/) const override
+               const LawPoint  &point) const override
       {
         Tangents tangents;
-        tangents.stress =
-          stiffness.tensor() * deviator_tensor<3>() / (-2 * viscosity);
+        tangents.stress = stiffness.tensor() * deviator_tensor<3>() /
+                          (-2 * point.parameters[viscosity]);
         return tangents;
       }
 
@@ -45,9 +47,10 @@ namespace Viscoplastic
       relaxation_rate(const SymmetricTensor<2, 3> & /*stress*/,
                       const SymmetricTensor<2, 3> & /*strain*/,
                       const Stiffness &stiffness,
-                      const LawPoint & /*point*/) const override
+                      const LawPoint  &point) const override
       {
-        return stiffness.largest_deviatoric_eigenvalue() / (2 * viscosity);
+        return stiffness.largest_deviatoric_eigenvalue() /
+               (2 * point.parameters[viscosity]);
       }
 
       bool
@@ -57,7 +60,10 @@ namespace Viscoplastic
       }
 
     private:
-      const double viscosity;
+      enum
+      {
+        viscosity
+      };
     };
   } // namespace
 
@@ -81,12 +87,12 @@ namespace Viscoplastic
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Viscosity",
                         "0.5",
-                        Patterns::Double(),
-                        "The shear viscosity eta, stress times time; "
-                        "positive.");
+                        Patterns::Anything(),
+                        "The shear viscosity eta > 0, an expression of "
+                        "position and t. Unit: stress times time.");
     };
-    law.make = [name = law.name](ParameterHandler &prm) {
-      return std::make_unique<Maxwell>(get_positive(prm, name, "Viscosity"));
+    law.make = [](const LawSection &section) {
+      return std::make_unique<Maxwell>(section);
     };
     return law;
   }

@@ -11,52 +11,84 @@ namespace Viscoplastic
   {
     /**
      * G = -(1/lambda) E (sigma - P_K sigma) with the elastic range
-     * K = {|dev sigma| <= k_Y}. The projection P_K shortens the deviator to
-     * the length k_Y and leaves the pressure alone, so that with s = dev sigma
+     * K = {|dev sigma| <= R}. The projection P_K shortens the deviator to the
+     * length R and leaves the pressure alone, so that with s = dev sigma
      *
-     *     sigma - P_K sigma = (1 - k_Y/|s|)_+ s.
+     *     sigma - P_K sigma = (1 - R/|s|)_+ s.
+     *
+     * The radius grows with the viscoplastic strain eps - E^-1 sigma,
+     *
+     *     R = k_Y + H sqrt(2/3) |d|,   d = dev(eps - E^-1 sigma).
      */
     class Perzyna : public ViscoplasticLaw
     {
     public:
-      Perzyna(const double yield_radius, const double viscosity)
-        : yield_radius(yield_radius)
-        , viscosity(viscosity)
+      explicit Perzyna(const LawSection &section)
+        : ViscoplasticLaw(
+            {{section, "Yield radius", LawParameter::Range::non_negative},
+             {section, "Hardening modulus", LawParameter::Range::non_negative},
+             {section, "Viscosity", LawParameter::Range::positive}})
       {}
 
       SymmetricTensor<2, 3>
       rate(const SymmetricTensor<2, 3> &stress,
-           const SymmetricTensor<2, 3> & /*strain*/,
-           const Stiffness &stiffness,
-           const LawPoint & /*point*/) const override
+           const SymmetricTensor<2, 3> &strain,
+           const Stiffness             &stiffness,
+           const LawPoint              &point) const override
       {
         const SymmetricTensor<2, 3> s      = deviator(stress);
         const double                length = s.norm();
+        const double R = radius(stress, strain, stiffness, point);
         // In this sense of the comparison a NaN goes on, and is seen.
-        if (length <= yield_radius)
+        if (length <= R)
           return {};
-        return stiffness.stress((1 - yield_radius / length) / -viscosity * s);
+        return stiffness.stress((1 - R / length) /
+                                -point.parameters[viscosity] * s);
       }
 
       Tangents
       tangents(const SymmetricTensor<2, 3> &stress,
-               const SymmetricTensor<2, 3> & /*strain*/,
-               const Stiffness &stiffness,
-               const LawPoint & /*point*/) const override
+               const SymmetricTensor<2, 3> &strain,
+               const Stiffness             &stiffness,
+               const LawPoint              &point) const override
       {
         Tangents                    tangents;
         const SymmetricTensor<2, 3> s      = deviator(stress);
         const double                length = s.norm();
-        if (length <= yield_radius)
+        const double R = radius(stress, strain, stiffness, point);
+        if (length <= R && R > 0)
           return tangents;
 
-        // Along s the excess grows one to one; across s it only turns.
-        const SymmetricTensor<2, 3> e     = s / length;
-        const double                ratio = yield_radius / length;
+        // Along s the excess grows one to one; across s it only turns. With
+        // R = 0 it does not matter what e is, and |s| may be zero.
+        const SymmetricTensor<4, 3> E     = stiffness.tensor();
+        const double                ratio = R > 0 ? R / length : 0.;
+        SymmetricTensor<2, 3>       e;
+        if (length > 0)
+          e = s / length;
         tangents.stress =
-          stiffness.tensor() *
+          E *
           ((1 - ratio) * deviator_tensor<3>() + ratio * outer_product(e, e)) /
-          -viscosity;
+          -point.parameters[viscosity];
+
+        // With n = d/|d|, dR = H sqrt(2/3) n : (deps - E^-1 dsigma).
+        if (point.parameters[hardening] > 0)
+          {
+            const SymmetricTensor<2, 3> d =
+              deviator(strain - stiffness.strain(stress));
+            if (d.norm() > 0)
+              {
+                const SymmetricTensor<2, 3> n = d / d.norm();
+                tangents.strain               = std::sqrt(2. / 3.) *
+                                  point.parameters[hardening] /
+                                  point.parameters[viscosity] *
+                                  outer_product(stiffness.stress(e), n);
+                tangents.stress -=
+                  std::sqrt(2. / 3.) * point.parameters[hardening] /
+                  point.parameters[viscosity] *
+                  outer_product(stiffness.stress(e), stiffness.strain(n));
+              }
+          }
         return tangents;
       }
 
@@ -64,10 +96,17 @@ namespace Viscoplastic
       relaxation_rate(const SymmetricTensor<2, 3> & /*stress*/,
                       const SymmetricTensor<2, 3> & /*strain*/,
                       const Stiffness &stiffness,
-                      const LawPoint & /*point*/) const override
+                      const LawPoint  &point) const override
       {
-        // Not zero inside K: the next step may begin outside.
-        return stiffness.largest_deviatoric_eigenvalue() / viscosity;
+        // Not zero inside K: the next step may begin outside. Flow that
+        // enlarges K shortens the excess from both sides; the bound is that of
+        // the rank one term E e (x) E^-1 n in the norm of E^-1.
+        const double largest = stiffness.largest_deviatoric_eigenvalue();
+        return (largest +
+                std::sqrt(2. / 3.) * point.parameters[hardening] *
+                  std::sqrt(largest /
+                            stiffness.smallest_deviatoric_eigenvalue())) /
+               point.parameters[viscosity];
       }
 
       bool
@@ -77,8 +116,25 @@ namespace Viscoplastic
       }
 
     private:
-      const double yield_radius;
-      const double viscosity;
+      enum
+      {
+        yield_radius,
+        hardening,
+        viscosity
+      };
+
+      static double
+      radius(const SymmetricTensor<2, 3> &stress,
+             const SymmetricTensor<2, 3> &strain,
+             const Stiffness             &stiffness,
+             const LawPoint              &point)
+      {
+        if (point.parameters[hardening] == 0)
+          return point.parameters[yield_radius];
+        return point.parameters[yield_radius] +
+               point.parameters[hardening] * std::sqrt(2. / 3.) *
+                 deviator(strain - stiffness.strain(stress)).norm();
+      }
     };
   } // namespace
 
@@ -91,34 +147,43 @@ namespace Viscoplastic
     law.name = "perzyna";
     law.help =
       "G = -(1/lambda) E (sigma - P_K sigma), where P_K projects on the "
-      "elastic range K of all stresses with |dev(sigma)| <= k_Y in the "
+      "elastic range K of all stresses with |dev(sigma)| <= R in the "
       "Frobenius norm: elastic inside K, and flowing in proportion to the "
-      "distance from K outside, without hardening. Excess stress held at "
-      "fixed strain decays like exp(-2 mu t/lambda) back to K. k_Y is the "
-      "`Yield radius' in Pa (the yield stress of a tensile test times "
-      "sqrt(2/3), or of a shear test times sqrt(2)), lambda the `Viscosity' "
-      "in Pa s (twice the shear viscosity of the flow beyond K). With k_Y = 0 "
-      "it is maxwell with eta = lambda/2. Reference: P. Perzyna, Fundamental "
-      "problems in viscoplasticity, Advances in Applied Mechanics 9 (1966) "
-      "243-377; the form with P_K is that of G. Duvaut, J.-L. Lions, "
-      "Inequalities in Mechanics and Physics, Springer 1976, chapter 5.";
+      "distance from K outside. R = k_Y + H eps_eq hardens linearly with the "
+      "present equivalent viscoplastic strain eps_eq = sqrt(2/3) "
+      "|dev(eps - E^-1 sigma)|, not with its path: flow that returns softens "
+      "again. Without hardening, excess stress held at fixed strain decays "
+      "like exp(-2 mu t/lambda) back to K. k_Y is the `Yield radius' in Pa "
+      "(the yield stress of a tensile test times sqrt(2/3), or of a shear "
+      "test times sqrt(2)), H the `Hardening modulus' in Pa (the slope of "
+      "that tensile yield stress over eps_eq times sqrt(2/3)), lambda the "
+      "`Viscosity' in Pa s (twice the shear viscosity of the flow beyond K). "
+      "With k_Y = H = 0 it is maxwell with eta = lambda/2. Reference: P. "
+      "Perzyna, Fundamental problems in viscoplasticity, Advances in Applied "
+      "Mechanics 9 (1966) 243-377; the form with P_K is that of G. Duvaut, "
+      "J.-L. Lions, Inequalities in Mechanics and Physics, Springer 1976, "
+      "chapter 5.";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Yield radius",
                         "0.1",
-                        Patterns::Double(),
-                        "The radius k_Y of the elastic range, the largest "
-                        "Frobenius norm of dev(sigma) without flow, unit of "
-                        "stress; zero or positive.");
+                        Patterns::Anything(),
+                        "The radius k_Y >= 0 of the elastic range, the "
+                        "largest Frobenius norm of dev(sigma) without flow, "
+                        "an expression of position and t. Unit: stress.");
+      prm.declare_entry("Hardening modulus",
+                        "0",
+                        Patterns::Anything(),
+                        "H >= 0, by which the radius grows with the "
+                        "equivalent viscoplastic strain, an expression of "
+                        "position and t. Unit: stress.");
       prm.declare_entry("Viscosity",
                         "1",
-                        Patterns::Double(),
-                        "The viscosity lambda, stress times time; positive.");
+                        Patterns::Anything(),
+                        "The viscosity lambda > 0, an expression of position "
+                        "and t. Unit: stress times time.");
     };
-    law.make = [name = law.name](ParameterHandler &prm) {
-      return std::make_unique<Perzyna>(get_non_negative(prm,
-                                                        name,
-                                                        "Yield radius"),
-                                       get_positive(prm, name, "Viscosity"));
+    law.make = [](const LawSection &section) {
+      return std::make_unique<Perzyna>(section);
     };
     return law;
   }

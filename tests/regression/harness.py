@@ -179,8 +179,8 @@ def run(scene, overrides=None, ranks=1, text=None, check=True):
     """Run the program.
 
     scene      name of a file in prm/verification or prm/demos, without .prm
-    overrides  {"Section/Entry": value}, appended to the scene: in a parameter
-               file the later value of an entry counts
+    overrides  {"Section/Entry": value}, in a second parameter file: later
+               files override earlier ones
     text       the whole parameter file instead of a scene
     check      fail unless the program succeeds
     """
@@ -192,9 +192,11 @@ def run(scene, overrides=None, ranks=1, text=None, check=True):
     if text is None:
         text = scene_file(scene).read_text()
     overrides = {"Output/Directory": work / "results", **(overrides or {})}
-    (work / f"{scene}.prm").write_text(text + "\n" + as_prm(overrides))
+    files = work / f"{scene}.prm", work / "overrides.prm"
+    files[0].write_text(text)
+    files[1].write_text(as_prm(overrides))
 
-    command = [EXECUTABLE, str(work / f"{scene}.prm")]
+    command = [EXECUTABLE, *map(str, files)]
     if ranks > 1:
         command = MPIRUN + ["-n", str(ranks)] + command
     process = subprocess.run(

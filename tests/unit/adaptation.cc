@@ -10,6 +10,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
 
 #include <gtest/gtest.h>
@@ -110,7 +111,7 @@ namespace
       , at_quadrature_points(at_quadrature_points)
       , mean_dilatation(mean_dilatation)
     {
-      scene.make_mesh(triangulation);
+      make_mesh(parameters->geometry, triangulation);
     }
 
     /// Move inner points of the box, so that no cell stays a parallelogram.
@@ -144,7 +145,7 @@ namespace
     {
       sampling.reset();
       dof_handler.distribute_dofs(fe);
-      scene.inspect_boundary(triangulation);
+      scene.inspect(triangulation);
       space    = std::make_unique<AdmissibleSpace<dim>>(dof_handler, scene);
       moduli   = std::make_unique<ElasticModuli<dim>>(*space);
       sampling = std::make_unique<StressSampling<dim>>(*space,

@@ -12,7 +12,9 @@
 
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/elasticity.h>
+#include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/loads.h>
+#include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/stress_history.h>
 
 #include <gtest/gtest.h>
@@ -152,7 +154,7 @@ namespace Viscoplastic::Testing
       , at_quadrature_points(at_quadrature_points)
       , mean_dilatation(mean_dilatation)
     {
-      scene.make_mesh(triangulation);
+      make_mesh(parameters->geometry, triangulation);
     }
 
     void
@@ -167,7 +169,7 @@ namespace Viscoplastic::Testing
     void
     set_up()
     {
-      scene.inspect_boundary(triangulation);
+      scene.inspect(triangulation);
       dof_handler.distribute_dofs(fe);
       space    = std::make_unique<AdmissibleSpace<dim>>(dof_handler, scene);
       moduli   = std::make_unique<ElasticModuli<dim>>(*space);
@@ -175,6 +177,7 @@ namespace Viscoplastic::Testing
                                                        *moduli,
                                                        at_quadrature_points,
                                                        mean_dilatation);
+      laws     = std::make_unique<FlowLaws<dim>>(*sampling);
       loads    = std::make_unique<Loads<dim>>(*space);
       if (scene.has_friction())
         face = std::make_unique<ContactFace<dim>>(*space);
@@ -242,6 +245,7 @@ namespace Viscoplastic::Testing
     std::unique_ptr<AdmissibleSpace<dim>> space;
     std::unique_ptr<ElasticModuli<dim>>   moduli;
     std::unique_ptr<StressSampling<dim>>  sampling;
+    std::unique_ptr<FlowLaws<dim>>        laws;
     std::unique_ptr<Loads<dim>>           loads;
     std::unique_ptr<ContactFace<dim>>     face;
   };

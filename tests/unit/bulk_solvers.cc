@@ -527,7 +527,7 @@ namespace
         // Slip belongs to the displacement.
         DistributedVector moved(u);
         moved -= scenario.start;
-        const auto slips = scenario.face->slips(moved);
+        const auto slips = scenario.face->slips(moved, {});
         for (unsigned int p = 0; p < slips.size(); ++p)
           EXPECT_LT((slips[p] - state.slip[p]).norm(), 1e-11);
         solutions.push_back(u);

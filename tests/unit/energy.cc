@@ -82,15 +82,17 @@ namespace
     for (const bool at_quadrature_points : {false, true})
       for (const bool mean_dilatation : {false, true})
         {
-          Body<dim> body(scene<dim>(), at_quadrature_points, mean_dilatation);
+          Body<dim> body(scene<dim>() +
+                           subsection("Material", "set Law = maxwell"),
+                         at_quadrature_points,
+                         mean_dilatation);
           body.refine_where([](const Point<dim> &x) { return x[0] < 1.; });
           body.set_up();
           const Stress     old_stress = some_stress(1.);
           const Stress     stress     = some_stress(1.8);
           const State<dim> old_state  = homogeneous(body, 0.1, old_stress);
           const State<dim> state      = homogeneous(body, 0.4, stress);
-          const auto       summary =
-            summarise_stress(*body.sampling, old_state, state);
+          const auto summary = summarise_stress(*body.laws, old_state, state);
 
           // Von Mises by its formula in components.
           const double s = 1.8;
@@ -130,7 +132,7 @@ namespace
     body.set_up();
     State<dim> state = homogeneous(body, 0.1, Stress());
     state.z.clear();
-    const auto summary = summarise_stress(*body.sampling, state, state);
+    const auto summary = summarise_stress(*body.laws, state, state);
     EXPECT_EQ(summary.irreversible_energy, 0.);
     EXPECT_EQ(summary.viscous_dissipation, 0.);
     Stress strain;
@@ -157,7 +159,7 @@ namespace
     for (std::size_t c = 0; c < body.sampling->n_cells(); ++c)
       state.z.push_back(
         body.sampling->position(c, 0)[0] > middle ? some_stress(1.) : Stress());
-    const auto summary = summarise_stress(*body.sampling, state, state);
+    const auto summary = summarise_stress(*body.laws, state, state);
     EXPECT_NEAR(summary.max_von_mises, von_mises(some_stress(1.)), 1e-14);
     EXPECT_NEAR(summary.mean_von_mises, 0.5 * summary.max_von_mises, 1e-14);
     EXPECT_NEAR(summary.stress_norm, some_stress(1.).norm(), 1e-14);

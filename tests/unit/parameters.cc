@@ -4,6 +4,7 @@
 // which wrong ones are refused.
 
 #include "body.h"
+#include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/time_schedule.h>
 
 #include <cmath>
@@ -222,8 +223,8 @@ namespace
       read_parameters("set Dimension = " + std::to_string(dim) + "\n" + text);
     Scene<dim>                                scene(*parameters);
     parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
-    scene.make_mesh(triangulation);
-    scene.inspect_boundary(triangulation);
+    make_mesh(scene.parameters.geometry, triangulation);
+    scene.inspect(triangulation);
   }
 
 
@@ -295,8 +296,8 @@ namespace
       all_free_but(2, "set Role = contact\nset Friction law = none"));
     Scene<2>                                scene(*parameters);
     parallel::distributed::Triangulation<2> triangulation(MPI_COMM_WORLD);
-    scene.make_mesh(triangulation);
-    scene.inspect_boundary(triangulation);
+    make_mesh(scene.parameters.geometry, triangulation);
+    scene.inspect(triangulation);
     // (0, -1) turned by 30 degrees.
     EXPECT_NEAR(scene.boundary.at(2).normal[0], 0.5, 1e-14);
     EXPECT_NEAR(scene.boundary.at(2).normal[1], -std::sqrt(0.75), 1e-14);

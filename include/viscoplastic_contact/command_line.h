@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// What the arguments of the program ask for.
+  struct CommandLine
+  {
+    enum class Task
+    {
+      guide, // no argument at all
+      help,
+      version,
+      describe,
+      describe_as_markdown,
+      check,
+      run
+    };
+
+    Task                     task = Task::run;
+    std::vector<std::string> files;
+    /// `Section/Entry=value', in their order.
+    std::vector<std::string> overrides;
+    bool                     quiet = false;
+    /// Name of the log file; empty for none.
+    std::string log;
+  };
+
+  /**
+   * Read the arguments, without the program's name. Throws ExcMessage with a
+   * sentence for the user.
+   */
+  CommandLine
+  read_command_line(const std::vector<std::string> &arguments);
+
+  /// What `--help' prints.
+  std::string
+  help_text();
+
+  /// What the program prints without arguments: how to begin.
+  std::string
+  guide_text();
+
+  /// Program, version, revision, and what it was built with.
+  std::string
+  version_text();
+} // namespace Viscoplastic

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/mpi.h>
+
+#include <fstream>
+#include <ostream>
+#include <streambuf>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /**
+   * Where a run speaks: the standard output of rank 0, and a log file on
+   * request. On a terminal there is a status line, too, that changes in place
+   * and makes room for text.
+   */
+  class Console
+  {
+  public:
+    /**
+     * @p quiet leaves the standard output alone, not the log. Throws ExcMessage
+     * if @p log_file, unless empty, cannot be written.
+     */
+    explicit Console(const MPI_Comm     communicator = MPI_COMM_WORLD,
+                     const bool         quiet        = false,
+                     const std::string &log_file     = "");
+
+    /// Leaves the last status line where it is.
+    ~Console();
+
+    Console(const Console &) = delete;
+    Console &
+    operator=(const Console &) = delete;
+
+    /// Text goes to the standard output and the log; on other ranks nowhere.
+    std::ostream &
+    stream()
+    {
+      return everywhere;
+    }
+
+    /// Text goes to the log alone.
+    std::ostream &
+    log()
+    {
+      return log_file;
+    }
+
+    /**
+     * Whether there is a status line: on a terminal that is not the one of
+     * mpirun, which gives every rank a terminal even if it writes to a file
+     * itself.
+     */
+    bool
+    has_status() const
+    {
+      return is_terminal;
+    }
+
+    /// Columns of the terminal.
+    unsigned int
+    width() const;
+
+    /// Replace the status line.
+    void
+    show_status(const std::string &line);
+
+    /// Print a sentence that the user should not overlook; it is repeated at
+    /// the end.
+    void
+    remark(const std::string &sentence);
+
+    /// In their order.
+    const std::vector<std::string> &
+    remarks() const
+    {
+      return all_remarks;
+    }
+
+  private:
+    /// Passes characters on to the standard output and to the log.
+    class Tee : public std::streambuf
+    {
+    public:
+      explicit Tee(Console &console)
+        : console(console)
+      {}
+
+    protected:
+      int
+      overflow(int c) override;
+
+      std::streamsize
+      xsputn(const char *text, std::streamsize n) override;
+
+      int
+      sync() override;
+
+    private:
+      Console &console;
+    };
+
+    const bool               speaks;
+    const bool               is_terminal;
+    std::ofstream            log_file;
+    Tee                      tee;
+    std::ostream             everywhere;
+    bool                     status_is_shown = false;
+    std::vector<std::string> all_remarks;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/stress_history.h>
+#include <viscoplastic_contact/viscoplastic_law.h>
+
+#include <array>
+#include <map>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Which law G each owned cell has, and what the parameters of the law are at
+   * each of its samples. Parameters that do not change are evaluated once.
+   */
+  template <int dim>
+  class FlowLaws
+  {
+  public:
+    /// Throws ExcMessage if a parameter is out of range somewhere, or a law
+    /// does not go with the elastic tensor of a cell.
+    explicit FlowLaws(const StressSampling<dim> &sampling);
+
+    const StressSampling<dim> &sampling;
+
+    /// Whether any material has a law, and one with a cap on the stress.
+    /// Known on all ranks.
+    bool any, any_cap, any_own_energy;
+
+    /// Evaluates time-dependent parameters at one time.
+    class AtTime
+    {
+    public:
+      /// Null where the cell is elastic.
+      const ViscoplasticLaw *
+      law(const std::size_t cell) const
+      {
+        return laws
+          .materials[laws.material_of_cell.empty() ?
+                       0 :
+                       laws.material_of_cell[cell]]
+          .law;
+      }
+
+      /// For law(cell) at one of the cell's samples.
+      LawPoint
+      point(const std::size_t cell, const unsigned int s) const;
+
+    private:
+      friend class FlowLaws;
+      AtTime(const FlowLaws &laws, const double t);
+
+      const FlowLaws       &laws;
+      const double          t;
+      std::vector<LawPoint> uniform; // a material
+    };
+
+    AtTime
+    at(const double t) const
+    {
+      return AtTime(*this, t);
+    }
+
+  private:
+    struct Entry
+    {
+      const ViscoplasticLaw *law;
+      bool                   varies_in_space, varies_in_time;
+    };
+
+    std::vector<Entry> materials;
+    /// Index into materials; empty if there is but one.
+    std::vector<unsigned char> material_of_cell;
+    /// By sample; empty unless parameters of some law depend on position but
+    /// not on time.
+    std::vector<std::array<double, 6>> parameters;
+  };
+
+
+  /// Forward Euler for z, (3.19), and what the step meant.
+  template <int dim>
+  struct FlowStep
+  {
+    IrreversibleStress z;
+    /// The largest relaxation rate r; forward Euler is stable for k <= 2/r.
+    /// Collective result.
+    double relaxation_rate;
+    /// Volume of the samples with stresses beyond the cap of their law.
+    /// Collective result.
+    double capped_volume;
+  };
+
+  /**
+   * z_n = z_{n-1} + k G(t_{n-1}, sigma_{n-1}, eps_{n-1}), one evaluation a
+   * sample. Collective.
+   */
+  template <int dim>
+  FlowStep<dim>
+  advance_irreversible_stress(const FlowLaws<dim>      &laws,
+                              const DistributedVector  &ghosted_u,
+                              const IrreversibleStress &z,
+                              const double              t,
+                              const double              k);
+} // namespace Viscoplastic

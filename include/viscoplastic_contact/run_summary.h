@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
+
+#include <map>
+#include <optional>
+#include <ostream>
+#include <string>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /// The largest value over a run, and when it was reached.
+  struct Largest
+  {
+    double value = 0., t = 0.;
+
+    void
+    update(const double new_value, const double new_t)
+    {
+      if (new_value > value)
+        {
+          value = new_value;
+          t     = new_t;
+        }
+    }
+  };
+
+
+
+  /**
+   * The quantities of interest for the closing words of a run, as
+   * doc/results.md defines them. Absent: what the scene does not have.
+   */
+  template <int dim>
+  struct RunSummary
+  {
+    // Of the last step.
+    double                                       t = 0.;
+    std::optional<Tensor<1, dim>>                friction_force;
+    std::map<types::boundary_id, Tensor<1, dim>> reactions;
+    double stored_energy = 0., external_work = 0., energy_balance_defect = 0.;
+    std::optional<double> viscous_dissipation, friction_dissipation,
+      adaptation_energy, error_estimate;
+
+    Largest displacement, von_mises, slip_area, capped_volume;
+    /// Of all friction points.
+    double friction_area = 0.;
+
+    void
+    print(std::ostream &out) const;
+  };
+
+
+
+  /**
+   * Where the time of a run went.
+   *
+   * @param seconds by phase, as ViscoplasticContact::timer names them
+   * @param first_set_up of the set-up; later ones are part of the adaptation
+   * @param total of the run
+   * @param has_friction whether the contact solver has friction points
+   */
+  void
+  print_seconds(std::ostream                        &out,
+                const std::map<std::string, double> &seconds,
+                const double                         first_set_up,
+                const double                         total,
+                const bool                           has_friction);
+} // namespace Viscoplastic

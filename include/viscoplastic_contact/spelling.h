@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * The candidate that @p name was probably meant to be; empty if none is
+   * near. Case, blanks and punctuation do not count, and the beginning of a
+   * long name is near to it.
+   */
+  std::string
+  nearest_name(const std::string              &name,
+               const std::vector<std::string> &candidates);
+
+  /// A text from outside as part of a sentence: on one line, without control
+  /// characters, and shortened if it is long.
+  std::string
+  excerpt(const std::string &text);
+
+  /// `a, b, c'; the first @p n_max of them if there are more.
+  std::string
+  enumeration(const std::vector<std::string> &names,
+              const unsigned int              n_max = 20);
+} // namespace Viscoplastic

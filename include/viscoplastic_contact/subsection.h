@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /// Stands in a subsection of a handler for the life of the object, and leaves
+  /// it also when something is refused there.
+  class Subsection
+  {
+  public:
+    Subsection(ParameterHandler &prm, const std::string &name)
+      : prm(prm)
+    {
+      prm.enter_subsection(name);
+    }
+
+    ~Subsection()
+    {
+      prm.leave_subsection();
+    }
+
+    Subsection(const Subsection &) = delete;
+    Subsection &
+    operator=(const Subsection &) = delete;
+
+  private:
+    ParameterHandler &prm;
+  };
+} // namespace Viscoplastic

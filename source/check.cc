@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/initial_state.h>
+#include <viscoplastic_contact/viscoplastic_contact.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /**
+     * Memory in bytes that matrix, solver and vectors take beyond mesh and
+     * spaces: fitted to measurements (doc/solvers.md), good to a factor of
+     * 1.5 or so.
+     */
+    double
+    solver_memory(const unsigned int dim,
+                  const double       n_dofs,
+                  const double       n_face_dofs,
+                  const bool         direct)
+    {
+      // 12 bytes an entry, 9 or 27 neighbours a node; some 20 vectors.
+      const double matrix  = n_dofs * (dim == 2 ? 18. : 81.) * 12.;
+      const double vectors = n_dofs * 20. * 8.;
+      if (!direct) // a second matrix without the prescribed rows, and ML
+        return 2. * matrix + vectors + n_dofs * (dim == 2 ? 850. : 2700.);
+      // Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
+      const double factor = dim == 2 ?
+                              n_dofs * 78. * std::log2(std::max(n_dofs, 2.)) :
+                              n_dofs * 190. * std::cbrt(n_dofs);
+      return matrix + vectors + factor + 2. * 8. * n_face_dofs * n_face_dofs;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check()
+  {
+    make_mesh();
+    dof_handler.distribute_dofs(fe);
+    discretisation = std::make_unique<Discretisation>(dof_handler, scene);
+    const Discretisation &d = *discretisation;
+    announce_mesh();
+    for (const Point<dim> &x : scene.output_points)
+      probes.emplace_back(d.space, x);
+
+    // The initial data, and where they need no solution, the first step.
+    state =
+      make_initial_state(d.sampling, parameters.initial_state.equilibrate);
+    if (!parameters.initial_state.equilibrate)
+      check_compatibility(d.loads.assemble(0.));
+    const unsigned int n_steps = scene.schedule.n_steps();
+    if (scene.has_viscosity())
+      {
+        const FlowStep<dim> first = flow(state, scene.schedule.step(1));
+        if (first.relaxation_rate > 0.)
+          out << "Stability limit 2/r of the initial state: "
+              << 2. / first.relaxation_rate << '\n';
+      }
+
+    // The data of later times, of at most a hundred steps.
+    const unsigned int stride = (n_steps + 99) / 100;
+    DistributedVector  u      = d.space.owned_vector();
+    for (unsigned int i = 1; i < n_steps + stride; i += stride)
+      {
+        const TimeStep step = scene.schedule.step(std::min(i, n_steps));
+        d.loads.assemble(step.t);
+        d.space.set_prescribed(step.t, u);
+        if (d.face)
+          {
+            d.face->bounds(step.t);
+            d.face->foundation_step(step.t_old, step.t);
+          }
+      }
+
+    const unsigned int n_face_dofs = d.face ? d.face->layout().n_dofs() : 0;
+    const bool         direct      = is_direct(d.space,
+                                  n_face_dofs,
+                                  parameters.solver.linear_solver,
+                                  d.moduli.max_poissons_ratio(),
+                                  d.n_solves);
+    Utilities::System::MemoryStats now;
+    Utilities::System::get_memory_stats(now);
+    const double bytes =
+      Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
+                          communicator) +
+      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct);
+    out << "Linear solver: "
+        << (direct ? "direct (CHOLMOD)" : "conjugate gradients, multigrid (ML)")
+        << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()
+        << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
+        << (scene.is_adaptive() ? " on the initial mesh" : "")
+        << "\nThe scene is valid." << std::endl;
+  }
+
+
+
+  template void
+  ViscoplasticContact<2>::check();
+  template void
+  ViscoplasticContact<3>::check();
+} // namespace Viscoplastic

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/flow_laws.h>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The position of a sample; in 2D, z = 0.
+    template <int dim>
+    Point<3>
+    position(const StressSampling<dim> &sampling,
+             const std::size_t          cell,
+             const unsigned int         s)
+    {
+      Point<3> x;
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = sampling.position(cell, s)[d];
+      return x;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  FlowLaws<dim>::FlowLaws(const StressSampling<dim> &sampling)
+    : sampling(sampling)
+    , any(false)
+    , any_cap(false)
+    , any_own_energy(false)
+  {
+    const Scene<dim> &scene         = sampling.space.scene;
+    bool              any_to_sample = false;
+    for (const auto &material : scene.materials)
+      {
+        const ViscoplasticLaw *law = material->law.get();
+        materials.push_back({law,
+                             law && law->depends_on_position(),
+                             law && law->depends_on_time()});
+        any |= law != nullptr;
+        any_cap |= law && law->has_cap();
+        any_own_energy |= law && law->has_own_energy();
+        any_to_sample |=
+          materials.back().varies_in_space && !materials.back().varies_in_time;
+      }
+    if (!any)
+      return;
+
+    if (materials.size() > 1)
+      {
+        std::map<const Material<dim> *, unsigned int> index;
+        for (const auto &material : scene.materials)
+          index.emplace(material.get(), index.size());
+        for (const auto &cell :
+             sampling.space.dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            material_of_cell.push_back(
+              index.at(&scene.material(cell->material_id())));
+      }
+
+    const AtTime start = at(0.);
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      for (unsigned int s = 0; s < sampling.n_samples; ++s)
+        {
+          const ViscoplasticLaw *law = start.law(c);
+          if (any_to_sample)
+            parameters.push_back(
+              law ? law->point(position(sampling, c, s), 0.).parameters :
+                    std::array<double, 6>());
+          if (law && (s == 0 || any_to_sample))
+            law->check(sampling.moduli(c), start.point(c, s));
+        }
+  }
+
+
+
+  template <int dim>
+  FlowLaws<dim>::AtTime::AtTime(const FlowLaws &laws, const double t)
+    : laws(laws)
+    , t(t)
+  {
+    for (const Entry &entry : laws.materials)
+      uniform.push_back(entry.law && !entry.varies_in_space ?
+                          entry.law->point(Point<3>(), t) :
+                          LawPoint());
+  }
+
+
+
+  template <int dim>
+  LawPoint
+  FlowLaws<dim>::AtTime::point(const std::size_t  cell,
+                               const unsigned int s) const
+  {
+    const unsigned int m =
+      laws.material_of_cell.empty() ? 0 : laws.material_of_cell[cell];
+    const Entry   &entry = laws.materials[m];
+    const Point<3> x     = position(laws.sampling, cell, s);
+    if (entry.varies_in_space && entry.varies_in_time)
+      return entry.law->point(x, t);
+    LawPoint point = uniform[m];
+    if (entry.varies_in_space)
+      point.parameters = laws.parameters[cell * laws.sampling.n_samples + s];
+    point.x = x;
+    point.t = t;
+    return point;
+  }
+
+
+
+  template <int dim>
+  FlowStep<dim>
+  advance_irreversible_stress(const FlowLaws<dim>      &laws,
+                              const DistributedVector  &ghosted_u,
+                              const IrreversibleStress &z,
+                              const double              t,
+                              const double              k)
+  {
+    const StressSampling<dim>         &sampling = laws.sampling;
+    const auto                         now      = laws.at(t);
+    FlowStep<dim>                      result{z, 0., 0.};
+    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      {
+        const ViscoplasticLaw *law = now.law(c);
+        if (law == nullptr)
+          continue;
+        const Stiffness &stiffness = sampling.moduli(c);
+        sampling.strains(c, ghosted_u.begin(), strain.data());
+        for (unsigned int s = 0; s < sampling.n_samples; ++s)
+          {
+            const std::size_t           i     = c * sampling.n_samples + s;
+            const LawPoint              point = now.point(c, s);
+            const SymmetricTensor<2, 3> stress =
+              stiffness.stress(strain[s]) + z[i];
+            result.z[i] += k * law->rate(stress, strain[s], stiffness, point);
+            result.relaxation_rate = std::max(
+              result.relaxation_rate,
+              law->relaxation_rate(stress, strain[s], stiffness, point));
+            if (law->is_beyond_cap(stress, point))
+              result.capped_volume += sampling.weight(c, s);
+          }
+      }
+    const MPI_Comm comm    = sampling.space.communicator;
+    result.relaxation_rate = Utilities::MPI::max(result.relaxation_rate, comm);
+    if (laws.any_cap)
+      result.capped_volume = Utilities::MPI::sum(result.capped_volume, comm);
+    return result;
+  }
+
+
+
+  template class FlowLaws<2>;
+  template class FlowLaws<3>;
+  template FlowStep<2>
+  advance_irreversible_stress<2>(const FlowLaws<2> &,
+                                 const DistributedVector &,
+                                 const IrreversibleStress &,
+                                 const double,
+                                 const double);
+  template FlowStep<3>
+  advance_irreversible_stress<3>(const FlowLaws<3> &,
+                                 const DistributedVector &,
+                                 const IrreversibleStress &,
+                                 const double,
+                                 const double);
+} // namespace Viscoplastic

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+#include <viscoplastic_contact/viscoplastic_law.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  LawDescription
+  parsed_description();
+
+  namespace
+  {
+    /**
+     * G = -E (strain rate), strain rate = 3/2 F f s/sigma_eq, where s = dev
+     * sigma, F is a function of position and time, and the equivalent strain
+     * rate f(sigma_eq, p, eps_eq, t) is given as an expression of
+     *
+     *     sigma_eq = sqrt(3/2) |s|,   p = -tr(sigma)/3,
+     *     eps_eq = sqrt(2/3) |d|,     d = dev(eps - E^-1 sigma).
+     */
+    class Parsed : public ViscoplasticLaw
+    {
+    public:
+      explicit Parsed(const LawSection &section)
+        : ViscoplasticLaw(
+            {{section, "Factor", LawParameter::Range::non_negative}})
+        , f(section.prm.get("Strain rate"),
+            section.path + "/Strain rate",
+            "sigma_eq,p,eps_eq")
+        , name(section.path + "/Strain rate")
+      {
+        // What has no value at rest has none at the start of most runs.
+        strain_rate(Point<3>(), 0.);
+      }
+
+      bool
+      depends_on_time() const override
+      {
+        return f.depends_on_time() || ViscoplasticLaw::depends_on_time();
+      }
+
+      SymmetricTensor<2, 3>
+      rate(const SymmetricTensor<2, 3> &stress,
+           const SymmetricTensor<2, 3> &strain,
+           const Stiffness             &stiffness,
+           const LawPoint              &point) const override
+      {
+        const Point<3> state = invariants(stress, strain, stiffness);
+        // Without a direction there is no flow.
+        if (state[0] == 0)
+          return {};
+        return stiffness.stress(-1.5 * point.parameters[factor] *
+                                strain_rate(state, point.t) / state[0] *
+                                deviator(stress));
+      }
+
+      Tangents
+      tangents(const SymmetricTensor<2, 3> &stress,
+               const SymmetricTensor<2, 3> &strain,
+               const Stiffness             &stiffness,
+               const LawPoint              &point) const override
+      {
+        const SymmetricTensor<2, 3> s = deviator(stress);
+        const Point<3> state          = invariants(stress, strain, stiffness);
+        const Slopes   slope          = slopes(state, stiffness, point);
+
+        SymmetricTensor<4, 3> by_stress =
+          flow_tangent(stress, slope.secant, slope.by[0]);
+        SymmetricTensor<4, 3> by_strain;
+        if (s.norm() > 0)
+          {
+            const SymmetricTensor<2, 3> e = s / s.norm();
+            by_stress -= std::sqrt(1.5) / 3. * slope.by[1] *
+                         outer_product(e, unit_symmetric_tensor<3>());
+
+            const SymmetricTensor<2, 3> d =
+              deviator(strain - stiffness.strain(stress));
+            if (d.norm() > 0 && slope.by[2] != 0)
+              {
+                const SymmetricTensor<2, 3> n = d / d.norm();
+                by_stress -=
+                  slope.by[2] * outer_product(e, stiffness.strain(n));
+                by_strain = slope.by[2] * outer_product(e, n);
+              }
+          }
+
+        const SymmetricTensor<4, 3> minus_E = -1. * stiffness.tensor();
+        return {minus_E * by_stress, minus_E * by_strain};
+      }
+
+      double
+      relaxation_rate(const SymmetricTensor<2, 3> &stress,
+                      const SymmetricTensor<2, 3> &strain,
+                      const Stiffness             &stiffness,
+                      const LawPoint              &point) const override
+      {
+        const Slopes slope =
+          slopes(invariants(stress, strain, stiffness), stiffness, point);
+        const double largest = stiffness.largest_deviatoric_eigenvalue();
+
+        // Hardening is a term of rank one, bounded in the norm of E^-1 as for
+        // perzyna; so is that of pressure, which deviatoric flow does not
+        // change unless the body is anisotropic.
+        double result =
+          1.5 * largest * std::max(slope.by[0], slope.secant) +
+          std::fabs(slope.by[2]) *
+            std::sqrt(largest / stiffness.smallest_deviatoric_eigenvalue());
+        if (!stiffness.is_isotropic())
+          result +=
+            std::sqrt(1.5) / 3. * std::fabs(slope.by[1]) *
+            std::sqrt(largest *
+                      trace(stiffness.strain(unit_symmetric_tensor<3>())));
+        return result;
+      }
+
+      bool
+      deviatoric_flow() const override
+      {
+        return true;
+      }
+
+    private:
+      enum
+      {
+        factor
+      };
+
+      const Expression<3> f;
+      const std::string   name;
+
+      /// sigma_eq, p, eps_eq.
+      static Point<3>
+      invariants(const SymmetricTensor<2, 3> &stress,
+                 const SymmetricTensor<2, 3> &strain,
+                 const Stiffness             &stiffness)
+      {
+        return {von_mises(stress),
+                -trace(stress) / 3,
+                std::sqrt(2. / 3.) *
+                  deviator(strain - stiffness.strain(stress)).norm()};
+      }
+
+      double
+      strain_rate(const Point<3> &state, const double t) const
+      {
+        const double value = f.value(state, t);
+        if (!(value >= 0))
+          {
+            std::ostringstream message;
+            message << "'" << name << "' is " << value
+                    << " at sigma_eq = " << state[0] << ", p = " << state[1]
+                    << ", eps_eq = " << state[2] << ", t = " << t
+                    << "; it must be zero or positive, since flow against the "
+                       "stress would create energy.";
+            AssertThrow(false, ExcMessage(message.str()));
+          }
+        return value;
+      }
+
+      /// F f/sigma_eq, and F times the derivatives of f.
+      struct Slopes
+      {
+        double                secant = 0.;
+        std::array<double, 3> by{};
+      };
+
+      Slopes
+      slopes(const Point<3>  &state,
+             const Stiffness &stiffness,
+             const LawPoint  &point) const
+      {
+        // Steps that balance truncation and rounding of central differences,
+        // not below what is a small stress or strain for this body.
+        const Point<3> floor(1e-6 * stiffness.shear_modulus(),
+                             1e-6 * stiffness.shear_modulus(),
+                             1e-6);
+        Slopes         result;
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            const double h = 1e-5 * std::max(std::fabs(state[i]), floor[i]);
+            Point<3>     left(state), right(state);
+            right[i] += h;
+            // Equivalent stress and strain are not negative.
+            left[i] = i == 1 ? state[i] - h : std::max(0., state[i] - h);
+            result.by[i] =
+              point.parameters[factor] *
+              (strain_rate(right, point.t) - strain_rate(left, point.t)) /
+              (right[i] - left[i]);
+          }
+        result.secant =
+          state[0] > 0 ?
+            point.parameters[factor] * strain_rate(state, point.t) / state[0] :
+            result.by[0];
+        return result;
+      }
+    };
+  } // namespace
+
+
+
+  LawDescription
+  parsed_description()
+  {
+    LawDescription law;
+    law.name = "parsed";
+    law.help =
+      "G = -E (3/2) F f dev(sigma)/sigma_eq with an equivalent strain rate "
+      "f(sigma_eq, p, eps_eq, t) >= 0 of your own, the `Strain rate' in 1/s, "
+      "and a `Factor' F of position and t. sigma_eq = sqrt(3/2) |dev(sigma)| "
+      "is the von Mises stress and p = -tr(sigma)/3 the pressure, both in Pa; "
+      "eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| is the present equivalent "
+      "viscoplastic strain. Without deviatoric stress there is no flow. The "
+      "theory asks for a Lipschitz function, which is yours to choose: let f "
+      "vanish at sigma_eq = 0 and limit powers, as in "
+      "1e-3*min(sigma_eq, 2e7)^3. Examples: 1e-21*sigma_eq^2*exp(-eps_eq/0.1) "
+      "for primary creep, 1e-12*max(0, sigma_eq - 1e6 - 0.5*p) for flow beyond "
+      "a yield stress that grows with pressure. Derivatives are taken by "
+      "differences. Expressions take more time than the other laws.";
+    law.declare = [](ParameterHandler &prm) {
+      prm.declare_entry("Strain rate",
+                        "sigma_eq",
+                        Patterns::Anything(),
+                        "f >= 0, an expression of sigma_eq, p, eps_eq and t. "
+                        "Unit: 1/time.");
+      prm.declare_entry("Factor",
+                        "1",
+                        Patterns::Anything(),
+                        "F >= 0, an expression of position and t, without "
+                        "unit.");
+    };
+    law.make = [](const LawSection &section) {
+      return std::make_unique<Parsed>(section);
+    };
+    return law;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/progress.h>
+
+#include <cmath>
+#include <cstdint>
+#include <iomanip>
+#include <sstream>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::string
+    number(const double value, const int digits)
+    {
+      std::ostringstream text;
+      text << std::setprecision(digits) << value;
+      return text.str();
+    }
+
+
+
+    std::string
+    padded(const unsigned int n, const unsigned int like)
+    {
+      std::ostringstream text;
+      text << std::setw(static_cast<int>(std::to_string(like).size())) << n;
+      return text.str();
+    }
+
+
+
+    /// The step as a line of at most @p width characters: what matters least
+    /// is left out first.
+    std::string
+    describe(const StepProgress &step,
+             const unsigned int  n_steps,
+             const double        elapsed,
+             const double        left,
+             const std::size_t   width)
+    {
+      // In the order of appearance, with the order of omission.
+      std::vector<std::pair<std::string, unsigned int>> parts;
+      parts.emplace_back("Step " + padded(step.n, n_steps) + '/' +
+                           std::to_string(n_steps),
+                         0);
+      parts.emplace_back("t = " + number(step.t, 5), 0);
+      parts.emplace_back("k = " + number(step.k, 3), 2);
+      parts.emplace_back(
+        "cells " + std::to_string(static_cast<std::uint64_t>(step.n_cells)), 3);
+      if (step.contact_iterations)
+        parts.emplace_back("contact iterations " +
+                             std::to_string(*step.contact_iterations),
+                           4);
+      if (step.slipping)
+        parts.emplace_back(
+          "slipping " + std::to_string(std::lround(100. * *step.slipping)) +
+            " %",
+          6);
+      if (step.error_estimate)
+        parts.emplace_back("error estimate " + number(*step.error_estimate, 3),
+                           5);
+      parts.emplace_back("elapsed " + duration(elapsed), 1);
+      parts.emplace_back("left " + duration(left), 7);
+
+      std::string line;
+      for (unsigned int omitted = 0; omitted <= 7; ++omitted)
+        {
+          line.clear();
+          for (const auto &[text, order] : parts)
+            if (order == 0 || order > omitted)
+              line += (line.empty() ? "" : "  ") + text;
+          if (line.size() <= width)
+            break;
+        }
+      return line;
+    }
+  } // namespace
+
+
+
+  void
+  RemainingTime::add_step(const double seconds, const double n_cells)
+  {
+    const double memory = 0.9;
+    weighted_seconds    = memory * weighted_seconds + seconds;
+    weighted_cells      = memory * weighted_cells + n_cells;
+  }
+
+
+
+  double
+  RemainingTime::seconds(const unsigned int n_steps, const double n_cells) const
+  {
+    return weighted_cells > 0. ?
+             n_steps * n_cells * weighted_seconds / weighted_cells :
+             0.;
+  }
+
+
+
+  Progress::Progress(Console &console, const unsigned int n_steps)
+    : console(console)
+    , n_steps(n_steps)
+  {}
+
+
+
+  void
+  Progress::report(const StepProgress &step, const double elapsed)
+  {
+    if (step.n > 0)
+      remaining.add_step(elapsed - last_elapsed, step.n_cells);
+    last_elapsed = elapsed;
+    if (step.n == 0)
+      return;
+    const double left    = remaining.seconds(n_steps - step.n, step.n_cells);
+    const bool   is_last = step.n == n_steps;
+
+    // A line for each of max_lines equal parts of the run.
+    const std::uint64_t part = std::uint64_t(step.n) * max_lines / n_steps,
+                        last_part =
+                          std::uint64_t(step.n - 1) * max_lines / n_steps;
+    if (step.n == 1 || is_last || part > last_part)
+      {
+        const std::string line =
+          describe(step, n_steps, elapsed, left, std::string::npos);
+        if (!console.has_status() || is_last)
+          console.stream() << line << std::endl;
+        else
+          console.log() << line << std::endl;
+      }
+    // Ten changes a second are enough.
+    if (console.has_status() && !is_last && elapsed - last_shown >= 0.1)
+      {
+        console.show_status(
+          describe(step, n_steps, elapsed, left, console.width() - 1));
+        last_shown = elapsed;
+      }
+  }
+
+
+
+  std::string
+  duration(const double seconds)
+  {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(0);
+    if (seconds < 100.)
+      text << seconds << " s";
+    else if (seconds < 6000.)
+      text << seconds / 60. << " min";
+    else if (seconds < 172800.)
+      text << std::setprecision(1) << seconds / 3600. << " h";
+    else
+      text << std::setprecision(1) << seconds / 86400. << " d";
+    return text.str();
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contact data of real scenes: moving foundations, glued contact, pressures
+that change their sign.
+
+A foundation that moves is tested by relativity: moving the body the other way
+over a foundation at rest must give the same stresses, forces and energies at
+every step, and displacements that differ by the motion.
+"""
+
+import unittest
+
+import numpy as np
+
+from harness import TestCase, main, run
+
+SAME = (
+    "stick_area",
+    "slip_area",
+    "stored_energy",
+    "friction_dissipation",
+    "external_work",
+    "energy_balance_defect",
+    "max_von_mises",
+    "stress_norm",
+)
+
+
+class Relativity(TestCase):
+    def check(self, scene, top, motion, w, vectors, **options):
+        """motion: expression of w(t), components; w: the same in Python."""
+        overrides = options.pop("overrides", {})
+        negative = "; ".join(f"-({part})" for part in motion.split(";"))
+        moving = run(scene, overrides, **options)
+        resting = run(
+            scene,
+            {
+                **overrides,
+                f"Boundary {vectors['contact']}/Foundation motion": "",
+                f"Boundary {top}/Displacement": negative,
+            },
+            **options,
+        )
+        self.check_identities(moving)
+        self.assertGreater(moving["slip_area"].max(), 0)
+        self.assertGreater(moving["friction_dissipation"][-1], 0)
+        for name in SAME:
+            scale = np.abs(resting[name]).max()
+            self.assertClose(
+                moving[name], resting[name], absolute=1e-7 * scale, what=name
+            )
+        for name in ("friction_force", f"reaction_{top}"):
+            scale = np.abs(resting.vector(name)).max()
+            self.assertClose(
+                moving.vector(name),
+                resting.vector(name),
+                absolute=1e-7 * scale,
+                what=name,
+            )
+        path = np.array([w(t) for t in moving["t"]])
+        self.assertClose(
+            moving.vector("point0"),
+            resting.vector("point0") + path,
+            absolute=1e-8 * np.abs(path).max(),
+            what="displacement",
+        )
+        # fields of the face: slip is relative, displacement is not
+        a, b = moving.fields("contact"), resting.fields("contact")
+        for name in ("slip", "slip_rate", "traction", "stick"):
+            self.assertClose(
+                a.point_data[name][a.nodes()],
+                b.point_data[name][b.nodes()],
+                absolute=2e-6 * max(np.abs(b.point_data[name]).max(), 1e-3),
+                what=name,
+            )
+        return moving
+
+    TWO = "0.4*min(t, 2 - t); 0"
+
+    @staticmethod
+    def two(t):
+        return [0.4 * min(t, 2 - t), 0]
+
+    def test_conveyor(self):
+        """Coulomb, the belt comes back: the hysteresis of both directions."""
+        moving = self.check(
+            "conveyor_2d", 3, self.TWO, self.two, {"contact": 2}
+        )
+        force = moving["friction_force_x"]
+        # The belt drags the body to the right: lambda, the force on the belt,
+        # points left first, and right when it returns.
+        self.assertLess(force.min(), -0.05)
+        self.assertGreater(force.max(), 0.05)
+        # full slip: the whole of int mu |S| = 0.3*0.2*(2 + 1) = 0.18
+        self.assertClose(force.min(), -0.18, absolute=1e-9)
+
+    def test_conveyor_on_an_adaptive_mesh(self):
+        self.check(
+            "conveyor_2d",
+            3,
+            self.TWO,
+            self.two,
+            {"contact": 2},
+            overrides={
+                "Mesh refinement/Strategy": "residual",
+                "Mesh refinement/Every n steps": 4,
+                "Mesh refinement/Maximal level": 2,
+                "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+            },
+        )
+
+    def test_conveyor_on_three_ranks(self):
+        one = run("conveyor_2d")
+        three = run("conveyor_2d", ranks=3)
+        for name in SAME[2:] + ("friction_force_x", "point0_x"):
+            scale = np.abs(one[name]).max()
+            self.assertClose(
+                three[name], one[name], absolute=1e-6 * scale, what=name
+            )
+
+    def test_plate_on_a_circle(self):
+        moving = self.check(
+            "conveyor_3d",
+            5,
+            "0.2*(1 - cos(pi*t)); 0.2*sin(pi*t); 0",
+            lambda t: [0.2 * (1 - np.cos(np.pi * t)), 0.2 * np.sin(np.pi * t), 0],
+            {"contact": 4},
+        )
+        # lambda pulls against the velocity of the plate, which turns
+        force = moving.vector("friction_force")[-1, :2]
+        velocity = np.array([np.sin(1.5 * np.pi), np.cos(1.5 * np.pi)])
+        self.assertLess(
+            force @ velocity, -0.8 * np.linalg.norm(force)
+        )
+
+    def test_oblique_face(self):
+        """Turned by 30 degrees, the motion with it; its normal part, here a
+        large one, does not count."""
+        c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+        straight = run("conveyor_2d")
+        turned = run(
+            "conveyor_2d",
+            {
+                "Geometry/Rotation angle": 30,
+                "Boundary 2/Normal stress":
+                    f"-0.2*(1 + 0.5*({c:.17g}*x + {s:.17g}*y))*min(5*t, 1)",
+                "Boundary 2/Foundation motion":
+                    f"{c:.17g}*0.4*min(t, 2 - t) + {s:.17g}*7*t; "
+                    f"{s:.17g}*0.4*min(t, 2 - t) - {c:.17g}*7*t",
+                "Output/Points": f"0, 0; {2 * c:.17g}, {2 * s:.17g}",
+            },
+        )
+        for name in SAME:
+            scale = np.abs(straight[name]).max()
+            self.assertClose(
+                turned[name], straight[name], absolute=1e-7 * scale, what=name
+            )
+
+    def test_motion_of_nothing(self):
+        """w = 0, and a constant w, are foundations at rest."""
+        rest = run("conveyor_2d", {"Boundary 2/Foundation motion": ""})
+        self.assertNotIn("tangential direction", rest.stdout)
+        for motion in ("0; 0", "0.3; 5"):
+            same = run("conveyor_2d", {"Boundary 2/Foundation motion": motion})
+            for name in SAME + ("friction_force_x",):
+                self.assertClose(same[name], rest[name], what=name)
+
+
+class Glued(TestCase):
+    """No slip whatever the force."""
+
+    GLUED = {
+        "Boundary 2/Friction law": "glued",
+        "Boundary 2/Foundation motion": "",
+        "Output/Points": "0, 0.5; 2, 0.5",
+    }
+    PUSH = {
+        "Boundary 0/Role": "traction",
+        "Boundary 0/Traction": "0.3*t; 0.1*t",
+        "Time/Phases": "1: 8",
+    }
+
+    def same(self, a, b):
+        for name in ("stored_energy", "max_von_mises", "stress_norm",
+                     "external_work", "viscous_dissipation",
+                     "point0_x", "point0_y", "point1_x"):
+            scale = np.abs(b[name]).max()
+            self.assertClose(a[name], b[name], absolute=1e-8 * scale, what=name)
+
+    def test_at_rest_it_is_clamped(self):
+        glued = run("conveyor_2d", {**self.GLUED, **self.PUSH})
+        clamped = run(
+            "conveyor_2d",
+            {**self.GLUED, **self.PUSH, "Boundary 2/Role": "clamped"},
+        )
+        self.same(glued, clamped)
+        # its force is a reaction, and nothing of friction is there
+        self.assertNotIn("slip_area", glued.statistics)
+        self.assertClose(
+            glued.vector("reaction_2"), clamped.vector("reaction_2"), absolute=1e-9
+        )
+        self.assertIn("glued contact on boundary 2", glued.stdout)
+
+    def test_it_is_the_limit_of_friction(self):
+        """Tresca with a bound beyond all forces, except at the corners of the
+        face, which the displacement leaves alike."""
+        glued = run("conveyor_2d", {**self.GLUED, **self.PUSH})
+        tresca = run(
+            "conveyor_2d",
+            {
+                **self.GLUED,
+                **self.PUSH,
+                "Boundary 2/Friction law": "tresca",
+                "Boundary 2/Friction bound": 1e6,
+            },
+        )
+        self.same(glued, tresca)
+        self.assertClose(
+            glued["reaction_2_x"], -tresca["friction_force_x"], absolute=1e-9
+        )
+
+    def test_it_goes_with_the_foundation(self):
+        """In both directions, oblique, as if the displacement were given."""
+        overrides = {
+            "Geometry/Rotation angle": 30,
+            "Output/Points": "0, 0; 1, 1",
+        }
+        c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+        glued = run(
+            "conveyor_2d",
+            {
+                **overrides,
+                "Boundary 2/Friction law": "glued",
+                "Boundary 2/Foundation displacement": "-0.1*t",
+                "Boundary 2/Foundation motion": f"{c:.17g}*0.2*t; {s:.17g}*0.2*t",
+            },
+        )
+        # nu = (s, -c)
+        given = run(
+            "conveyor_2d",
+            {
+                **overrides,
+                "Boundary 2/Role": "displacement",
+                "Boundary 2/Displacement":
+                    f"({c:.17g}*0.2 - {s:.17g}*0.1)*t; "
+                    f"({s:.17g}*0.2 + {c:.17g}*0.1)*t",
+            },
+        )
+        for name in ("stored_energy", "max_von_mises", "external_work",
+                     "reaction_2_x", "reaction_2_y", "point1_x"):
+            scale = np.abs(given[name]).max()
+            self.assertClose(
+                glued[name], given[name], absolute=1e-8 * scale, what=name
+            )
+
+    def test_it_holds_a_body(self):
+        """No other condition is needed, unlike with friction."""
+        result = run(
+            "conveyor_3d",
+            {
+                "Boundary 4/Friction law": "glued",
+                "Boundary 4/Foundation motion": "",
+                "Boundary 5/Role": "traction",
+                "Boundary 5/Traction": "0.1*t; 0; -0.1*t",
+            },
+        )
+        self.assertClose(result["reaction_4_x"], -0.1 * result["t"], absolute=1e-9)
+
+
+class Pressures(TestCase):
+    """S may change its sign: the bound is mu |S|, the load S itself."""
+
+    # without friction's help the block of 1 x 1 is in uniaxial strain-free
+    # compression; slow pull along the face lets all points slip
+    def test_sign_of_the_normal_stress(self):
+        scene = {
+            "Boundary 2/Normal stress": "-0.2*sin(pi*t)",
+            "Time/Phases": "2: 16",
+        }
+        result = run("conveyor_2d", scene)
+        self.check_identities(result)
+        t = result["t"]
+        self.assertClose(
+            result["load_y"], 2 * 0.2 * np.sin(np.pi * t), absolute=1e-12
+        )
+        bound = 2 * 0.3 * 0.2 * abs(np.sin(np.pi * t))
+        self.assertTrue(np.all(abs(result["friction_force_x"]) <= bound + 1e-12))
+        # at t = 1 and 2 the bound vanishes, and with it the force
+        for time in (1, 2):
+            self.assertClose(
+                result["friction_force_x"][result.row(time)], 0, absolute=1e-12
+            )
+        # in tension (t > 1) friction is as strong as in compression
+        self.assertClose(
+            abs(result["friction_force_x"])[result.row(1.5)],
+            bound[result.row(1.5)],
+            absolute=1e-9,
+        )
+
+    def test_discontinuous_data_in_time_and_space(self):
+        """mu jumps along the face and S in time."""
+        result = run(
+            "conveyor_2d",
+            {
+                "Boundary 2/Friction coefficient": "if(x < 1, 0, 0.4)",
+                "Boundary 2/Normal stress": "if(t < 0.55, -0.1, -0.2)*min(5*t, 1)",
+                "Time/Phases": "1: 20",
+            },
+        )
+        self.check_identities(result)
+        force = abs(result["friction_force_x"])
+        self.assertClose(force[result.row(0.5)], 0.04, absolute=1e-9)
+        self.assertClose(force[-1], 0.08, absolute=1e-9)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,444 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Materials: each law against its recursion, layers, anisotropy.
+
+The recursions are written here from the formulas of doc/parameters.md and
+doc/method.md, with full 3x3 tensors, and share nothing with the program.
+"""
+
+import unittest
+
+import numpy as np
+
+from harness import TestCase, main, run
+
+IDENTITY = np.eye(3)
+
+
+def dev(tensor):
+    return tensor - np.trace(tensor) / 3 * IDENTITY
+
+
+def norm(tensor):
+    return np.sqrt(np.sum(tensor * tensor))
+
+
+def isotropic(youngs_modulus, poissons_ratio):
+    """E and its inverse as functions of tensors."""
+    mu = youngs_modulus / (2 * (1 + poissons_ratio))
+    bulk = youngs_modulus / (3 * (1 - 2 * poissons_ratio))
+    return (
+        lambda e: 2 * mu * dev(e) + bulk * np.trace(e) * IDENTITY,
+        lambda s: dev(s) / (2 * mu) + np.trace(s) / (9 * bulk) * IDENTITY,
+    )
+
+
+E, E_INVERSE = isotropic(1, 0.25)
+SOFT, _ = isotropic(0.4, 0.2)
+
+
+def maxwell(stress, strain, x, t):
+    return -E(dev(stress)) / (2 * 0.5)
+
+
+def perzyna(stress, strain, x, t):
+    radius = 0.02 + 0.3 * np.sqrt(2 / 3) * norm(dev(strain - E_INVERSE(stress)))
+    size = norm(dev(stress))
+    return -E(max(0, 1 - radius / size) * dev(stress)) / 0.8 if size else 0 * E(stress)
+
+
+def zener(stress, strain, x, t):
+    return -(stress - SOFT(strain)) / 0.7
+
+
+def power(equivalent):
+    """A sigma^n, continued by its tangent beyond the cap of 0.06."""
+    a, n, cap = 2000.0, 3.0, 0.06
+    if equivalent <= cap:
+        return a * equivalent**n
+    return a * cap**n + a * n * cap ** (n - 1) * (equivalent - cap)
+
+
+def flow(rate, stress):
+    equivalent = np.sqrt(1.5) * norm(dev(stress))
+    if equivalent == 0:
+        return 0 * stress
+    return -E(rate(equivalent) * 1.5 * dev(stress) / equivalent)
+
+
+def norton(stress, strain, x, t):
+    return flow(power, stress)
+
+
+def parsed(stress, strain, x, t):
+    """sinh creep with pressure, hardening and ageing."""
+    pressure = -np.trace(stress) / 3
+    creep = np.sqrt(2 / 3) * norm(dev(strain - E_INVERSE(stress)))
+    return flow(
+        lambda q: (1 + 0.5 * t) * 0.5 * np.sinh(8 * q)
+        * np.exp(-pressure) / (1 + 5 * creep),
+        stress,
+    )
+
+
+LAWS = {
+    "maxwell": (maxwell, {"Viscosity": 0.5}),
+    "perzyna": (
+        perzyna,
+        {"Yield radius": 0.02, "Hardening modulus": 0.3, "Viscosity": 0.8},
+    ),
+    "zener": (
+        zener,
+        {
+            "Relaxation time": 0.7,
+            "Long-term Young's modulus": 0.4,
+            "Long-term Poisson's ratio": 0.2,
+        },
+    ),
+    "norton": (norton, {"Rate factor": 2000, "Exponent": 3, "Stress cap": 0.06}),
+    "parsed": (
+        parsed,
+        {
+            "Strain rate": "0.5*sinh(8*sigma_eq)"
+            "*exp(-p)/(1 + 5*eps_eq)",
+            "Factor": "1 + 0.5*t",
+        },
+    ),
+}
+
+
+def displacement_gradient(t, dim):
+    f = min(t, 2 - t)
+    gradient = np.zeros((3, 3))
+    gradient[:2, :2] = f * np.array([[0.1, 0.04], [0.02, -0.07]])
+    if dim == 3:
+        gradient[2] = f * np.array([0.03, 0, 0.05])
+    return gradient
+
+
+THREE = {
+    "Dimension": 3,
+    "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : false",
+    "Boundary 0/Displacement": "min(t, 2 - t)*(0.1*x + 0.04*y); "
+    "min(t, 2 - t)*(0.02*x - 0.07*y); min(t, 2 - t)*(0.03*x + 0.05*z)",
+}
+
+
+class UniformStrain(TestCase):
+    def expected(self, law, times, dim):
+        """Stress at each time."""
+        strains = []
+        for t in times:
+            gradient = displacement_gradient(t, dim)
+            strains.append(0.5 * (gradient + gradient.T))
+        z = np.zeros((3, 3))
+        stresses = [E(strains[0])]
+        for n in range(1, len(times)):
+            z = z + (times[n] - times[n - 1]) * law(
+                stresses[-1], strains[n - 1], None, times[n - 1]
+            )
+            stresses.append(E(strains[n]) + z)
+        return np.array(strains), np.array(stresses)
+
+    def check(self, name, dim, **more):
+        law, parameters = LAWS[name]
+        overrides = {"Material/Law": name, **(THREE if dim == 3 else {}), **more}
+        for entry, value in parameters.items():
+            overrides[f"Material/{name}/{entry}"] = value
+        result = run("uniform_strain", overrides)
+        strain, stress = self.expected(law, result["t"], dim)
+        scale = np.abs(stress).max()
+        self.assertClose(
+            result["stress_norm"],
+            [norm(s) for s in stress],
+            absolute=1e-10 * scale,
+            what=f"{name}: norm of the stress",
+        )
+        self.assertClose(
+            result["max_von_mises"],
+            [np.sqrt(1.5) * norm(dev(s)) for s in stress],
+            absolute=1e-10 * scale,
+            what=f"{name}: von Mises stress",
+        )
+        fields = result.fields()
+        for i, j in ((0, 0), (1, 1), (2, 2), (0, 1)):
+            component = "stress_" + "xyz"[i] + "xyz"[j]
+            self.assertClose(  # single precision
+                fields.cell_data[component],
+                stress[-1][i, j],
+                absolute=1e-6 * scale,
+                what=f"{name}: {component}",
+            )
+        # The law mattered.
+        elastic = np.array([E(e) for e in strain])
+        self.assertGreater(np.abs(stress - elastic).max(), 0.1 * scale)
+        # Work of the stress = stored energy + dissipation, exactly.
+        work = np.zeros(len(stress))
+        for n in range(1, len(stress)):
+            work[n] = work[n - 1] + np.sum(
+                0.5 * (stress[n] + stress[n - 1]) * (strain[n] - strain[n - 1])
+            )
+        self.assertClose(
+            result["external_work"], work, absolute=1e-10 * work.max(), what="work"
+        )
+        self.assertClose(
+            result["energy_balance_defect"], 0, absolute=1e-10 * work.max()
+        )
+        self.assertGreater(np.diff(result["viscous_dissipation"])[1:].min(), -1e-16)
+        self.assertGreater(result["viscous_dissipation"][-1], 0)
+        return result, strain, stress
+
+    def test_each_law_in_plane_strain(self):
+        for name in LAWS:
+            with self.subTest(name):
+                self.check(name, 2)
+
+    def test_each_law_in_three_dimensions(self):
+        for name in LAWS:
+            with self.subTest(name):
+                self.check(name, 3)
+
+    def test_each_law_at_the_quadrature_points(self):
+        for name in LAWS:
+            with self.subTest(name):
+                self.check(name, 2, **{"Material/Stress history": "quadrature points"})
+
+    def test_zener_stores_energy_in_both_branches(self):
+        """1/2 E_inf eps:eps + 1/2 (E - E_inf)^-1 q:q with
+        q = sigma - E_inf eps."""
+        result, strain, stress = self.check("zener", 2)
+        mu = 1 / 2.5 - 0.4 / 2.4
+        bulk = 1 / 1.5 - 0.4 / 1.8
+        stored = []
+        for e, s in zip(strain, stress):
+            q = s - SOFT(e)
+            over = dev(q) / (2 * mu) + np.trace(q) / (9 * bulk) * IDENTITY
+            stored.append(0.5 * np.sum(SOFT(e) * e) + 0.5 * np.sum(over * q))
+        self.assertClose(result["stored_energy"], stored, absolute=1e-12)
+
+    def test_norton_says_where_its_cap_is_reached(self):
+        result, _, stress = self.check("norton", 2)
+        beyond = [np.sqrt(1.5) * norm(dev(s)) > 0.06 for s in stress]
+        # the rate of a step is that of its beginning
+        self.assertClose(result["capped_volume"][1:], np.array(beyond[:-1], float))
+        self.assertTrue(any(beyond) and not all(beyond))
+        self.assertIn("0.06", result.stdout)
+        uncapped = run(
+            "uniform_strain",
+            {
+                "Material/Law": "norton",
+                "Material/norton/Rate factor": 1,
+                "Material/norton/Exponent": 3,
+                "Material/norton/Stress cap": 10,
+            },
+        )
+        self.assertClose(uncapped["capped_volume"], 0)
+
+    def test_parameters_in_space_and_time(self):
+        """A viscosity that jumps between the halves and falls in time."""
+        result = run(
+            "uniform_strain",
+            {
+                "Material/Law": "maxwell",
+                "Material/maxwell/Viscosity": "if(x < 0.5, 0.5, 1)/(1 + t)",
+            },
+        )
+        squares = np.zeros(len(result["t"]))
+        for eta in (0.5, 1.0):
+            _, stress = self.expected(
+                lambda s, e, x, t: -E(dev(s)) * (1 + t) / (2 * eta),
+                result["t"],
+                2,
+            )
+            squares += 0.5 * np.array([norm(s) ** 2 for s in stress])
+        # Each half flows by itself at given strain, but then it is not in
+        # equilibrium with the other, and the node in the middle moves.
+        self.assertClose(
+            result["stress_norm"], np.sqrt(squares), relative=0.02, what="norm"
+        )
+
+
+class Layers(TestCase):
+    def foot(self, result, viscosity, mu_upper=1 / 2.4, rows=4):
+        """u_x(0): shear strains of the rows of cells, half of them elastic."""
+        t = result["t"]
+        tau = 0.1 * np.minimum(t, 2 - t)
+        h = 1 / (2 * rows)
+        lower = 0.5 * tau / (2 / 2.6)
+        upper = np.zeros(len(t))
+        for row in range(rows):
+            y = 0.5 + (row + 0.5) * h
+            creep = 0.0
+            for n in range(len(t)):
+                if n > 0:
+                    creep += (t[n] - t[n - 1]) * tau[n - 1] / viscosity(y, t[n - 1])
+                upper[n] += h * (tau[n] / mu_upper + creep)
+        return -(lower + upper), -upper
+
+    def check(self, viscosity=lambda y, t: 0.5, ranks=1, **more):
+        result = run("layers", more, ranks=ranks)
+        bottom, middle = self.foot(result, viscosity)
+        self.assertClose(
+            result["point0_x"], bottom, absolute=1e-9, what="foot"
+        )
+        self.assertClose(
+            result["point1_x"], middle, absolute=1e-9, what="interface"
+        )
+        self.assertClose(result["max_von_mises"],
+                         np.sqrt(3) * 0.1 * np.minimum(result["t"], 2 - result["t"]),
+                         absolute=1e-9)
+        return result
+
+    def test_elastic_and_viscous(self):
+        result = self.check()
+        self.assertIn("viscoplastic flow of Material 2 (maxwell", result.stdout)
+        self.assertNotIn("flow of Material 1", result.stdout)
+
+    def test_viscosity_that_depends_on_position(self):
+        self.check(
+            lambda y, t: 0.5 * (1 + y),
+            **{"Material 2/maxwell/Viscosity": "0.5*(1 + y)"},
+        )
+
+    def test_viscosity_that_depends_on_time(self):
+        self.check(
+            lambda y, t: 0.5 / (1 + t),
+            **{"Material 2/maxwell/Viscosity": "0.5/(1 + t)"},
+        )
+
+    def test_viscosity_that_depends_on_both(self):
+        self.check(
+            lambda y, t: 0.5 * (1 + y) / (1 + t),
+            **{"Material 2/maxwell/Viscosity": "0.5*(1 + y)/(1 + t)"},
+        )
+
+    def test_on_two_ranks(self):
+        self.check(ranks=2)
+
+    def test_on_an_adaptive_mesh_at_the_quadrature_points(self):
+        """Refined cells keep their material. The shear strain of rows is
+        exact whatever the mesh, if the viscosity is uniform."""
+        result = self.check(
+            **{
+                "Mesh refinement/Strategy": "kelly",
+                "Mesh refinement/Every n steps": 3,
+                "Mesh refinement/Maximal level": 2,
+                "Material/Stress history": "quadrature points",
+            }
+        )
+        self.assertGreater(result["cells"][-1], result["cells"][0])
+
+    def test_voigt_matrix_of_an_isotropic_body(self):
+        """E = 2, nu = 0.3 as a matrix."""
+        lam, mu = 2 * 0.3 / 1.3 / 0.4, 2 / 2.6
+        rows = [
+            [lam + 2 * mu * (i == j) if i < 3 and j < 3 else mu * (i == j)
+             for j in range(6)]
+            for i in range(6)
+        ]
+        matrix = "; ".join(", ".join(f"{v:.17g}" for v in row) for row in rows)
+        result = self.check(
+            **{
+                "Material 1/Voigt matrix": matrix,
+                "Material 1/Young's modulus": 1,
+            }
+        )
+        self.assertIn("anisotropic elasticity of Material 1", result.stdout)
+
+
+class Anisotropy(TestCase):
+    """Uniform strain of an orthotropic body: sigma = C eps."""
+
+    MATRIX = np.array(
+        [
+            [3.0, 0.8, 0.6, 0, 0, 0],
+            [0.8, 2.0, 0.5, 0, 0, 0],
+            [0.6, 0.5, 1.2, 0, 0, 0],
+            [0, 0, 0, 0.5, 0, 0],
+            [0, 0, 0, 0, 0.7, 0],
+            [0, 0, 0, 0, 0, 0.9],
+        ]
+    )
+
+    @classmethod
+    def text(cls, matrix):
+        return "; ".join(", ".join(f"{v:.17g}" for v in row) for row in matrix)
+
+    def check(self, matrix, dim):
+        result = run(
+            "uniform_strain",
+            {
+                **(THREE if dim == 3 else {}),
+                "Material/Voigt matrix": self.text(matrix),
+                "Time/Phases": "1: 2",
+            },
+        )
+        e = displacement_gradient(1, dim)
+        e = 0.5 * (e + e.T)
+        engineering = np.array(
+            [e[0, 0], e[1, 1], e[2, 2], 2 * e[1, 2], 2 * e[0, 2], 2 * e[0, 1]]
+        )
+        stress = matrix @ engineering
+        fields = result.fields()
+        names = ["xx", "yy", "zz"] + (["yz", "xz"] if dim == 3 else []) + ["xy"]
+        places = [0, 1, 2] + ([3, 4] if dim == 3 else []) + [5]
+        for name, place in zip(names, places):
+            self.assertClose(
+                fields.cell_data[f"stress_{name}"],
+                stress[place],
+                absolute=1e-6 * np.abs(stress).max(),
+                what=name,
+            )
+        self.assertClose(
+            result["stored_energy"][-1], 0.5 * stress @ engineering, relative=1e-10
+        )
+
+    def test_orthotropic_in_plane_strain(self):
+        self.check(self.MATRIX, 2)
+
+    def test_orthotropic_in_three_dimensions(self):
+        self.check(self.MATRIX, 3)
+
+    def test_monoclinic(self):
+        """Shear in the plane couples to the normal stresses."""
+        matrix = self.MATRIX.copy()
+        matrix[0, 5] = matrix[5, 0] = 0.3
+        matrix[2, 5] = matrix[5, 2] = -0.2
+        self.check(matrix, 2)
+        matrix[3, 4] = matrix[4, 3] = 0.1
+        self.check(matrix, 3)
+
+    def test_creep_of_an_orthotropic_body(self):
+        """Maxwell with G = -E dev sigma/(2 eta)."""
+        result = run(
+            "uniform_strain",
+            {
+                "Material/Voigt matrix": self.text(self.MATRIX),
+                "Material/Law": "maxwell",
+                "Material/maxwell/Viscosity": 2,
+            },
+        )
+
+        def apply(e):
+            s = self.MATRIX @ np.array(
+                [e[0, 0], e[1, 1], e[2, 2], 2 * e[1, 2], 2 * e[0, 2], 2 * e[0, 1]]
+            )
+            return np.array(
+                [[s[0], s[5], s[4]], [s[5], s[1], s[3]], [s[4], s[3], s[2]]]
+            )
+
+        t = result["t"]
+        z = np.zeros((3, 3))
+        norms = [0.0]
+        stress = np.zeros((3, 3))
+        for n in range(1, len(t)):
+            z = z - (t[n] - t[n - 1]) * apply(dev(stress)) / 4
+            gradient = displacement_gradient(t[n], 2)
+            stress = apply(0.5 * (gradient + gradient.T)) + z
+            norms.append(norm(stress))
+        self.assertClose(
+            result["stress_norm"], norms, absolute=1e-10, what="stress"
+        )
+
+
+if __name__ == "__main__":
+    main()

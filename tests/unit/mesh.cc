@@ -508,8 +508,8 @@ TEST(MeshFilesRefused, OfAnotherDimension)
                            "it has no hexahedra but quadrilaterals, and "
                            "'Dimension' is 3");
   expect_text_refused(replaced(content(two_materials<2>()[2]),
-                               "2 0.5 0.0 0.0",
-                               "2 0.5 0.0 0.1"),
+                               "2 0.0 0.5 0.0",
+                               "2 0.0 0.5 0.1"),
                       ".ucd",
                       "not in a plane z = const.");
 }
@@ -575,11 +575,11 @@ TEST(MeshFilesRefused, ThatContradictThemselves)
                       "this cell is already in line");
   expect_text_refused(replaced(ucd, "line 1 4", "line 1 5"),
                       ".ucd",
-                      "line 17: this boundary element is not a face of any "
+                      "line 18: this boundary element is not a face of any "
                       "cell");
   expect_text_refused(replaced(ucd, "2 1 line 4 7", "2 3 line 1 4"),
                       ".ucd",
-                      "line 18: this boundary element is already in line 17");
+                      "line 19: this boundary element is already in line 18");
   expect_text_refused(replaced(ucd, "1 1 line", "1 -1 line"),
                       ".ucd",
                       "the id -1 is not between 0 and 999999999");
@@ -618,7 +618,7 @@ TEST(MeshFilesRefused, ThatEndTooEarly)
           if (!message.empty())
             EXPECT_NE(message.find("The mesh"), std::string::npos)
               << name << " cut at " << size << ": " << message;
-          else
+          else if (suffix != ".inp") // complete before its surfaces
             EXPECT_GT(size, text.size() / 2) << name;
         }
     }

@@ -100,19 +100,18 @@ namespace Viscoplastic
       }
 
       void
-      data(const Keyword &keyword, std::vector<std::string> fields)
+      data(const Keyword &keyword, const std::string &line)
       {
-        // A comma at the end says that an element goes on in the next line.
-        const bool goes_on = fields.size() > 1 && fields.back().empty();
-        if (goes_on)
-          fields.pop_back();
+        // Without what follows a comma at the end.
+        const std::vector<std::string> fields =
+          Utilities::split_string_list(line, ',');
         // Those of an assembly are points of reference.
         if (keyword.name == "NODE" && !in_assembly)
           add_node(fields);
         else if (keyword.name == "ELEMENT" && !in_assembly)
           {
             pending.insert(pending.end(), fields.begin(), fields.end());
-            if (!goes_on)
+            if (line.back() != ',') // else it goes on in the next line
               add_element(keyword);
           }
         else if (keyword.name == "ELSET")
@@ -129,6 +128,8 @@ namespace Viscoplastic
       {
         if (!pending.empty())
           reader.fail("the file ends within an element");
+        if (reader.mesh.cells.empty()) // a mesh of another dimension
+          return;
         // Sections, which are meant to say it, come last.
         for (const auto *selections : {&numbered_sets, &sections})
           for (const Selection &selection : *selections)
@@ -303,7 +304,7 @@ namespace Viscoplastic
         if (!is_comment && line[0] == '*')
           model.begin(keyword = parse_keyword(line));
         else if (!is_comment)
-          model.data(keyword, Utilities::split_string_list(line, ','));
+          model.data(keyword, line);
         if (!reader.next_line(line))
           break;
       }

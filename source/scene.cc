@@ -344,6 +344,15 @@ namespace Viscoplastic
         return;
       }
 
+    const MaterialParameters &plain = parameters.material, defaults;
+    AssertThrow(plain.youngs_modulus == defaults.youngs_modulus &&
+                  plain.poissons_ratio == defaults.poissons_ratio &&
+                  plain.voigt_matrix == defaults.voigt_matrix &&
+                  plain.law == defaults.law,
+                ExcMessage("'Material' gives elasticity or a law beside "
+                           "numbered materials, but no cell would have it; "
+                           "give it to `Material <id>', or leave the numbers "
+                           "out."));
     for (const types::material_id id : ids)
       {
         const auto section = "Material " + std::to_string(id);

@@ -99,6 +99,9 @@ namespace Viscoplastic
     make_mesh();
     set_up();
     set_initial_state();
+    // A step that is too large is refused before anything is written.
+    if (scene.has_viscosity())
+      flow(state, scene.schedule.step(1));
     output.emplace(scene, communicator);
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       statistics =

@@ -272,11 +272,27 @@ class Glued(TestCase):
         self.assertClose(result["reaction_4_x"], -0.1 * result["t"], absolute=1e-9)
 
 
+class Junctions(TestCase):
+    """Clamped next to friction: allowed, but the user is told."""
+
+    def test_warning_where_clamped_and_frictional_pieces_touch(self):
+        result = run("conveyor_2d", {"Boundary 0/Role": "clamped",
+                                     "Boundary 2/Foundation motion": "",
+                                     "Time/Phases": "0.1: 1"})
+        lines = [line for line in result.stdout.splitlines()
+                 if line.startswith("Warning")]
+        self.assertEqual(len(set(lines)), 1, result.stdout)
+        self.assertRegex(lines[0], r"Boundary 0 \(clamped\) touches boundary 2")
+
+    def test_no_warning_where_they_are_apart(self):
+        result = run("conveyor_2d", {"Boundary 3/Role": "clamped",
+                                     "Time/Phases": "0.1: 1"})
+        self.assertNotIn("Warning", result.stdout)
+
+
 class Pressures(TestCase):
     """S may change its sign: the bound is mu |S|, the load S itself."""
 
-    # without friction's help the block of 1 x 1 is in uniaxial strain-free
-    # compression; slow pull along the face lets all points slip
     def test_sign_of_the_normal_stress(self):
         scene = {
             "Boundary 2/Normal stress": "-0.2*sin(pi*t)",

@@ -324,6 +324,116 @@ class Layers(TestCase):
         self.assertIn("anisotropic elasticity of Material 1", result.stdout)
 
 
+class Refused(TestCase):
+    """Each wrong datum of a material gives one sentence, and no results."""
+
+    def refused(self, pattern, scene="uniform_strain", **overrides):
+        result = run(scene, overrides, check=False)
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertRegex(result.stderr, pattern)
+        self.assertFalse(result.directory.exists(), "results were written")
+
+    def test_long_term_modulus_beyond_the_elastic_one(self):
+        self.refused(
+            "Long-term|long-term",
+            **{"Material/Law": "zener",
+               "Material/zener/Long-term Young's modulus": 1.2},
+        )
+
+    def test_long_term_modulus_beyond_the_elastic_one_somewhere(self):
+        """Where E falls below it, at x > 1/2."""
+        self.refused(
+            "Long-term|long-term",
+            **{"Material/Law": "zener",
+               "Material/Young's modulus": "1.2 - x",
+               "Material/zener/Long-term Young's modulus": 0.5},
+        )
+
+    def test_negative_viscosity(self):
+        self.refused(
+            "Viscosity.*-2.*positive",
+            **{"Material/Law": "maxwell", "Material/maxwell/Viscosity": -2},
+        )
+
+    def test_viscosity_that_becomes_negative(self):
+        """Named with its place and time: after t = 1 in the second column.
+        The run has begun, so its results up to then are there."""
+        result = run(
+            "uniform_strain",
+            {"Material/Law": "maxwell",
+             "Material/maxwell/Viscosity": "if(x > 0.5, 1.01 - t, 1)"},
+            check=False,
+        )
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, "Viscosity.*x = .*t = ")
+
+    def test_poissons_ratio_of_an_incompressible_body(self):
+        self.refused("Poisson's ratio.*0.5", **{"Material/Poisson's ratio": 0.5})
+
+    def test_youngs_modulus_of_zero_somewhere(self):
+        self.refused(
+            "Young's modulus", **{"Material/Young's modulus": "x - 0.25"}
+        )
+
+    def test_indefinite_voigt_matrix(self):
+        matrix = np.diag([1.0, 1, 1, 1, 1, 1])
+        matrix[0, 1] = matrix[1, 0] = 1.5
+        self.refused(
+            "Voigt matrix.*eigenvalue",
+            **{**Anisotropy.NO_MODULI,
+               "Material/Voigt matrix": Anisotropy.text(matrix)},
+        )
+
+    def test_plane_strain_with_coupling_out_of_the_plane(self):
+        matrix = np.diag([1.0, 1, 1, 1, 1, 1])
+        matrix[0, 4] = matrix[4, 0] = 0.2
+        self.refused(
+            "Voigt matrix",
+            **{**Anisotropy.NO_MODULI,
+               "Material/Voigt matrix": Anisotropy.text(matrix)},
+        )
+
+    def test_norton_without_a_cap(self):
+        self.refused("Stress cap", **{"Material/Law": "norton"})
+
+    def test_negative_creep_rate(self):
+        self.refused(
+            "Strain rate",
+            **{"Material/Law": "parsed",
+               "Material/parsed/Strain rate": "0.1 - sigma_eq - 0.2"},
+        )
+
+    def test_material_id_without_material(self):
+        self.refused(
+            "material id 3.*Material 3",
+            scene="layers",
+            **{"Geometry/Material ids": "if(y < 0.5, 1, 3)"},
+        )
+
+    def test_elasticity_beside_numbered_materials(self):
+        """A modulus that nobody would use."""
+        self.refused(
+            "Material", scene="layers", **{"Material/Young's modulus": 5}
+        )
+
+    def test_material_that_no_cell_has(self):
+        """Told, not refused: expressions may leave one out; its law is not
+        even made."""
+        result = run(
+            "layers",
+            {"Material 7/Law": "maxwell", "Material 7/maxwell/Viscosity": -1},
+        )
+        self.assertRegex(result.stdout, "Warning: 'Material 7' is not used")
+
+    def test_first_step_beyond_the_stability_limit(self):
+        """2/r = 2 eta/mu = 2.5."""
+        self.refused(
+            r"2/r = 2\.5",
+            **{"Material/Law": "maxwell", "Time/Phases": "6: 2"},
+        )
+
+
 class Anisotropy(TestCase):
     """Uniform strain of an orthotropic body: sigma = C eps."""
 

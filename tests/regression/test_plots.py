@@ -49,6 +49,8 @@ class Numbers(TestCase):
         f = np.array([0, 3, 3, 0, 0.0])
         self.assertClose(hysteresis.work(u, f), 6, relative=1e-15)
         self.assertClose(hysteresis.work(u[::-1], f[::-1]), -6, relative=1e-15)
+        self.assertClose(hysteresis.work(u[2:4], f[:2]), 0, absolute=1e-15)
+        self.assertClose(hysteresis.work(u[1:3], f[:2]), 3, relative=1e-15)
         angle = np.linspace(0, 2 * np.pi, 401)
         area = hysteresis.work(5 * np.cos(angle), -3 * np.sin(angle))
         self.assertClose(area, 15 * np.pi, relative=1e-4)

@@ -261,7 +261,8 @@ def look_from_foundation(view, body, face):
         ]
     view.CameraParallelProjection = 1
     view.CameraFocalPoint = face.centre
-    view.CameraPosition = [face.centre[d] + 3.0 * face.size * normal[d] for d in range(3)]
+    away = 3.0 * face.size
+    view.CameraPosition = [face.centre[d] + away * normal[d] for d in range(3)]
     view.CameraViewUp = up
     view.CameraParallelScale = max(0.8 * face.size, 0.58 * math.hypot(*face.extent))
 

@@ -119,10 +119,10 @@ def draw_lines(contact, scale):
             Line2D([], [], color="black", ls="--", lw=1.0, label=r"bound $\pm\rho$"),
             *(SHADES[state] for state in SHADES if (occurring == state).any()),
         ]
-        first[0].legend(
+        panels[0, -1].legend(
             handles=handles,
-            loc="lower left",
-            bbox_to_anchor=(0.0, 1.02),
+            loc="lower right",
+            bbox_to_anchor=(1.0, 1.02),
             borderaxespad=0.0,
             ncol=len(handles),
             frameon=False,

@@ -54,7 +54,8 @@ class Line:
 
     def label(self):
         ends = [
-            "({:.4g}, {:.4g})".format(*(point + 0.0)) for point in (self.start, self.end)
+            "({:.4g}, {:.4g})".format(*(point + 0.0))
+            for point in (self.start, self.end)
         ]
         return "arc length $s$ from {} to {}".format(*ends)
 
@@ -71,7 +72,8 @@ def lines(contact):
     leading = np.argmax(np.abs(directions) > 1e-3, axis=1)
     directions *= np.sign(directions[np.arange(len(leading)), leading])[:, None]
     middles = ends.mean(axis=1)
-    offsets = (directions[:, 0] * middles[:, 1] - directions[:, 1] * middles[:, 0]) / size
+    offsets = directions[:, 0] * middles[:, 1] - directions[:, 1] * middles[:, 0]
+    offsets /= size
     found = []
     for tangent, members in groups(directions, offsets):
         members = members[np.argsort(middles[members] @ tangent)]

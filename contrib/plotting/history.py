@@ -150,7 +150,7 @@ def draw(results, options):
         axes.set_xlim(*padded(statistics["t"]))
         if row == rows - 1:
             axes.set_xlabel("time $t$")
-        else:
+        elif row < rows - 2 or len(panels) % columns == 0:
             axes.tick_params(labelbottom=False)
     figure.suptitle(style.plain(results.name), fontsize="large")
     return figure

@@ -91,7 +91,7 @@ def forces(statistics):
         match = re.fullmatch(r"reaction_(\d+)_([xyz])", name)
         if match:
             found[name] = values, (
-                f"reaction of boundary {match.group(1)} on the body, $R_{match.group(2)}$"
+                f"reaction of boundary {match.group(1)}, $R_{match.group(2)}$"
             )
     return found
 

@@ -114,7 +114,9 @@ def read_statistics(path):
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file, skipinitialspace=True))
     columns = {}
-    for i, name in enumerate(rows[0] if rows else []):
+    if len(rows) < 2:
+        return columns
+    for i, name in enumerate(rows[0]):
         try:
             columns[name.strip()] = np.array(
                 [float(row[i]) for row in rows[1:] if row]

@@ -10,6 +10,7 @@
 #include <viscoplastic_contact/console.h>
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/contact_tension.h>
 #include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/force_balance.h>
 #include <viscoplastic_contact/loads.h>
@@ -72,6 +73,7 @@ namespace Viscoplastic
       StressSampling<dim>  sampling;
       FlowLaws<dim>        laws;
       Loads<dim>           loads;
+      ContactTension<dim>  tension;
       /// Null without friction.
       std::unique_ptr<ContactFace<dim>> face;
 
@@ -112,6 +114,11 @@ namespace Viscoplastic
 
     void
     make_mesh();
+
+    /// Refuse a first step beyond the stability limit, before anything is
+    /// written, and warn of later ones. Source: source/check.cc.
+    void
+    check_steps();
 
     void
     set_up();

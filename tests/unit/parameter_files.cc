@@ -74,10 +74,10 @@ namespace
     // Continued lines, comments, tabs, ends of lines of other systems, upper
     // case, a byte order mark.
     const auto parameters = read_parameters(
-      "\xEF\xBB\xBFset Dimension = \\\n 3 # \\\nSUBSECTION\tGeometry\r\n"
+      "\xEF\xBB\xBFset Dimension = \\\n 3 # three\nSUBSECTION\tGeometry\r\n"
       "  set\tArguments= 1, \\  \n   2 # the rest\r\nEND\r\n"
       "subsection Loads\nset Body force = 0; a=b\nend");
-    EXPECT_EQ(parameters->dimension, 2u + 1u);
+    EXPECT_EQ(parameters->dimension, 3u);
     EXPECT_EQ(parameters->geometry.arguments, "1, 2");
     EXPECT_EQ(parameters->loads.body_force, "0; a=b");
   }

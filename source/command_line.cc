@@ -16,18 +16,20 @@ namespace Viscoplastic
 
   namespace
   {
-    /// A directory of the sources as it can be used from here, if the sources
-    /// are still where the program was built.
+    /// A part of the sources as it can be named from here, if the sources are
+    /// still where the program was built.
     std::string
     source_path(const std::string &path)
     {
-      const std::filesystem::path source(VISCOPLASTIC_CONTACT_SOURCE_DIRECTORY);
       std::error_code             error;
-      if (std::filesystem::exists(source / path, error))
-        return (source / path)
-          .lexically_proximate(std::filesystem::current_path())
-          .string();
-      return path;
+      const std::filesystem::path full =
+        std::filesystem::path(VISCOPLASTIC_CONTACT_SOURCE_DIRECTORY) / path;
+      if (!std::filesystem::exists(full, error))
+        return path;
+      const std::string from_here =
+        std::filesystem::proximate(full, error).string();
+      return error || from_here.compare(0, 2, "..") == 0 ? full.string() :
+                                                           from_here;
     }
   } // namespace
 

@@ -11,32 +11,30 @@
 
 namespace Viscoplastic
 {
-  namespace
+  bool
+  stdout_is_terminal()
   {
-    bool
-    stdout_is_terminal()
-    {
-      if (isatty(STDOUT_FILENO) == 0)
+    if (isatty(STDOUT_FILENO) == 0)
+      return false;
+    const char *type = std::getenv("TERM");
+    if (type == nullptr || std::string(type) == "dumb")
+      return false;
+    // Variables of Open MPI, MPICH and others.
+    for (const char *variable :
+         {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"})
+      if (std::getenv(variable) != nullptr)
         return false;
-      const char *type = std::getenv("TERM");
-      if (type == nullptr || std::string(type) == "dumb")
-        return false;
-      // Variables by which Open MPI, MPICH and others tell their processes.
-      for (const char *variable :
-           {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"})
-        if (std::getenv(variable) != nullptr)
-          return false;
-      return true;
-    }
-  } // namespace
+    return true;
+  }
 
 
 
   Console::Console(const MPI_Comm     communicator,
                    const bool         quiet,
-                   const std::string &log_name)
+                   const std::string &log_name,
+                   const bool         has_terminal)
     : speaks(!quiet && Utilities::MPI::this_mpi_process(communicator) == 0)
-    , is_terminal(speaks && stdout_is_terminal())
+    , is_terminal(speaks && has_terminal)
     , tee(*this)
     , everywhere(&tee)
   {

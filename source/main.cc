@@ -28,9 +28,12 @@ namespace
 
 
   void
-  run(const CommandLine &command_line)
+  run(const CommandLine &command_line, const bool has_terminal)
   {
-    Console console(MPI_COMM_WORLD, command_line.quiet, command_line.log);
+    Console console(MPI_COMM_WORLD,
+                    command_line.quiet,
+                    command_line.log,
+                    has_terminal);
     try
       {
         const Parameters parameters(command_line.files, command_line.overrides);
@@ -77,6 +80,7 @@ int
 main(int argc, char *argv[])
 {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
+  const bool                     has_terminal = stdout_is_terminal();
   // The libraries that MPI_InitFinalize starts must not see our arguments:
   // PETSc has a --help of its own.
   int                                      n_hidden_arguments = 1;
@@ -107,7 +111,7 @@ main(int argc, char *argv[])
       const std::string text = text_of(command_line.task);
       if (text.empty())
         {
-          run(command_line);
+          run(command_line, has_terminal);
           return 0;
         }
       // A batch script that forgets the scene must not go on.

@@ -213,19 +213,19 @@ namespace Viscoplastic
       found = text.substr(prefix.size(), end - prefix.size());
       return true;
     };
-    // "a...b" with what stands for no bound.
+    // "a...b" with what stands for no bounds.
     const auto range = [](const std::string &bounds,
-                          const std::string &none,
+                          const std::string &lowest,
+                          const std::string &highest,
                           const std::string &what) {
       const std::size_t dots  = bounds.find("...");
       const std::string lower = bounds.substr(0, dots),
                         upper = bounds.substr(dots + 3);
-      const bool has_lower = lower != "-" + none, has_upper = upper != none;
-      return what + (has_lower && has_upper ?
-                       " from " + lower + " to " + upper :
-                     has_lower ? " of at least " + lower :
-                     has_upper ? " of at most " + upper :
-                                 "");
+      if (lower != lowest && upper != highest)
+        return what + " from " + lower + " to " + upper;
+      if (lower != lowest)
+        return what + " of at least " + lower;
+      return upper != highest ? what + " of at most " + upper : what;
     };
 
     std::string found;
@@ -237,12 +237,13 @@ namespace Viscoplastic
       }
     if (inside("[Integer range ", " (inclusive)]", found))
       return range(found,
+                   std::to_string(std::numeric_limits<int>::min()),
                    std::to_string(std::numeric_limits<int>::max()),
                    "a whole number");
     if (text == "[Integer]")
       return "a whole number";
     if (inside("[Double ", " (inclusive)]", found))
-      return range(found, "MAX_DOUBLE", "a number");
+      return range(found, "-MAX_DOUBLE", "MAX_DOUBLE", "a number");
     if (text == "[Bool]")
       return "true or false";
     if (text == "[Anything]")

@@ -294,6 +294,7 @@ namespace Viscoplastic
                   timer.get_summary_data(TimerOutput::total_wall_time),
                   first_set_up_seconds,
                   run_timer.wall_time(),
+                  scene.has_viscosity(),
                   discretisation->face != nullptr);
     for (const std::string &remark : remarks)
       out << remark << '\n';

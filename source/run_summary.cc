@@ -90,6 +90,7 @@ namespace Viscoplastic
                 const std::map<std::string, double> &seconds,
                 const double                         first_set_up,
                 const double                         total,
+                const bool                           has_viscosity,
                 const bool                           has_friction)
   {
     // In this order; phases without a text follow under their own names.
@@ -110,7 +111,7 @@ namespace Viscoplastic
     const auto print_phase =
       [&](const std::string &name, const double time, const std::string &text) {
         std::ostringstream digits;
-        digits << std::setprecision(3) << time;
+        digits << std::fixed << std::setprecision(3) << time;
         out << "  " << std::left << std::setw(12) << name << std::right
             << std::setw(9) << digits.str() << std::setw(5)
             << std::lround(total > 0. ? 100. * time / total : 0.) << " %"
@@ -118,6 +119,8 @@ namespace Viscoplastic
         rest -= time;
       };
     out << "Seconds by phase:\n";
+    if (!has_viscosity)
+      remaining.erase("rate");
     if (remaining.count("set-up") > 0)
       remaining["set-up"] = first_set_up;
     for (const auto &[name, text] : texts)

@@ -22,12 +22,14 @@ namespace Viscoplastic
   {
   public:
     /**
-     * @p quiet leaves the standard output alone, not the log. Throws ExcMessage
-     * if @p log_file, unless empty, cannot be written.
+     * @p quiet leaves the standard output alone, not the log. @p has_terminal
+     * allows a status line, see stdout_is_terminal(). Throws ExcMessage if
+     * @p log_file, unless empty, cannot be written.
      */
     explicit Console(const MPI_Comm     communicator = MPI_COMM_WORLD,
                      const bool         quiet        = false,
-                     const std::string &log_file     = "");
+                     const std::string &log_file     = "",
+                     const bool         has_terminal = false);
 
     /// Leaves the last status line where it is.
     ~Console();
@@ -50,11 +52,7 @@ namespace Viscoplastic
       return log_file;
     }
 
-    /**
-     * Whether there is a status line: on a terminal that is not the one of
-     * mpirun, which gives every rank a terminal even if it writes to a file
-     * itself.
-     */
+    /// Whether there is a status line.
     bool
     has_status() const
     {
@@ -112,4 +110,15 @@ namespace Viscoplastic
     bool                     status_is_shown = false;
     std::vector<std::string> all_remarks;
   };
+
+
+
+  /**
+   * Whether somebody sees the standard output on a terminal. Not so under
+   * mpirun, which gives its processes terminals even if it writes to a file
+   * itself; it is recognised by environment variables, which MPI libraries
+   * set in all processes later: call this before MPI is initialised.
+   */
+  bool
+  stdout_is_terminal();
 } // namespace Viscoplastic

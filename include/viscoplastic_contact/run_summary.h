@@ -59,15 +59,16 @@ namespace Viscoplastic
   /**
    * Where the time of a run went.
    *
-   * @param seconds by phase, as ViscoplasticContact::timer names them
+   * @param seconds by phase, as ViscoplasticContact::timer names them; phases
+   *   of effects that the scene does not have are left out
    * @param first_set_up of the set-up; later ones are part of the adaptation
    * @param total of the run
-   * @param has_friction whether the contact solver has friction points
    */
   void
   print_seconds(std::ostream                        &out,
                 const std::map<std::string, double> &seconds,
                 const double                         first_set_up,
                 const double                         total,
+                const bool                           has_viscosity,
                 const bool                           has_friction);
 } // namespace Viscoplastic

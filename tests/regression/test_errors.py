@@ -8,7 +8,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from harness import EXECUTABLE, MPIRUN, TestCase, main, run
+from harness import EXECUTABLE, TestCase, main, run, scene_file
 
 SMALL = {
     "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
@@ -47,24 +47,136 @@ class Refused(TestCase):
             )
         self.check(process.returncode, process.stderr, ["absent.prm"])
 
-    def test_no_argument(self):
-        process = subprocess.run([EXECUTABLE], capture_output=True, text=True)
-        self.check(process.returncode, process.stderr, [r"\.prm"])
+    def refused_text(self, text, *names, more=()):
+        """A scene of this text, in which `slab` is included, is refused."""
+        with tempfile.TemporaryDirectory() as work:
+            scene = Path(work) / "scene.prm"
+            scene.write_text(text.replace("SLAB", str(scene_file("slab"))))
+            process = subprocess.run(
+                [EXECUTABLE, str(scene), *more],
+                cwd=work,
+                capture_output=True,
+                text=True,
+            )
+            self.check(process.returncode, process.stderr, names)
+            # nothing half written
+            self.assertEqual([file.name for file in Path(work).iterdir()], ["scene.prm"])
 
     def test_unknown_entry(self):
-        self.refused("Youngs modulus", **{"Material/Youngs modulus": 1})
+        """File, line, and the nearest name."""
+        self.refused_text(
+            "include SLAB\nsubsection Material\n  set Youngs modulus = 1\nend\n",
+            r"scene\.prm', line 3: 'Material' has no entry 'Youngs modulus'; "
+            r"did you mean 'Young's modulus'\?$",
+        )
+
+    def test_entry_of_another_subsection(self):
+        self.refused_text(
+            "include SLAB\nsubsection Material\n  set Viscosity = 1\nend\n",
+            r"line 3: .*'Viscosity' belongs to 'Material/maxwell'",
+        )
 
     def test_unknown_subsection(self):
-        self.refused("Lods", **{"Lods/Body force": "0; 0"})
+        self.refused_text(
+            "include SLAB\n\nsubsection Lods\nend\n",
+            r"scene\.prm', line 3: there is no subsection 'Lods'; "
+            r"did you mean 'Loads'\?$",
+        )
 
     def test_unknown_law(self):
-        self.refused("Law", "burgers", "maxwell", **{"Material/Law": "burgers"})
+        self.refused("Material/Law' is 'burgers'", "one of elastic, maxwell",
+                     **{"Material/Law": "burgers"})
+
+    def test_misspelt_law(self):
+        self.refused("did you mean 'maxwell'", **{"Material/Law": "Maxwel"})
 
     def test_not_a_number(self):
         self.refused("Poisson", "soft", **{"Material/Poisson's ratio": "soft"})
 
+    def test_value_out_of_range(self):
+        self.refused(
+            "'Solver/Contact tolerance' is '1'; it must be a number from "
+            r"1e-14 to 0\.1\.$",
+            **{"Solver/Contact tolerance": 1},
+        )
+
     def test_dimension_four(self):
-        self.refused("Dimension", **{"Dimension": 4})
+        self.refused(
+            "'Dimension' is '4'; it must be a whole number from 2 to 3",
+            **{"Dimension": 4},
+        )
+
+    def test_the_same_boundary_twice(self):
+        self.refused_text(
+            "subsection Boundary 3\n  set Role = free\nend\n"
+            "subsection Boundary 3\n  set Role = clamped\nend\n",
+            r"'Boundary 3/Role' is set twice in '.*scene\.prm', in lines 2 and 5",
+        )
+
+    def test_subsection_without_end(self):
+        self.refused_text(
+            "include SLAB\nsubsection Time\n  set Phases = 1: 1\n",
+            r"scene\.prm', line 2: the subsection 'Time' has no `end'\.$",
+        )
+
+    def test_forgotten_equals_sign(self):
+        self.refused_text("set Dimension 2", "line 1: 'set Dimension 2' has no `='")
+
+    def test_not_a_parameter_file(self):
+        self.refused_text("solid cube\n", "line 1: 'solid cube' is no statement")
+
+    def test_missing_included_file(self):
+        self.refused_text(
+            "\ninclude common.prm", r"line 2: the included file '.*common\.prm' does"
+        )
+
+    def test_missing_mesh_file(self):
+        self.refused_text(
+            "include SLAB\nsubsection Geometry\n  set File = part.msh\nend\n",
+            r"line 3: 'Geometry/File' is 'part\.msh', but there is no such file",
+        )
+
+    def test_boundary_without_a_number(self):
+        self.refused_text(
+            "subsection Boundary left\nend\n",
+            "'left' in the subsection 'Boundary left' is no id",
+        )
+
+    def test_one_material_and_numbered_ones(self):
+        self.refused_text(
+            "include SLAB\nsubsection Material 1\n  set Law = elastic\nend\n",
+            "'Material/.*' cannot be set beside 'Material 1'",
+        )
+
+    def test_wrong_assignment_on_the_command_line(self):
+        for argument, name in (
+            ("Time/Phase=1: 2", "'Time' has no entry 'Phase'; did you mean 'Phases'"),
+            ("Time/Phases", "there is no `='"),
+            ("Boundary 2/Role=glue", "'Boundary 2/Role' is 'glue'"),
+        ):
+            self.refused_text(
+                "include SLAB\n", f"--set '{argument}': .*{name}", more=["--set", argument]
+            )
+
+    def test_unknown_option(self):
+        self.refused_text(
+            "include SLAB\n",
+            r"There is no option '--chekc'; did you mean --check\?$",
+            more=["--chekc"],
+        )
+
+    def test_unwritable_log(self):
+        self.refused_text(
+            "include SLAB\n",
+            "The log file 'nowhere/log' cannot be written",
+            more=["--log", "nowhere/log"],
+        )
+
+    def test_wrong_generator_arguments(self):
+        self.refused(
+            "subdivided_hyper_rectangle' refuses the arguments '4, 2'",
+            **{"Geometry/Arguments": "4, 2"},
+        )
 
     # Boundary roles
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// Reading of parameter files, expressions, time steps, and the sentences with
-// which wrong ones are refused.
+// Expressions, time steps and boundary roles, and the sentences with which
+// wrong ones are refused. Reading of parameter files is in parameter_files.cc.
 
 #include "body.h"
 #include <viscoplastic_contact/mesh.h>
@@ -155,60 +155,6 @@ namespace
                      "'Body force' needs 2 components separated by semicolons, "
                      "but '" +
                        text + "' has");
-  }
-
-
-
-  // ------------------------------------------------------ parameter files
-
-  TEST(Parameters, DefaultsAndValues)
-  {
-    const auto parameters =
-      read_parameters("set Dimension = 3\n" +
-                      subsection("Material", "set Poisson's ratio = 0.4") +
-                      "subsection Boundary 7 # the foot\n"
-                      "set Role = clamped\nend\n" +
-                      boundary(2, "set Role = contact"));
-    EXPECT_EQ(parameters->dimension, 3u);
-    EXPECT_EQ(parameters->material.poissons_ratio, "0.4");
-    EXPECT_EQ(parameters->material.law, "elastic");
-    EXPECT_EQ(parameters->boundaries.size(), 2u);
-    EXPECT_EQ(parameters->boundaries.at(7).role, "clamped");
-    EXPECT_EQ(parameters->boundaries.at(2).friction_law, "none");
-    EXPECT_EQ(parameters->solver.linear_solver, "automatic");
-    EXPECT_FALSE(parameters->initial_state.equilibrate);
-  }
-
-
-
-  TEST(Parameters, Refusals)
-  {
-    expect_refusal([] { Parameters parameters("/nowhere/scene.prm"); },
-                   "The parameter file '/nowhere/scene.prm' cannot be opened.");
-    for (const std::string text :
-         {"set Dimension = 4\n",
-          "set Dimensions = 2\n",
-          "subsection Solver\nset Contact tolerance = -1\nend\n",
-          "subsection Solver\nset Linear solver = magic\nend\n",
-          "subsection Boundary left\nset Role = clamped\nend\n",
-          "subsection Boundary 1\nset Role = frictional\nend\n",
-          "subsection Material\nset Law = butter\nend\n"})
-      EXPECT_NE(message_of([&] { read_parameters(text); }), "") << text;
-    expect_refusal(
-      [] {
-        read_parameters(subsection("Mesh refinement",
-                                   "set Minimal level = 3\n"
-                                   "set Maximal level = 2"));
-      },
-      "'Mesh refinement/Minimal level' = 3 must not exceed 'Maximal level' = "
-      "2.");
-    expect_refusal(
-      [] {
-        read_parameters(subsection("Mesh refinement",
-                                   "set Refinement fraction = 0.7\n"
-                                   "set Coarsening fraction = 0.4"));
-      },
-      "must add up to at most 1");
   }
 
 

@@ -1,0 +1,355 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How the program behaves towards its user: options, parameter files over
+parameter files, what it prints where, and that it describes itself."""
+
+import os
+import pty
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from harness import EXECUTABLE, MPIRUN, SOURCE, TestCase, main, scene_file
+
+SLAB = str(scene_file("slab"))
+SMALL = ["--set", "Geometry/Arguments=4, 2 : 0, 0 : 2, 1 : true"]
+SHORT = SMALL + ["--set", "Time/Phases=1: 4", "--set", "Output/Fields every=0"]
+
+
+class Manners(TestCase):
+    def setUp(self):
+        self.work = Path(tempfile.mkdtemp(prefix="manners_"))
+        self.addCleanup(shutil.rmtree, self.work, ignore_errors=True)
+
+    def call(self, *arguments, code=0, cwd=None, launcher=()):
+        process = subprocess.run(
+            [*launcher, EXECUTABLE, *map(str, arguments)],
+            cwd=cwd or self.work,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            capture_output=True,
+            text=True,
+        )
+        self.assertEqual(
+            process.returncode, code, f"{arguments}:\n{process.stdout}{process.stderr}"
+        )
+        return process
+
+    def column(self, directory, name):
+        rows = [
+            line.split(",")
+            for line in (directory / "statistics.csv").read_text().splitlines()
+        ]
+        i = [title.strip() for title in rows[0]].index(name)
+        return [float(row[i]) for row in rows[1:]]
+
+
+class Options(Manners):
+    def test_no_argument(self):
+        """A guide instead of an error, but no success either: a script that
+        lost its scene must not go on."""
+        process = self.call(code=2)
+        for part in ("--check", "--describe", "--help", "salt_pillar_2d.prm", "doc/"):
+            self.assertIn(part, process.stderr)
+        self.assertNotIn("rror", process.stderr)
+        # what it says can be done
+        demo = re.search(r"^ +viscoplastic_contact (\S+)$", process.stderr, re.M)
+        self.assertTrue((self.work / demo.group(1)).exists(), demo.group(1))
+
+    def test_help(self):
+        text = self.call("--help").stdout
+        for option in (
+            "--set",
+            "--check",
+            "--describe",
+            "--quiet",
+            "--log",
+            "--version",
+            "--help",
+        ):
+            self.assertIn(option, text)
+        self.assertLessEqual(max(map(len, text.splitlines())), 80)
+        self.assertEqual(self.call("-h").stdout, text)
+        self.assertEqual(list(self.work.iterdir()), [])
+
+    def test_version(self):
+        text = self.call("--version").stdout
+        self.assertRegex(text, r"^viscoplastic_contact \d+\.\d+\.\d+ \(.+\), deal\.II 9")
+        self.assertEqual(len(text.splitlines()), 1)
+
+    def test_one_voice_in_parallel(self):
+        text = self.call("--version", launcher=[*MPIRUN, "-n", "2"]).stdout
+        self.assertEqual(len(text.splitlines()), 1)
+
+    def test_wrong_arguments(self):
+        """Code 2 and one sentence with the nearest option."""
+        process = self.call("--chekc", SLAB, code=2)
+        self.assertIn("did you mean --check?", process.stderr)
+        self.assertEqual(len(process.stderr.splitlines()), 1)
+
+
+class Description(Manners):
+    def test_is_a_scene(self):
+        """What --describe prints is read, checked and computed."""
+        text = self.call("--describe").stdout
+        self.assertLessEqual(max(map(len, text.splitlines())), 78)
+        (self.work / "all.prm").write_text(text)
+        self.assertIn("The scene is valid.", self.call("--check", "all.prm").stdout)
+        self.call("all.prm")
+        self.assertTrue((self.work / "output/all/statistics.csv").exists())
+
+    def test_is_a_scene_in_three_dimensions(self):
+        (self.work / "all.prm").write_text(self.call("--describe").stdout)
+        changes = (
+            "Dimension=3",
+            "Geometry/Arguments=2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true",
+            "Boundary 4/Role=free",
+            "Boundary 5/Role=free",
+        )
+        sets = [word for change in changes for word in ("--set", change)]
+        self.assertIn("valid", self.call("--check", "all.prm", *sets).stdout)
+
+    def test_knows_what_the_record_knows(self):
+        """The entries of parameters.prm are those that are described."""
+        self.call(SLAB, *SHORT)
+        record = (self.work / "output/slab/parameters.prm").read_text()
+        described = self.call("--describe").stdout
+
+        def entries(text):
+            lines = map(str.strip, text.splitlines())
+            names = [line.split("=")[0] for line in lines if line.startswith("set ")]
+            return {name.strip() for name in names}
+
+        self.assertEqual(entries(record), entries(described))
+        # each with its default in a comment before it
+        blocks = re.findall(r"((?:^ *#.*\n)+)^ *set (.*?) =", described, re.M)
+        self.assertLessEqual(entries(record), {f"set {name}" for _, name in blocks})
+        for comment, name in blocks:
+            self.assertIn("Default:", comment, name)
+
+    def test_the_manual_is_up_to_date(self):
+        written = SOURCE / "doc" / "parameters.md"
+        self.assertEqual(
+            written.read_text(),
+            self.call("--describe=markdown").stdout,
+            "doc/parameters.md is not what the program prints; renew it by "
+            "build/viscoplastic_contact --describe=markdown > doc/parameters.md",
+        )
+
+
+class Check(Manners):
+    def test_says_what_is_to_come_and_does_nothing(self):
+        text = self.call("--check", SLAB).stdout
+        for part in (
+            "Effects:",
+            "maxwell",
+            "512 cells",
+            "degrees of freedom",
+            "Steps: 32 until t = 2",
+            "Linear solver: direct",
+            "Memory: about",
+        ):
+            self.assertIn(part, text)
+        self.assertTrue(text.endswith("The scene is valid.\n"))
+        self.assertEqual(list(self.work.iterdir()), [])
+
+    def test_refuses_what_a_run_refuses(self):
+        process = self.call(
+            "--check", SLAB, "--set", "Material/Young's modulus=-1", code=1
+        )
+        self.assertIn("Young", process.stderr)
+        self.assertEqual(list(self.work.iterdir()), [])
+
+
+class Files(Manners):
+    def phases(self):
+        record = (self.work / "output/slab/parameters.prm").read_text()
+        return re.search(r"set Phases += (.*?) *(?:#|$)", record, re.M).group(1)
+
+    def test_later_files_and_assignments_override(self):
+        (self.work / "b.prm").write_text("subsection Time\nset Phases = 1: 2\nend\n")
+        (self.work / "c.prm").write_text("subsection Time\nset Phases = 1: 3\nend\n")
+        self.call(SLAB, "b.prm", "c.prm", *SMALL)
+        self.assertEqual(self.phases(), "1: 3")
+        self.call(SLAB, "c.prm", "b.prm", *SMALL)
+        self.assertEqual(self.phases(), "1: 2")
+        assignments = ["--set", "Time/Phases=1: 5", "--set", "Time/Phases=1: 6"]
+        self.call(*assignments, SLAB, "b.prm", *SMALL)
+        self.assertEqual(self.phases(), "1: 6")
+        self.assertEqual(len(self.column(self.work / "output/slab", "t")), 7)
+
+    def test_paths_follow_their_files(self):
+        """An included file is found from anywhere."""
+        folder = self.work / "scenes" / "parts"
+        folder.mkdir(parents=True)
+        shutil.copy(SLAB, folder / "base.prm")
+        (folder / "mesh.prm").write_text("include base.prm\n")
+        (folder.parent / "scene.prm").write_text("include parts/mesh.prm\n")
+        self.call("scenes/scene.prm", *SHORT)
+        self.assertTrue((self.work / "output/scene/statistics.csv").exists())
+
+
+class Voice(Manners):
+    def test_lines_when_not_on_a_terminal(self):
+        text = self.call(SLAB, *SHORT).stdout
+        self.assertNotIn("\r", text)
+        self.assertNotIn("\033", text)
+        steps = re.findall(r"^Step (\d+)/4  t = \S+  k = 0\.25  cells 8  contact "
+                           r"iterations \d+  slipping \d+ %  elapsed \S+ s  left", text, re.M)
+        self.assertEqual(steps, ["1", "2", "3", "4"])
+
+    def test_long_runs_do_not_flood(self):
+        """Some 200 lines for 1000 steps, the last step among them."""
+        arguments = (*SMALL, "--set", "Time/Phases=1: 1000",
+                     "--set", "Output/Fields every=0")
+        text = self.call(SLAB, *arguments).stdout
+        lines = [line for line in text.splitlines() if line.startswith("Step ")]
+        self.assertTrue(190 <= len(lines) <= 202, len(lines))
+        self.assertIn("1000/1000", lines[-1])
+        self.assertEqual(len(self.column(self.work / "output/slab", "t")), 1001)
+
+    def test_one_line_on_a_terminal(self):
+        """The present step is written over the one before, within the width
+        of the terminal; the log gets lines all the same."""
+        master, slave = pty.openpty()
+        environment = {
+            name: value
+            for name, value in os.environ.items()
+            if not name.startswith(("OMPI_", "PMI"))
+        }
+        process = subprocess.Popen(
+            [EXECUTABLE, SLAB, "--log", "log", "--set", "Time/Phases=1: 60"],
+            cwd=self.work,
+            env={**environment, "OMP_NUM_THREADS": "1", "TERM": "xterm"},
+            stdin=subprocess.DEVNULL,
+            stdout=slave,
+            stderr=subprocess.PIPE,
+        )
+        os.close(slave)
+        chunks = []
+        while True:
+            try:
+                chunk = os.read(master, 65536)
+            except OSError:  # the other end is closed
+                break
+            if not chunk:
+                break
+            chunks.append(chunk)
+        os.close(master)
+        process.stderr.close()
+        self.assertEqual(process.wait(), 0)
+        text = b"".join(chunks).decode()
+        status = re.findall(r"\r(Step [^\r\n\x1b]*)\x1b\[K", text)
+        self.assertGreaterEqual(len(status), 1)
+        for line in status:
+            self.assertLess(len(line), 80, line)
+            self.assertRegex(line, r"^Step +\d+/60  t = .*left ")
+        # only the last step stays
+        self.assertEqual(
+            re.findall(r"\nStep +(\d+)/60", text.replace("\r\x1b[K", "\n")), ["60"]
+        )
+        log = (self.work / "log").read_text()
+        self.assertEqual(len(re.findall(r"^Step +\d+/60", log, re.M)), 60)
+        self.assertNotIn("\033", log)
+
+    def test_quiet(self):
+        process = self.call("--quiet", SLAB, *SHORT)
+        self.assertEqual(process.stdout + process.stderr, "")
+        self.assertTrue((self.work / "output/slab/statistics.csv").exists())
+        # but errors are told
+        process = self.call("--quiet", SLAB, "--set", "Dimension=7", code=1)
+        self.assertIn("Dimension", process.stderr)
+
+    def test_log(self):
+        """The log holds what is printed, also if nothing is printed."""
+        process = self.call(SLAB, *SHORT, "--log", "log.txt")
+        times = re.compile(r"\d+\.\d{3} +\d+ %|(?:elapsed|left) \S+ \S+")
+        log = (self.work / "log.txt").read_text()
+        self.assertEqual(times.sub("", log), times.sub("", process.stdout))
+        self.call("--quiet", SLAB, *SHORT, "--log=log.txt")
+        self.assertEqual(
+            times.sub("", (self.work / "log.txt").read_text()), times.sub("", log)
+        )
+        process = self.call(SLAB, "--set", "Dimension=7", "--log=log.txt", code=1)
+        self.assertIn("'Dimension' is '7'", (self.work / "log.txt").read_text())
+
+    def test_closing_words(self):
+        """They agree with the last row of the table, and end with the place of
+        the results."""
+        text = self.call(SLAB, *SHORT).stdout
+        results = self.work / "output/slab"
+        self.assertEqual(text.splitlines()[-1], "Results in output/slab/")
+
+        def words(name):
+            return re.search(rf"^  {name} +(.*)$", text, re.M).group(1)
+
+        for name, column in (
+            ("external work", "external_work"),
+            ("stored energy", "stored_energy"),
+            ("viscous dissipation", "viscous_dissipation"),
+            ("friction dissipation", "friction_dissipation"),
+            ("energy balance defect", "energy_balance_defect"),
+        ):
+            self.assertClose(
+                float(words(name)),
+                self.column(results, column)[-1],
+                relative=1e-4,
+                absolute=1e-12,
+                what=name,
+            )
+        for name, column in (
+            ("friction force", "friction_force"),
+            ("reaction of boundary 3", "reaction_3"),
+        ):
+            for value, axis in zip(words(name).split(";"), "xy"):
+                self.assertClose(
+                    float(value),
+                    self.column(results, f"{column}_{axis}")[-1],
+                    relative=1e-4,
+                    absolute=1e-12,
+                    what=name,
+                )
+        for name, column in (
+            ("displacement", "max_displacement"),
+            ("von Mises stress", "max_von_mises"),
+            ("slipping area", "slip_area"),
+        ):
+            self.assertClose(
+                float(words(name).split()[0]),
+                max(self.column(results, column)),
+                relative=1e-4,
+                what=name,
+            )
+        # phases add up to the run, and name their effects
+        phases = re.findall(r"^  (\S.*?) +(\d+\.\d+) +\d+ %", text, re.M)
+        seconds = {name: float(value) for name, value in phases}
+        self.assertClose(
+            sum(value for name, value in seconds.items() if name != "whole run"),
+            seconds["whole run"],
+            absolute=0.02,
+        )
+        for phase in ("set-up", "rate", "contact", "output"):
+            self.assertIn(phase, seconds)
+
+    def test_remarks_are_repeated_at_the_end(self):
+        """Here: a law that has passed its cap, which is also in the table."""
+        process = self.call(
+            SLAB,
+            *SHORT,
+            "--set",
+            "Material/Law=norton",
+            "--set",
+            "Material/norton/Rate factor=0.01",
+            "--set",
+            "Material/norton/Stress cap=0.01",
+        )
+        self.assertEqual(len(re.findall("the cap of a law", process.stdout)), 2)
+        self.assertRegex(process.stdout, "volume beyond the cap +[0-9.]+ at t = ")
+        self.assertGreater(max(self.column(self.work / "output/slab", "capped_volume")), 0)
+
+
+del Manners  # has no tests of its own
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// The arguments of the program, and what a run says of itself.
+
+#include "body.h"
+#include "folder.h"
+#include <viscoplastic_contact/command_line.h>
+#include <viscoplastic_contact/progress.h>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  TEST(CommandLine, Options)
+  {
+    using Task = CommandLine::Task;
+    EXPECT_EQ(read_command_line({}).task, Task::guide);
+    EXPECT_EQ(read_command_line({"--help"}).task, Task::help);
+    EXPECT_EQ(read_command_line({"-h"}).task, Task::help);
+    EXPECT_EQ(read_command_line({"--version"}).task, Task::version);
+    EXPECT_EQ(read_command_line({"--describe"}).task, Task::describe);
+    EXPECT_EQ(read_command_line({"--describe=markdown"}).task,
+              Task::describe_as_markdown);
+    const CommandLine line = read_command_line({"a.prm",
+                                                "--set",
+                                                "A/B=c=d",
+                                                "--log=x",
+                                                "b.prm",
+                                                "--set=C=1",
+                                                "--quiet",
+                                                "--check",
+                                                "--",
+                                                "--c.prm"});
+    EXPECT_EQ(line.task, Task::check);
+    EXPECT_EQ(line.files,
+              (std::vector<std::string>{"a.prm", "b.prm", "--c.prm"}));
+    EXPECT_EQ(line.overrides, (std::vector<std::string>{"A/B=c=d", "C=1"}));
+    EXPECT_TRUE(line.quiet);
+    EXPECT_EQ(line.log, "x");
+  }
+
+
+
+  TEST(CommandLine, Refusals)
+  {
+    const auto refused = [](const std::vector<std::string> &arguments,
+                            const std::string              &sentence) {
+      expect_refusal([&] { read_command_line(arguments); }, sentence);
+    };
+    refused({"--chek", "a.prm"},
+            "There is no option '--chek'; did you mean --check?");
+    refused({"-x", "a.prm"}, "There is no option '-x'; the options are --help");
+    refused({"a.prm", "--set"}, "--set needs 'Section/Entry=value' after it.");
+    refused({"a.prm", "--log"}, "--log needs the name of a file after it.");
+    refused({"--log", "a.prm", "b.prm"}, "would overwrite 'a.prm'");
+    refused({"--check"}, "There is no parameter file among the arguments");
+    refused({"--check", "--version"},
+            "--check and --version exclude each other.");
+    refused({"--describe", "a.prm"}, "goes without parameter files");
+    refused({"--describe=html"}, "the values prm and markdown, not 'html'.");
+    refused({"--quiet=yes", "a.prm"}, "--quiet has no value");
+    refused({"a.prm", "Time/Phases=1: 2"}, "write --set 'Time/Phases=1: 2'.");
+  }
+
+
+
+  // ------------------------------------------------------------- progress
+
+  TEST(Progress, RemainingTime)
+  {
+    RemainingTime remaining;
+    for (unsigned int i = 0; i < 5; ++i)
+      remaining.add_step(2., 100.);
+    EXPECT_DOUBLE_EQ(remaining.seconds(10, 100.), 20.);
+    // Twice the cells take twice the time, before a step has shown it.
+    EXPECT_DOUBLE_EQ(remaining.seconds(10, 200.), 40.);
+    EXPECT_EQ(remaining.seconds(0, 100.), 0.);
+    // Slow steps are forgotten.
+    for (unsigned int i = 0; i < 60; ++i)
+      remaining.add_step(0.5, 100.);
+    EXPECT_NEAR(remaining.seconds(10, 100.), 5., 0.1);
+    EXPECT_EQ(RemainingTime().seconds(10, 100.), 0.);
+  }
+
+
+
+  TEST(Progress, LinesAreFew)
+  {
+    for (const unsigned int n_steps : {1u, 7u, 200u, 201u, 100000u})
+      {
+        const Folder      folder;
+        const std::string log = (folder.path / "log").string();
+        {
+          Console  console(MPI_COMM_SELF, true, log);
+          Progress progress(console, n_steps);
+          for (unsigned int n = 0; n <= n_steps; ++n)
+            progress.report({n, 0.1 * n, n > 0 ? 0.1 : 0., 64., 3, 0.5, {}},
+                            0.01 * n);
+        }
+        std::ifstream            file(log);
+        std::vector<std::string> lines;
+        std::string              line;
+        while (std::getline(file, line))
+          lines.push_back(line);
+        if (n_steps <= 200)
+          EXPECT_EQ(lines.size(), n_steps);
+        else
+          {
+            EXPECT_GE(lines.size(), 200u);
+            EXPECT_LE(lines.size(), 202u);
+          }
+        const std::string n = std::to_string(n_steps);
+        EXPECT_EQ(lines.back().find("Step " + n + '/' + n + "  t = "), 0u);
+        EXPECT_NE(lines.back().find("contact iterations 3  slipping 50 %  "
+                                    "elapsed "),
+                  std::string::npos)
+          << lines.back();
+        EXPECT_NE(lines.back().find("left 0 s"), std::string::npos);
+      }
+  }
+
+
+
+  TEST(Progress, Durations)
+  {
+    EXPECT_EQ(duration(0.3), "0 s");
+    EXPECT_EQ(duration(99.), "99 s");
+    EXPECT_EQ(duration(100.), "2 min");
+    EXPECT_EQ(duration(5000.), "83 min");
+    EXPECT_EQ(duration(9000.), "2.5 h");
+    EXPECT_EQ(duration(259200.), "3.0 d");
+  }
+
+
+
+  TEST(Progress, RemarksAreKeptAndLogged)
+  {
+    const Folder      folder;
+    const std::string log = (folder.path / "log").string();
+    {
+      Console console(MPI_COMM_SELF, true, log);
+      console.stream() << "text" << std::endl;
+      console.remark("Warning: hot.");
+      console.log() << "only here" << std::endl;
+      EXPECT_EQ(console.remarks(), std::vector<std::string>{"Warning: hot."});
+    }
+    std::ifstream     file(log);
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    EXPECT_EQ(text, "text\nWarning: hot.\nonly here\n");
+    expect_refusal([] { Console console(MPI_COMM_SELF, true, "/nowhere/log"); },
+                   "The log file '/nowhere/log' cannot be written");
+  }
+} // namespace

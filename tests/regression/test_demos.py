@@ -525,7 +525,8 @@ class TunnelLining(TestCase):
             self.assertNotIn("friction_dissipation", result.statistics)
             self.assertNotIn("viscous_dissipation", result.statistics)
         error = self.errors(fine)
-        self.assertClose(error, 0, absolute=[7.5e-3, 3.5e-3])
+        self.assertLess(error[0], 7.5e-3)  # of the displacement
+        self.assertLess(error[1], 3.5e-3)  # of the hoop stress
         ratio = self.errors(coarse) / error
         self.assertGreater(ratio.min(), 3.4)
         self.assertLess(ratio.max(), 4.5)

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -40,6 +41,35 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ViscoplasticContact<dim>::check_steps()
+  {
+    if (!scene.has_viscosity())
+      return;
+    const double rate =
+      flow(state, scene.schedule.step(1)).relaxation_rate; // throws
+    if (rate == 0.)
+      return;
+    out << "Stability limit 2/r of the initial state: " << 2. / rate << '\n';
+    TimeStep largest = scene.schedule.step(1);
+    for (unsigned int n = 2; n <= scene.schedule.n_steps(); ++n)
+      if (scene.schedule.step(n).k > largest.k)
+        largest = scene.schedule.step(n);
+    if (largest.k * rate > 2. * (1. + 1e-10))
+      {
+        std::ostringstream message;
+        message << "Warning: the time step " << largest.k << " of step "
+                << largest.n << " (t = " << largest.t
+                << ") exceeds this limit; the run will end there unless the "
+                   "limit has grown by then. Take more steps in "
+                   "'Time/Phases'.";
+        console.remark(message.str());
+      }
+  }
+
+
+
+  template <int dim>
+  void
   ViscoplasticContact<dim>::check()
   {
     make_mesh();
@@ -56,13 +86,7 @@ namespace Viscoplastic
     if (!parameters.initial_state.equilibrate)
       check_compatibility(d.loads.assemble(0.));
     const unsigned int n_steps = scene.schedule.n_steps();
-    if (scene.has_viscosity())
-      {
-        const FlowStep<dim> first = flow(state, scene.schedule.step(1));
-        if (first.relaxation_rate > 0.)
-          out << "Stability limit 2/r of the initial state: "
-              << 2. / first.relaxation_rate << '\n';
-      }
+    check_steps();
 
     // The data of later times, of at most a hundred steps.
     const unsigned int stride = (n_steps + 99) / 100;
@@ -96,7 +120,9 @@ namespace Viscoplastic
         << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()
         << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
         << (scene.is_adaptive() ? " on the initial mesh" : "")
-        << "\nThe scene is valid." << std::endl;
+        << "\nThe scene is valid"
+        << (console.remarks().empty() ? "." : ", with the remarks above.")
+        << std::endl;
   }
 
 

@@ -165,13 +165,18 @@ namespace Viscoplastic
       {
         frame.is_cartesian = true;
         frame.directions   = unit_symmetric_tensor<dim>();
+        bool along_axes    = true;
         for (unsigned int i = 0; i < frame.n_fixed; ++i)
-          frame.fixed[i] = i;
-        if (frame.n_fixed < dim)
-          for (unsigned int i = 0; i < frame.n_fixed; ++i)
-            for (unsigned int d = 0; d < dim; ++d)
+          along_axes &= is_axis(frame.condition_direction[i]);
+        // Also where all components are fixed: reactions are booked by the
+        // condition, and so need its own component.
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          {
+            frame.fixed[i] = i;
+            for (unsigned int d = 0; along_axes && d < dim; ++d)
               if (std::abs(frame.condition_direction[i][d]) == 1.)
                 frame.fixed[i] = d;
+          }
       }
     else
       {

@@ -26,7 +26,7 @@ namespace Viscoplastic
       console.remark("Warning: " + warning);
     const std::string advice = advice_on_blas_kernel();
     if (!advice.empty())
-      console.remark("Note: " + advice);
+      out << "Note: " << advice << '\n';
     out << std::flush;
   }
 
@@ -87,12 +87,15 @@ namespace Viscoplastic
                                   max_displacement);
         friction_force = d.face->resultant(step.state.friction);
       }
+    const double tension_area =
+      d.tension.any() ? d.tension.tension_area(step.state) : 0.;
     const auto reaction_forces = reactions(d.space, step.forces);
 
     // Forces on the body: loads, reactions, minus the multipliers.
     Tensor<1, dim> balance = step.forces.load.resultant - friction_force;
-    double         size    = step.forces.load.resultant.norm();
-    size                   = std::max(size, friction_force.norm());
+    double        &size    = accounts.largest_force;
+    size                   = std::max(
+      {size, step.forces.load.resultant.norm(), friction_force.norm()});
     for (const auto &pair : reaction_forces)
       {
         balance += pair.second;
@@ -133,6 +136,8 @@ namespace Viscoplastic
         row.add("dofs", dof_handler.n_dofs());
         if (scene.has_viscosity())
           row.add("step_limit", step.step_limit);
+        if (d.tension.any())
+          row.add("tension_area", tension_area);
         if (d.laws.any_cap)
           row.add("capped_volume", step.capped_volume);
         if (d.face)
@@ -201,6 +206,7 @@ namespace Viscoplastic
     summary.stored_energy         = stored_energy;
     summary.external_work         = accounts.external_work;
     summary.energy_balance_defect = defect;
+    summary.tension_area.update(tension_area, time_step.t);
     summary.displacement.update(max_displacement, time_step.t);
     summary.von_mises.update(stress.max_von_mises, time_step.t);
     if (scene.has_viscosity())
@@ -261,6 +267,20 @@ namespace Viscoplastic
                     "quadrature points.";
             remarks.push_back(text.str());
           }
+      }
+
+    const double tension =
+      discretisation->tension.any() ?
+        summary.tension_area.value / discretisation->tension.area() :
+        0.;
+    if (tension > 0.01)
+      {
+        std::ostringstream text;
+        text << std::setprecision(2)
+             << "Note: at t = " << summary.tension_area.t
+             << " the foundation pulls at the body on " << 100. * tension
+             << " % of the face in bilateral contact, which does not open.";
+        remarks.push_back(text.str());
       }
 
     out << '\n';

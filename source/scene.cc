@@ -87,31 +87,6 @@ namespace Viscoplastic
         result += (result.empty() ? "" : ", ") + std::to_string(id);
       return result;
     }
-
-
-
-    template <int dim>
-    Point<dim>
-    parse_vector(const std::string &text, const std::string &entry)
-    {
-      std::vector<double> numbers;
-      try
-        {
-          numbers = Utilities::string_to_double(
-            Utilities::split_string_list(text, ','));
-        }
-      catch (const std::exception &)
-        {
-          numbers.clear(); // refused below
-        }
-      AssertThrow(numbers.size() == dim,
-                  ExcMessage("'" + entry + "' = " + text + " needs " +
-                             std::to_string(dim) + " numbers."));
-      Point<dim> result;
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] = numbers[d];
-      return result;
-    }
   } // namespace
 
 
@@ -250,7 +225,7 @@ namespace Viscoplastic
     for (const std::string &point :
          Utilities::split_string_list(parameters.output.points, ';'))
       if (!point.empty())
-        output_points.push_back(parse_vector<dim>(point, "Output/Points"));
+        output_points.push_back(parse_point<dim>(point, "Output/Points"));
   }
 
 
@@ -369,6 +344,15 @@ namespace Viscoplastic
         return;
       }
 
+    const MaterialParameters &plain = parameters.material, defaults;
+    AssertThrow(plain.youngs_modulus == defaults.youngs_modulus &&
+                  plain.poissons_ratio == defaults.poissons_ratio &&
+                  plain.voigt_matrix == defaults.voigt_matrix &&
+                  plain.law == defaults.law,
+                ExcMessage("'Material' gives elasticity or a law beside "
+                           "numbered materials, but no cell would have it; "
+                           "give it to `Material <id>', or leave the numbers "
+                           "out."));
     for (const types::material_id id : ids)
       {
         const auto section = "Material " + std::to_string(id);

@@ -47,6 +47,7 @@ namespace Viscoplastic
                mean_dilatation)
     , laws(sampling)
     , loads(space)
+    , tension(sampling)
     , n_solves(scene.is_adaptive() ? scene.parameters.refinement.every_n_steps :
                                      scene.schedule.n_steps())
   {
@@ -99,6 +100,7 @@ namespace Viscoplastic
     make_mesh();
     set_up();
     set_initial_state();
+    check_steps();
     output.emplace(scene, communicator);
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       statistics =

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # What is not prose, longest first, and headings.
 PARTS = re.compile(
-    r"^```math\n(?P<display>[\s\S]*?)^```$"
+    r"^(?:```math|\$\$)\n(?P<display>[\s\S]*?)^(?:```|\$\$)$"
     r"|(?P<code>^```[\s\S]*?^```$|^ {4}.*$)"
     r"|^(?P<heading>\#+ .*)$"
     r"|!\[(?P<caption>[^\]]*)\]\((?P<image>[^)\s]+)\)"

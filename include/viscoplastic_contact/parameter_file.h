@@ -23,7 +23,7 @@ namespace Viscoplastic
     /**
      * Read @p files, of which later ones override earlier ones, and then the
      * assignments `Section/Entry=value' of @p overrides. Subsections
-     * `Boundary <id>' and `Material <id>' are declared for the ids that these
+     * `Boundary 0', `Material 1' and so on are declared for the ids that these
      * name. Without files everything has its default.
      *
      * Throws ExcMessage with a sentence that says where something unknown or

@@ -46,7 +46,7 @@ namespace Viscoplastic
     std::optional<double> viscous_dissipation, friction_dissipation,
       adaptation_energy, error_estimate;
 
-    Largest displacement, von_mises, slip_area, capped_volume;
+    Largest displacement, von_mises, slip_area, capped_volume, tension_area;
     /// Of all friction points.
     double friction_area = 0.;
 

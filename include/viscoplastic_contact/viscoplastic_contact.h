@@ -10,6 +10,7 @@
 #include <viscoplastic_contact/console.h>
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/contact_tension.h>
 #include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/force_balance.h>
 #include <viscoplastic_contact/loads.h>
@@ -72,6 +73,7 @@ namespace Viscoplastic
       StressSampling<dim>  sampling;
       FlowLaws<dim>        laws;
       Loads<dim>           loads;
+      ContactTension<dim>  tension;
       /// Null without friction.
       std::unique_ptr<ContactFace<dim>> face;
 
@@ -102,6 +104,9 @@ namespace Viscoplastic
     {
       double initial_energy = 0., external_work = 0., viscous_dissipation = 0.,
              friction_dissipation = 0.;
+      /// The largest load, reaction or friction force so far: the scale of
+      /// defects of balance, also where all forces pass through zero.
+      double largest_force = 0.;
       /// What changes of the mesh did to the stored energy.
       double       adaptation_energy  = 0.;
       unsigned int contact_iterations = 0, linear_iterations = 0;
@@ -109,6 +114,11 @@ namespace Viscoplastic
 
     void
     make_mesh();
+
+    /// Refuse a first step beyond the stability limit, before anything is
+    /// written, and warn of later ones. Source: source/check.cc.
+    void
+    check_steps();
 
     void
     set_up();

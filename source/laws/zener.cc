@@ -206,7 +206,8 @@ namespace Viscoplastic
       "is the `Relaxation time' in s; E_inf is given by the `Long-term "
       "Young's modulus' in Pa (zero: all stress relaxes) and the `Long-term "
       "Poisson's ratio'. Bulk and shear modulus must not exceed those of E; "
-      "where one of them equals that of E, that part does not relax. "
+      "where one of them equals that of E, that part does not relax. With a "
+      "long-term Poisson's ratio near 1/2 choose mean dilatation. "
       "Reference: C. Zener, Elasticity and Anelasticity of Metals, University "
       "of Chicago Press 1948, chapter 5.";
     law.declare = [](ParameterHandler &prm) {

@@ -5,18 +5,24 @@ Excerpts of code occur in the files they name, links and named files exist, and
 so do the entries of the parameter file that are mentioned.
 """
 
+import os
 import re
+import shutil
 import subprocess
+import tempfile
+import textwrap
 import unittest
 from pathlib import Path
 
-from harness import EXECUTABLE, SOURCE, main
+from harness import EXECUTABLE, SOURCE, Run, TestCase, main
 
 PAGES = sorted(
     [SOURCE / "README.md", SOURCE / "LICENSES.md"]
     + list((SOURCE / "doc").glob("*.md"))
     + list((SOURCE / "benchmarks").glob("*.md"))
 )
+# Explains how to add what is not there, and is tested by tests/unit.
+EXAMPLE = SOURCE / "doc" / "adding_a_law.md"
 FOLDERS = r"(?:source|include|prm|doc|tests|contrib|benchmarks|\.ci)/"
 # Files of which the repository holds all that exist.
 OWN_FILE = re.compile(rf"{FOLDERS}[\w./-]*\w|[\w-]+\.(?:cc|py)")
@@ -79,6 +85,8 @@ class Documents(unittest.TestCase):
     def test_excerpts_occur_in_the_file_named_last_before_them(self):
         n_excerpts = 0
         for page in PAGES:
+            if page == EXAMPLE:
+                continue
             prose, blocks = prose_and_blocks(page)
             for line, language, text in blocks:
                 if language not in ("cpp", "prm", "geo"):
@@ -121,14 +129,14 @@ class Documents(unittest.TestCase):
     def test_named_files_exist(self):
         basenames = {
             file.name
-            for folder in ("source", "include", "tests", "benchmarks", "doc")
+            for folder in ("source", "include", "prm", "tests", "benchmarks", "doc")
             for file in (SOURCE / folder).rglob("*")
         }
         n_names = 0
         for page in PAGES:
             prose, _ = prose_and_blocks(page)
             for name in re.findall(r"`([^`\s]+)`", prose):
-                if not OWN_FILE.fullmatch(name):
+                if not OWN_FILE.fullmatch(name) or page == EXAMPLE:
                     continue
                 n_names += 1
                 with self.subTest(page=page.name, name=name):
@@ -144,17 +152,19 @@ class Documents(unittest.TestCase):
         names = set().union(*known.values())
         n_entries = 0
         for page in PAGES:
+            if page == EXAMPLE:
+                continue
             prose, blocks = prose_and_blocks(page)
             # `Section/Entry', also with a number, a value, or in quotes
             quoted = re.findall(r"`'?([^`'=]+(?:'s [^`'=]+)?)'?(?: ?=[^`]*)?'?`", prose)
             for name in quoted:
                 *path, entry = name.strip().split("/")
-                section = re.sub(r"^(Boundary|Material) \S+$", r"\1", path[0]) if path else ""
-                if section not in sections:
+                path = [re.sub(r"^(Boundary|Material) \S+$", r"\1", p) for p in path]
+                if not path or path[0] not in sections:
                     continue
                 n_entries += 1
                 with self.subTest(page=page.name, entry=name):
-                    self.assertIn(entry.strip(), known.get("/".join([section] + path[1:]), {}))
+                    self.assertIn(entry.strip(), known.get("/".join(path), {}))
             # set Entry = value, in blocks and in running text
             for entry in re.findall(
                 r"^\s*set +([^=\n]+?) *=", page.read_text(), re.M
@@ -163,6 +173,117 @@ class Documents(unittest.TestCase):
                 with self.subTest(page=page.name, set=entry):
                     self.assertIn(entry, names | {"Name"})
         self.assertGreater(n_entries, 20)
+
+
+class OwnScene(TestCase):
+    """doc/own_scene.md: what it lets the reader do, and what it says comes
+    out."""
+
+    FOLDER = SOURCE / "doc" / "own_scene"
+    PAGE = SOURCE / "doc" / "own_scene.md"
+
+    def program(self, *arguments):
+        """Run in a directory that holds the files of the page."""
+        return subprocess.run(
+            [EXECUTABLE, *arguments],
+            cwd=self.work,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="own_scene_")
+        self.addCleanup(folder.cleanup)
+        self.work = Path(folder.name)
+        for file in self.FOLDER.iterdir():
+            shutil.copy(file, self.work)
+
+    def block_after(self, text):
+        """What stands indented after this text, without the indentation."""
+        page = self.PAGE.read_text()
+        self.assertEqual(page.count(text), 1, text)
+        block = re.search(r"(?:^    .*\n)+", page[page.index(text) :], re.M)
+        return textwrap.dedent(block[0])
+
+    def test_scene_is_made_of_the_excerpts(self):
+        _, blocks = prose_and_blocks(self.PAGE)
+        quoted = [squeezed(text) for _, language, text in blocks if language == "prm"]
+        scene = (self.FOLDER / "foot.prm").read_text()
+        scene = squeezed(re.sub(r"^#.*$", "", scene, flags=re.M))
+        for text in quoted:
+            self.assertEqual(scene.count(text), 1, text)
+            scene = scene.replace(text, "")
+        self.assertEqual(scene, "", "not in the page")
+
+    def test_check_prints_what_the_page_shows(self):
+        shown = self.block_after("The finished mesh and scene give")
+        command, *lines = shown.splitlines()
+        self.assertEqual(command, "$ viscoplastic_contact --check foot.prm")
+        process = self.program(*command.split()[2:])
+        self.assertEqual(process.returncode, 0, process.stderr)
+        printed = process.stdout.splitlines()
+        for line in lines:
+            if not line.startswith("Memory"):
+                self.assertIn(line, printed)
+
+    def test_forgotten_role_is_refused_as_the_page_shows(self):
+        scene = (self.FOLDER / "foot.prm").read_text()
+        sides = re.compile(r"^subsection Boundary 4\n.*?^end\n", re.M | re.S)
+        without, n = sides.subn("", scene)
+        self.assertEqual(n, 1)
+        (self.work / "foot.prm").write_text(without)
+        process = self.program("--check", "foot.prm")
+        self.assertEqual(process.returncode, 1)
+        shown = self.block_after("says so:")
+        self.assertIn(squeezed(shown), squeezed(process.stderr))
+
+    def test_run_gives_what_the_page_says(self):
+        process = self.program("foot.prm")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        result = Run(self.work / "output" / "foot", process)
+        weight = result["t"] >= 1
+        self.assertClose(result["reaction_1_y"][weight], 24000, relative=1e-6)
+        force = result["friction_force_x"]
+        self.assertClose(abs(force).max(), 7200, relative=1e-9)
+        self.assertClose(result["reaction_3_x"], force, absolute=1e-3)
+        # the summary, digit by digit
+        shown = self.block_after("ends with a summary")
+        summary = dict(re.findall(r"^ *(.*?)  +(.*)$", shown, re.M))
+        self.assertGreater(len(summary), 5)
+        for name, value in summary.items():
+            with self.subTest(name=name):
+                self.assertRegex(result.stdout, rf"{name} +{re.escape(value)}\n")
+        # the row of the table, the loop, and the tension at the corner
+        page = self.PAGE.read_text()
+        row = re.search(r"^\| 2 \| 240 \| (.*) \|$", page, re.M)[1].split(" | ")
+        last = [
+            result["friction_dissipation"][-1],
+            result["viscous_dissipation"][-1],
+            force[-1],
+            result["max_von_mises"].max() / 1e6,
+        ]
+        for value, text in zip(last, row):
+            digits = len(text.partition(".")[2])
+            self.assertClose(value, float(text), absolute=0.6 * 10**-digits)
+        dissipation = result["friction_dissipation"]
+        in_a_cycle = dissipation[result.row(31)] - dissipation[result.row(21)]
+        self.assertClose(in_a_cycle, 4.97, absolute=0.006)
+        fields = result.fields(index=10)
+        on_base = (fields.points[fields.cells][:, :, 1] < 1e-6).sum(axis=1) == 2
+        stress = fields.cell_data["stress_yy"][on_base] / 1e6
+        self.assertClose(stress.min(), -0.36, absolute=0.01)
+        self.assertClose(stress.max(), 0.12, absolute=0.01)
+
+    def test_variant_of_two_files(self):
+        (self.work / "stiff.prm").write_text(self.block_after("`stiff.prm`:"))
+        process = self.program(
+            "foot.prm", "stiff.prm", "--quiet", "--set", "Output/Directory=stiff"
+        )
+        self.assertEqual(process.returncode, 0, process.stderr)
+        record = (self.work / "stiff" / "parameters.prm").read_text()
+        self.assertRegex(record, r"set Young's modulus *= 40e6")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command line of contrib/plot."""
+
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")  # draws to files, also without a display
+
+import matplotlib.pyplot as plt
+
+from . import animation, contact, fields, history, hysteresis, overview, stick_slip
+from . import style
+from .body import VIEW, available_fields
+from .paraview import write_state
+from .results import NoPicture, Results, UserError, number
+
+DESCRIPTION = """\
+Draw a directory of results.
+
+pictures:
+  overview    body, contact face and friction force (what is drawn if no
+              picture is named; goes to RESULTS/<its name>.png)
+  <field>     a field on the deformed body, by its name: von_mises,
+              displacement, displacement_x, stress_xy, estimator, ...
+              (--list names those of RESULTS)
+  fields      all of them
+  contact     the contact face: traction, slip, where it sticks
+  history     the main columns of statistics.csv over time, or --columns
+  hysteresis  force over displacement, with the area of the loop
+  stick-slip  map of stick and slip over arc length and time (2D)
+All but the overview go to RESULTS/pictures/.  Numbers are in the units of
+the scene.
+"""
+
+EXAMPLES = """\
+examples:
+  contrib/plot output/block
+  contrib/plot output/block von_mises displacement_x --time 1
+  contrib/plot output/block contact history --format pdf
+  contrib/plot output/block hysteresis --force friction_force_x \\
+      --displacement point0_x
+  contrib/plot output/block von_mises contact --animate
+  contrib/plot output/block --all
+  contrib/plot output/block --paraview
+doc/pictures.md shows what they look like.
+"""
+
+AT_A_TIME = {"overview": overview, "contact": contact}  # and fields
+OVER_TIME = {"history": history, "hysteresis": hysteresis, "stick-slip": stick_slip}
+PICTURES = ("overview", "fields", "contact", *OVER_TIME)
+STILL, MOVING = ("png", "pdf", "svg"), ("gif", "mp4")
+
+
+def names(text):
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def view(text):
+    elevation, azimuth = (float(part) for part in text.split(","))
+    return elevation, azimuth
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(
+        prog="contrib/plot",
+        description=DESCRIPTION,
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "results", type=Path, metavar="RESULTS", help="directory of results"
+    )
+    parser.add_argument(
+        "pictures", nargs="*", metavar="PICTURE", help="see above (default: overview)"
+    )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="every picture that these results have, to RESULTS/pictures/",
+    )
+    parser.add_argument(
+        "--list",
+        action="store_true",
+        help="name the outputs, fields, forces, displacements and columns there are",
+    )
+    parser.add_argument(
+        "--paraview",
+        action="store_true",
+        help="write a state for ParaView; paraview --state=RESULTS/view.py opens it",
+    )
+    time = parser.add_argument_group("which time").add_mutually_exclusive_group()
+    time.add_argument(
+        "--step", type=int, metavar="N", help="output number N (default: the last)"
+    )
+    time.add_argument("--time", type=float, metavar="T", help="the output nearest to T")
+    span = parser.add_argument_group("which times")
+    span.add_argument(
+        "--from",
+        dest="begin",
+        type=float,
+        metavar="T",
+        help="history and hysteresis from T on",
+    )
+    span.add_argument("--until", type=float, metavar="T", help="and until T")
+    span.add_argument(
+        "--animate",
+        action="store_true",
+        help="overview, contact and fields over all outputs, as a GIF",
+    )
+    what = parser.add_argument_group("what")
+    what.add_argument(
+        "--columns", type=names, metavar="C,...", help="columns for history"
+    )
+    what.add_argument("--force", metavar="F", help="for hysteresis")
+    what.add_argument("--displacement", metavar="U", help="for hysteresis")
+    how = parser.add_argument_group("how")
+    how.add_argument(
+        "--format",
+        type=names,
+        metavar="F,...",
+        help="png (default), pdf, svg; gif (default), mp4 of animations",
+    )
+    how.add_argument(
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="where a single picture goes; its suffix is the format",
+    )
+    how.add_argument(
+        "--magnification",
+        type=float,
+        metavar="M",
+        help="of the displacement (default: 1 if it then shows, or more)",
+    )
+    how.add_argument(
+        "--view",
+        type=view,
+        default=VIEW,
+        metavar="E,A",
+        help="elevation and azimuth in degrees, 3D (default: {:g},{:g})".format(*VIEW),
+    )
+    how.add_argument(
+        "--dpi", type=int, default=130, help="dots per inch (default: %(default)s)"
+    )
+    options = parser.parse_intermixed_args(arguments)
+    formats = options.format or []
+    if options.output:
+        formats = [options.output.suffix.lstrip(".").lower() or "png"]
+    if formats and formats[0] in MOVING:
+        options.animate = True
+    allowed = MOVING if options.animate else STILL
+    for name in formats:
+        if name not in allowed:
+            parser.error(
+                f'there is no format "{name}" '
+                + ("of animations" if options.animate else "of pictures")
+                + "; there are "
+                + ", ".join(allowed)
+            )
+    options.formats = formats or [allowed[0]]
+    several = len(options.pictures) > 1 or "fields" in options.pictures
+    if options.output and (several or options.all):
+        parser.error("--output is for a single picture")
+    if options.magnification is not None and not options.magnification > 0.0:
+        parser.error("--magnification must be positive")
+    if options.columns and not options.pictures and not options.all:
+        options.pictures = ["history"]
+    return options
+
+
+class Jobs:
+    """Draws pictures of one directory and tells where they are."""
+
+    def __init__(self, results, options):
+        self.results = results
+        self.options = options
+
+    def path(self, name, suffix, index=None):
+        if self.options.output:
+            return self.options.output
+        directory = self.results.directory
+        stem = name
+        if name == "overview" and not self.options.all:
+            stem = self.results.name
+        else:
+            directory = directory / "pictures"
+        asked = self.options.step is not None or self.options.time is not None
+        if index is not None and asked:
+            stem += f"_{index:05d}"
+        directory.mkdir(exist_ok=True)
+        return directory / f"{stem}.{suffix}"
+
+    def save(self, figure, name, index=None):
+        for suffix in self.options.formats:
+            path = self.path(name, suffix, index)
+            figure.savefig(
+                path, dpi=self.options.dpi, bbox_inches="tight", pad_inches=0.15
+            )
+            print(path)
+        plt.close(figure)
+
+    def at_a_time(self, module, name, *arguments):
+        """A picture of one output, or an animation of all."""
+        results, options = self.results, self.options
+        if options.animate:
+            results.index()
+            indices = range(len(results.solution))
+            scale = module.scale(results, indices, options, *arguments)
+            for suffix in options.formats:
+                path = self.path(name, suffix)
+                frames = (module.draw(results, i, options, scale) for i in indices)
+                animation.write(path, frames, len(indices), options.dpi)
+                print(path)
+        else:
+            index = results.index(options.step, options.time)
+            scale = module.scale(results, [index], options, *arguments)
+            self.save(module.draw(results, index, options, scale), name, index)
+
+    def draw(self, name):
+        if name in AT_A_TIME:
+            self.at_a_time(AT_A_TIME[name], name)
+        elif name not in OVER_TIME:
+            self.at_a_time(fields, name, name)
+        elif self.options.animate:
+            raise NoPicture(f"{name} shows all times: there is no animation of it")
+        else:
+            self.save(OVER_TIME[name].draw(self.results, self.options), name)
+
+
+def wanted(results, options):
+    """The names of the pictures to draw, "fields" replaced by their names."""
+    chosen = options.pictures or ["overview"]
+    if options.all:
+        chosen = list(PICTURES)
+        if options.animate:
+            chosen = ["overview", "von_mises", "contact"]
+    if "fields" not in chosen or not results.solution:
+        return [name for name in chosen if name != "fields"]
+    body = results.body(results.index())
+    # On one rank its number is no news.
+    every = [
+        name
+        for name in available_fields(body)
+        if name != "subdomain" or body[name].max() > 0.0
+    ]
+    at = chosen.index("fields")
+    return chosen[:at] + every + chosen[at + 1 :]
+
+
+def describe(results):
+    """What --list prints."""
+    statistics = results.statistics
+    lines = []
+    if results.solution:
+        outputs = [f"{number(path)} (t = {time:g})" for time, path in results.solution]
+        found = available_fields(results.body(results.index()))
+        lines += ["outputs: " + ", ".join(outputs), "fields: " + ", ".join(found)]
+    if len(statistics.get("t", ())):
+        lines += ["forces: " + ", ".join(hysteresis.forces(statistics))]
+        found = hysteresis.displacements(results, statistics)
+        lines += ["displacements: " + ", ".join(found)]
+        lines += ["columns: " + ", ".join(statistics)]
+    return "\n".join(lines)
+
+
+def main(arguments=None):
+    options = parse(arguments)
+    style.set_up()
+    failed = drawn = 0
+    try:
+        results = Results(options.results)
+        if options.list:
+            print(describe(results))
+            return 0
+        if options.paraview:
+            print(write_state(results))
+            if not options.pictures and not options.all:
+                return 0
+        jobs = Jobs(results, options)
+        for name in wanted(results, options):
+            try:
+                jobs.draw(name)
+                drawn += 1
+            except NoPicture as reason:
+                if options.all:
+                    print(f"Not drawn: {name}: {reason}", file=sys.stderr)
+                else:
+                    print(f"Error: {reason}", file=sys.stderr)
+                    failed += 1
+    except (UserError, OSError) as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 1
+    return 1 if failed or not drawn else 0

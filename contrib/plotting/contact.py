@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The contact face: traction, slip, and where it sticks.
+
+In two dimensions curves over the arc length of each straight piece, in three
+dimensions each plane as seen from the foundation.
+"""
+
+import math
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from scipy.spatial import cKDTree
+
+from . import style
+from .body import MANY, shaded
+from .faces import friction_state, lines, planes, required, state_runs
+from .geometry import thinned, weld
+
+MOST_PIECES = 4
+
+
+class Scale:
+    """Ranges that all frames of an animation share.
+
+    largest  sizes of vectors, by name
+    limits   in two dimensions (lowest, highest) of their tangential components
+    """
+
+    def __init__(self, results, indices):
+        self.largest = {"traction": 0.0, "slip": 0.0, "slip_rate": 0.0}
+        self.limits = {name: (0.0, 0.0) for name in self.largest}
+        for index in indices:
+            contact = required(results, index)
+            for name in self.largest:
+                if name in contact:
+                    size = np.linalg.norm(contact[name], axis=1).max(initial=0.0)
+                    self.largest[name] = max(self.largest[name], size)
+            if contact.cells.shape[1] == 2:
+                self.extend_limits(contact)
+
+    def extend_limits(self, contact):
+        for line in lines(contact):
+            for name in self.largest:
+                if name in contact:
+                    values = line.component(contact[name])
+                    if name == "traction":
+                        bound = contact["bound"][line.nodes]
+                        values = np.concatenate([values, bound, -bound])
+                    low, high = self.limits[name]
+                    self.limits[name] = min(low, values.min()), max(high, values.max())
+
+
+def scale(results, indices, options):
+    return Scale(results, indices)
+
+
+def draw(results, index, options, scale):
+    contact = required(results, index)
+    heading = style.title(results.name, results.solution[index][0])
+    if contact.cells.shape[1] == 2:
+        figure, left_out = draw_lines(contact, scale)
+    else:
+        figure, left_out = draw_planes(contact, results.body(index), scale)
+    if "stick" not in contact:
+        heading += "   (no friction)"
+    if left_out:
+        heading += f"   (the {MOST_PIECES} largest of {MOST_PIECES + left_out} pieces)"
+    figure.suptitle(heading, fontsize="large")
+    return figure
+
+
+# ------------------------------------------------------- two dimensions
+
+
+def draw_lines(contact, scale):
+    found = lines(contact)
+    shown = found[:MOST_PIECES]
+    friction = "traction" in contact
+    n_rows = 3 if friction else 2
+    columns = len(shown)
+    figure, panels = plt.subplots(
+        n_rows,
+        columns,
+        figsize=(max(8.0, 4.3 * columns), 2.3 * n_rows + 1.0),
+        sharex="col",
+        sharey="row",
+        squeeze=False,
+        layout="constrained",
+    )
+    for line, column in zip(shown, panels.T):
+        if friction:
+            draw_traction(column[0], contact, line)
+        for axes, name in zip(column[-2:], ("slip", "slip_rate")):
+            axes.plot(line.s, line.component(contact[name]), color=style.SERIES[0])
+        for axes in column:
+            axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
+            axes.margins(x=0.0)
+            if friction:
+                mark_slipping(axes, contact, line)
+        column[-1].set_xlabel(line.label())
+    first = panels[:, 0]
+    if friction:
+        first[0].set_ylabel("tangential\n" r"traction $\tau$")
+    first[-2].set_ylabel("slip since $t=0$\n" r"$s_\tau$")
+    first[-1].set_ylabel("slip rate\n" r"$\dot{s}_\tau$")
+    for axes, name in zip(first, ("traction", "slip", "slip_rate")[-n_rows:]):
+        low, high = scale.limits[name]
+        if high > low:
+            axes.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
+    if friction:
+        occurring = friction_state(contact)
+        handles = [
+            Line2D([], [], color=style.SERIES[0], label="traction on the body"),
+            Line2D([], [], color="black", ls="--", lw=1.0, label=r"bound $\pm\rho$"),
+            *(SHADES[state] for state in SHADES if (occurring == state).any()),
+        ]
+        panels[0, -1].legend(
+            handles=handles,
+            loc="lower right",
+            bbox_to_anchor=(1.0, 1.02),
+            borderaxespad=0.0,
+            ncol=len(handles),
+            frameon=False,
+        )
+    return figure, len(found) - len(shown)
+
+
+def draw_traction(axes, contact, line):
+    axes.plot(line.s, line.component(contact["traction"]), color=style.SERIES[0])
+    bound = contact["bound"][line.nodes]
+    for sign in (1.0, -1.0):
+        axes.plot(line.s, sign * bound, color="black", ls="--", lw=1.0)
+
+
+SHADES = {
+    style.SLIPPING: Patch(facecolor=style.SLIP, alpha=0.2, label="slip"),
+    style.STICKING: Patch(facecolor="white", edgecolor="black", lw=0.6, label="stick"),
+    style.NO_FRICTION: Patch(
+        facecolor=style.FRICTIONLESS, alpha=0.5, label="no friction"
+    ),
+}
+
+
+def node_intervals(s):
+    """Ends of the intervals that belong to nodes: half way to the next."""
+    return np.concatenate([s[:1], 0.5 * (s[1:] + s[:-1]), s[-1:]])
+
+
+def mark_slipping(axes, contact, line):
+    """Shade what slips; a state belongs to a node and half its edges."""
+    states = friction_state(contact)[line.nodes]
+    ends = node_intervals(line.s)
+    for state, first, last in state_runs(states):
+        if state != style.STICKING:
+            axes.axvspan(
+                ends[first],
+                ends[last + 1],
+                color=style.STATE_COLOURS[state],
+                alpha=SHADES[state].get_alpha(),
+                lw=0,
+                zorder=0,
+            )
+
+
+# ----------------------------------------------------- three dimensions
+
+
+def draw_planes(contact, body, scale):
+    found = planes(contact, body)
+    shown = found[:MOST_PIECES]
+    friction = "stick" in contact
+    columns = 3 if friction else 1
+    shape = np.ptp(shown[0].plane[np.unique(shown[0].cells)], axis=0)
+    height = float(np.clip(3.6 * shape[1] / shape[0], 1.4, 5.0)) + 1.1
+    figure, panels = plt.subplots(
+        len(shown),
+        columns,
+        figsize=(5.4 * columns if friction else 6.4, height * len(shown) + 0.5),
+        squeeze=False,
+        layout="constrained",
+    )
+    figure.get_layout_engine().set(wspace=0.06)
+    slips = style.Shade([0.0, scale.largest["slip"] or 1.0], "slip")
+    tractions = style.Shade([0.0, scale.largest["traction"] or 1.0], "traction")
+    tractions.map = matplotlib.colormaps["cividis"]
+    for plane, row in zip(shown, panels):
+        axes = row[0]
+        values = np.linalg.norm(contact["slip"], axis=1)
+        shaded(axes, plane.plane, plane.cells, values, slips)
+        add_arrows(axes, plane, contact, scale.largest["slip"], "white")
+        plane.prepare(axes)
+        figure.colorbar(slips.mappable(), cax=style.beside(axes)).set_label(
+            r"slip since $t=0$ $|s_\tau|$"
+        )
+        axes.set_title(f"{plane.name()}, seen from the foundation", pad=10)
+        if not friction:
+            continue
+        axes = row[1]
+        values = np.linalg.norm(contact["traction"], axis=1)
+        shaded(axes, plane.plane, plane.cells, values, tractions)
+        plane.prepare(axes)
+        figure.colorbar(tractions.mappable(), cax=style.beside(axes)).set_label(
+            r"tangential traction $|\sigma_\tau|$"
+        )
+        axes = row[2]
+        states = draw_states(axes, plane, contact)
+        plane.prepare(axes)
+        style.legend_above(axes, style.state_legend(states))
+    return figure, len(found) - len(shown)
+
+
+def draw_states(axes, plane, contact):
+    """Each node colours the quarters of the faces that it belongs to."""
+    states = friction_state(contact)
+    corners = plane.plane[plane.cells]
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    centres = corners.mean(axis=1)
+    for i in range(4):
+        quarters = np.stack(
+            [corners[:, i], middles[:, i], centres, middles[:, i - 1]], axis=1
+        )
+        colours = [style.STATE_COLOURS[state] for state in states[plane.cells[:, i]]]
+        axes.add_collection(
+            PolyCollection(
+                quarters, facecolors=colours, edgecolors="face", linewidths=0.3
+            )
+        )
+    outline = PolyCollection(
+        corners,
+        facecolors="none",
+        edgecolors=(0, 0, 0, 0.35),
+        linewidths=0.3 if len(corners) <= MANY else 0.0,
+    )
+    axes.add_collection(outline)
+    return states[np.unique(plane.cells)]
+
+
+def add_arrows(axes, plane, contact, longest, colour):
+    """Arrows of the slip at some nodes; the longest has a key."""
+    nodes = one_of_each(plane, contact)
+    slip = plane.project(contact["slip"])
+    length = np.linalg.norm(slip, axis=1)
+    if longest <= 0.0 or length[nodes].max(initial=0.0) <= 0.0:
+        return
+    place = plane.plane
+    extent = np.ptp(place[nodes], axis=0).max()
+    # Arrows at every node of a fine mesh would be a black mass.
+    chosen = thinned(place, nodes, extent / 14.0)
+    spacing = extent / 14.0
+    if len(chosen) > 1:
+        spacing = cKDTree(place[chosen]).query(place[chosen], k=2)[0][:, 1].min()
+    chosen = chosen[length[chosen] > 0.02 * longest]
+    scale = longest / min(spacing, extent / 8.0)
+    arrows = axes.quiver(
+        *place[chosen].T,
+        *slip[chosen].T,
+        angles="xy",
+        scale_units="xy",
+        scale=scale,
+        color=colour,
+        width=0.006,
+        zorder=4,
+    )
+    return arrows
+
+
+def one_of_each(plane, contact):
+    """One copy of each node of the plane."""
+    used = np.unique(plane.cells)
+    vertex = weld(contact.points[used], 1e-6 * contact.size)
+    _, first = np.unique(vertex, return_index=True)
+    return used[first]
+
+
+def draw_utilisation(figure, axes, plane, contact):
+    """The panel of the overview: utilisation, slipping nodes, slip."""
+    utilisation = contact["utilisation"]
+    few = len(plane.cells) <= MANY
+    faces = PolyCollection(
+        plane.plane[plane.cells],
+        array=utilisation[plane.cells].mean(axis=1),
+        cmap=matplotlib.colormaps["cividis"],
+        norm=Normalize(0.0, 1.0),
+        edgecolors=(1, 1, 1, 0.25) if few else "face",
+        linewidths=0.3,
+    )
+    axes.add_collection(faces)
+    nodes = one_of_each(plane, contact)
+    slipping = nodes[friction_state(contact)[nodes] == style.SLIPPING]
+    axes.plot(
+        *plane.plane[slipping].T,
+        ls="none",
+        marker="o",
+        ms=float(np.clip(60.0 / math.sqrt(max(len(nodes), 1)), 1.0, 4.0)),
+        color=style.SLIP,
+        mec="none",
+    )
+    longest = np.linalg.norm(contact["slip"][nodes], axis=1).max(initial=0.0)
+    arrows = add_arrows(axes, plane, contact, longest, "black")
+    if arrows is not None:
+        axes.quiverkey(
+            arrows,
+            0.94,
+            1.05,
+            longest,
+            f"slip, at most {style.short(longest)}",
+            labelpos="W",
+            fontproperties={"size": "small"},
+        )
+    plane.prepare(axes)
+    figure.colorbar(faces, cax=style.beside(axes)).set_label("utilisation of the bound")

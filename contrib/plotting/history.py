@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The main columns of the statistics over time."""
+
+import re
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from . import style
+from .results import NoPicture
+
+
+class Panel:
+    """One diagram: columns that share a unit.
+
+    columns     names, or patterns of names, of the statistics
+    logarithmic values of many orders of magnitude, drawn by their size
+    steps       a value holds for a step, not for an instant
+    changing    to be left out where nothing changes
+    """
+
+    def __init__(
+        self, label, columns, logarithmic=False, steps=False, changing=False
+    ):
+        self.label = label
+        self.columns = columns
+        self.logarithmic = logarithmic
+        self.steps = steps
+        self.changing = changing
+
+    def chosen(self, statistics):
+        """Those of its columns that say something: not zero at all times."""
+        found = [
+            name
+            for pattern in self.columns
+            for name in statistics
+            if re.fullmatch(pattern, name)
+        ]
+        sizes = {
+            name: np.abs(finite(statistics[name])).max(initial=0.0) for name in found
+        }
+        largest = max(sizes.values(), default=0.0)
+        if largest <= 0.0:
+            return []
+        if self.changing and not any(np.ptp(statistics[name]) for name in found):
+            return []
+        # Against rounding in components that vanish by symmetry.
+        threshold = 0.0 if self.logarithmic or self.steps else 1e-9 * largest
+        return [name for name in found if sizes[name] > threshold]
+
+
+PANELS = (
+    Panel("friction force\non the foundation", ["friction_force_[xyz]"]),
+    Panel("reactions\non the body", ["reaction_\\d+_[xyz]"]),
+    Panel("loads on the body", ["load_[xyz]"]),
+    Panel("area", ["slip_area", "stick_area"], steps=True),
+    Panel(
+        "energy",
+        [
+            "external_work",
+            "stored_energy",
+            "viscous_dissipation",
+            "friction_dissipation",
+            "adaptation_energy",
+        ],
+    ),
+    Panel("displacement", ["max_displacement", "point\\d+_[xyz]"]),
+    Panel("stress", ["max_von_mises", "mean_von_mises"]),
+    Panel("capped volume", ["capped_volume"], steps=True),
+    Panel("iterations", ["contact_iterations", "linear_iterations"], steps=True),
+    Panel("step size", ["k", "step_limit"], logarithmic=True, steps=True),
+    Panel("cells", ["cells"], steps=True, changing=True),
+    Panel("estimate\n" r"$(\sum\eta_K^2)^{1/2}$", ["estimator"]),
+    Panel(
+        "relative error",
+        ["algebraic_error", "force_balance_defect"],
+        logarithmic=True,
+        steps=True,
+    ),
+)
+
+NAMES = {
+    "contact_iterations": "contact",
+    "linear_iterations": "linear",
+    "k": "step $k$",
+    "step_limit": "limit $2/r$",
+    "algebraic_error": "algebraic",
+    "force_balance_defect": "force balance",
+    "max_von_mises": "largest von Mises",
+    "mean_von_mises": "mean von Mises",
+}
+
+
+def label(name):
+    """A short name of a column for a legend."""
+    if name in NAMES:
+        return NAMES[name]
+    match = re.fullmatch(r"(friction_force|load)_([xyz])", name)
+    if match:
+        return f"${match.group(2)}$"
+    match = re.fullmatch(r"(reaction|point)_?(\d+)_([xyz])", name)
+    if match:
+        what = "boundary" if match.group(1) == "reaction" else "point"
+        return f"{what} {match.group(2)}, ${match.group(3)}$"
+    return style.plain(re.sub("^max_", "largest ", name).replace("_", " "))
+
+
+def finite(values):
+    return values[np.isfinite(values)]
+
+
+def window(statistics, options):
+    """The rows between the times that were asked for."""
+    t = statistics.get("t", np.array([]))
+    chosen = np.ones(len(t), dtype=bool)
+    slack = 1e-9 * np.abs(t).max(initial=0.0)
+    if options.begin is not None:
+        chosen &= t >= options.begin - slack
+    if options.until is not None:
+        chosen &= t <= options.until + slack
+    if chosen.sum() < 2:
+        raise NoPicture(
+            "statistics.csv has fewer than two rows in that time: no history to draw"
+        )
+    return {name: column[chosen] for name, column in statistics.items()}
+
+
+def draw(results, options):
+    statistics = window(results.statistics, options)
+    if options.columns:
+        for name in options.columns:
+            results.column(name)
+        panels = [(Panel(label(name), [name]), [name]) for name in options.columns]
+    else:
+        panels = [(panel, panel.chosen(statistics)) for panel in PANELS]
+        panels = [(panel, names) for panel, names in panels if names]
+    columns = 1 if len(panels) < 3 else 2
+    rows = -(-len(panels) // columns)
+    figure = plt.figure(
+        figsize=(8.0 if columns == 1 else 13.0, 1.9 * rows + 0.8),
+        layout="constrained",
+    )
+    grid = figure.add_gridspec(rows, columns)
+    for i, (panel, names) in enumerate(panels):
+        row, column = divmod(i, columns)
+        alone = i == len(panels) - 1 and column == 0  # takes the whole row
+        axes = figure.add_subplot(grid[row, :] if alone else grid[row, column])
+        draw_panel(axes, panel, names, statistics)
+        axes.set_xlim(*padded(statistics["t"]))
+        if row == rows - 1:
+            axes.set_xlabel("time $t$")
+        elif row < rows - 2 or len(panels) % columns == 0:
+            axes.tick_params(labelbottom=False)
+    figure.suptitle(style.plain(results.name), fontsize="large")
+    return figure
+
+
+def padded(t):
+    margin = 0.01 * np.ptp(t)
+    return t.min() - margin, t.max() + margin
+
+
+def draw_panel(axes, panel, names, statistics):
+    t = statistics["t"]
+    few = len(t) < 12
+    for i, name in enumerate(names):
+        values = statistics[name].astype(float)
+        colour, dashes = style.SERIES[i % 7], ("-", "--", ":", "-.")[i // 7 % 4]
+        if panel.logarithmic:
+            values = np.where(np.isfinite(values) & (values > 0.0), values, np.nan)
+        if name == "slip_area":
+            axes.fill_between(
+                t, values, step="pre", color=style.SLIP, alpha=0.2, lw=0
+            )
+            colour = style.SLIP
+        if name == "stick_area":
+            colour = style.OUTLINE
+        axes.plot(
+            t,
+            values,
+            color=colour,
+            ls=dashes,
+            lw=1.4,
+            marker="." if few else None,
+            drawstyle="steps-pre" if panel.steps else "default",
+            label=label(name),
+        )
+    if panel.logarithmic:
+        axes.set_yscale("log")
+    elif panel.steps:
+        axes.set_ylim(bottom=0.0)
+        if "iterations" in panel.label or "cells" in panel.label:
+            axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+    else:
+        axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
+    axes.set_ylabel(panel.label)
+    if len(names) > 1 or re.search(r"_[xyz]$", names[0]):
+        axes.legend(
+            loc="center left",
+            bbox_to_anchor=(1.0, 0.5),
+            frameon=False,
+            handlelength=1.4,
+        )

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Force over displacement: the loop and its area, which is work."""
+
+import re
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+
+from . import style
+from .expression import evaluate
+from .history import window
+from .results import NoPicture, UserError
+
+CLOSED = 0.01  # of the extents of the loop
+
+
+def work(displacement, force):
+    """The integral of F dU along the path, by the trapezoidal rule.
+
+    For a closed path it is the area inside, positive clockwise.
+    """
+    return float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(displacement)))
+
+
+def last_cycle(displacement, force):
+    """The index where the last closed cycle begins, or None.
+
+    The path is closed where it comes back to its last point after having left
+    its neighbourhood.
+    """
+    points = np.column_stack(
+        [
+            values / (np.ptp(values) or 1.0)
+            for values in (np.asarray(displacement), np.asarray(force))
+        ]
+    )
+    distance = np.linalg.norm(points - points[-1], axis=1)
+    away = np.nonzero(distance > 0.2)[0]
+    if len(away) == 0:
+        return None
+    near = np.nonzero(distance[: away[-1]] < CLOSED)[0]
+    return int(near[-1]) if len(near) else None
+
+
+def displacements(results, statistics):
+    """What a force may be drawn over: {name: (values, label)}.
+
+    Points come from the statistics; prescribed displacements and motions of
+    foundations are expressions of the parameter file, those of t alone.
+    """
+    found = {}
+    t = statistics["t"]
+    for key, text in results.parameters.items():
+        match = re.fullmatch(r"Boundary (\d+)", key[0])
+        if not match or len(key) != 2 or not text:
+            continue
+        role = results.parameters.get((key[0], "Role"))
+        if (role, key[1]) == ("displacement", "Displacement"):
+            name, symbol = f"boundary{match.group(1)}", "displacement of boundary"
+        elif (role, key[1]) == ("contact", "Foundation motion"):
+            name, symbol = f"foundation{match.group(1)}", "motion of foundation"
+        else:
+            continue
+        for axis, component in zip("xyz", text.split(";")):
+            if component.strip() == "free":
+                continue
+            try:
+                values = evaluate(component, t)
+            except UserError:
+                continue
+            found[f"{name}_{axis}"] = values, f"{symbol} {match.group(1)}, $U_{axis}$"
+    for name, values in statistics.items():
+        match = re.fullmatch(r"point(\d+)_([xyz])", name)
+        if match:
+            found[name] = values, (
+                f"displacement of point {match.group(1)}, $u_{match.group(2)}$"
+            )
+    return found
+
+
+def forces(statistics):
+    found = {}
+    for name, values in statistics.items():
+        match = re.fullmatch(r"friction_force_([xyz])", name)
+        if match:
+            found[name] = values, (
+                f"friction force on the foundation, $F_{match.group(1)}$"
+            )
+        match = re.fullmatch(r"reaction_(\d+)_([xyz])", name)
+        if match:
+            found[name] = values, (
+                f"reaction of boundary {match.group(1)}, $R_{match.group(2)}$"
+            )
+    return found
+
+
+def choose(name, found, what, preference):
+    """The one that was asked for, otherwise the one that moves most."""
+    if name is not None:
+        if name not in found:
+            raise UserError(
+                f'there is no {what} "{name}"; there are ' + ", ".join(found)
+            )
+        return name
+    moving = [name for name in found if np.ptp(found[name][0]) > 0.0]
+    if not moving:
+        return None
+    largest = max(np.ptp(found[name][0]) for name in moving)
+    moving = [name for name in moving if np.ptp(found[name][0]) > 1e-6 * largest]
+    return max(moving, key=lambda name: (preference(name), np.ptp(found[name][0])))
+
+
+def draw(results, options):
+    if not results.statistics:
+        raise NoPicture(f"{results.directory} has no statistics.csv with rows")
+    statistics = window(results.statistics, options)
+    possible_forces = forces(statistics)
+    possible_displacements = displacements(results, statistics)
+    if not possible_forces:
+        raise NoPicture(
+            "statistics.csv has neither friction forces nor reactions: no loop to draw"
+        )
+    if not possible_displacements:
+        raise NoPicture(
+            "there is no displacement to draw a force over: neither points "
+            "('Output/Points') nor displacements that the scene prescribes as "
+            "expressions of t"
+        )
+    moving = {
+        name[-1] for name, (u, _) in possible_displacements.items() if np.ptp(u) > 0.0
+    }
+    force = choose(
+        options.force,
+        possible_forces,
+        "force",
+        lambda name: (
+            name[-1] in moving,
+            name.startswith("friction"),
+            drives(name, possible_displacements),
+        ),
+    )
+    if force is None:
+        raise NoPicture("no force changes in that time: no loop to draw")
+    displacement = choose(
+        options.displacement,
+        possible_displacements,
+        "displacement",
+        lambda name: (
+            name[-1] == force[-1],
+            drives(force, [name]),
+            name.startswith(("boundary", "foundation")),
+        ),
+    )
+    if displacement is None:
+        raise NoPicture("no displacement changes in that time: no loop to draw")
+    return draw_loop(
+        results,
+        statistics["t"],
+        possible_displacements[displacement],
+        possible_forces[force],
+    )
+
+
+def drives(force, names):
+    """Whether a reaction belongs to one of the prescribed displacements."""
+    match = re.fullmatch(r"reaction_(\d+)_([xyz])", force)
+    return bool(match) and f"boundary{match.group(1)}_{match.group(2)}" in names
+
+
+def draw_loop(results, t, displacement, force):
+    (u, u_label), (f, f_label) = displacement, force
+    figure, axes = plt.subplots(figsize=(7.6, 5.6), layout="constrained")
+    begin = last_cycle(u, f)
+    if begin is not None:
+        axes.fill(u[begin:], f[begin:], color=style.SERIES[5], alpha=0.2, lw=0)
+        area = rf"loop area $\oint F\,dU$ = {style.short(work(u[begin:], f[begin:]))}"
+        if begin > 0:
+            area += f"   (cycle from t = {style.short(t[begin])})"
+    else:
+        area = (
+            rf"open path, $\int F\,dU$ = {style.short(work(u, f))}"
+            f"   (t = {style.short(t[0])} to {style.short(t[-1])})"
+        )
+    points = np.column_stack([u, f])
+    path = LineCollection(
+        np.stack([points[:-1], points[1:]], axis=1),
+        array=t[1:],
+        norm=Normalize(t[0], t[-1]),
+        cmap="viridis",
+        linewidths=2.0,
+        capstyle="round",
+    )
+    axes.add_collection(path)
+    axes.plot(u, f, color="none")  # the legend avoids lines, not collections
+    axes.plot(u[0], f[0], "o", ms=7, mfc="white", mec="black", label="begin")
+    axes.plot(u[-1], f[-1], "s", ms=6, color="black", label="end")
+    axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
+    axes.axvline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
+    axes.margins(0.06)
+    axes.autoscale_view()
+    axes.set_xlabel(u_label)
+    axes.set_ylabel(f_label)
+    axes.legend(loc="best")
+    axes.set_title(area, pad=10)
+    figure.colorbar(path, ax=axes, pad=0.02).set_label("time $t$")
+    figure.suptitle(style.plain(results.name), fontsize="large")
+    return figure

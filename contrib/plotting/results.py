@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a run wrote: records of a series, statistics, parameters."""
+
+import csv
+import re
+import xml.etree.ElementTree as ElementTree
+
+import meshio
+import numpy as np
+
+
+class UserError(Exception):
+    """Something the user can mend; its text is the whole message."""
+
+
+class NoPicture(UserError):
+    """A picture that makes no sense for these results; the text says why."""
+
+
+class Record:
+    """One time of a series: points, cells and point data of all its pieces.
+
+    deal.II writes each cell with vertices of its own, and a quantity constant
+    on a cell as point data with that value at all of them.
+    """
+
+    def __init__(self, path):
+        points, cells, data = [], [], []
+        n_points = 0
+        for piece in pieces(path):
+            if is_empty(piece):
+                continue
+            try:
+                mesh = meshio.read(piece)
+            except OSError:
+                raise
+            except Exception as error:  # whatever a damaged file provokes
+                raise UserError(f"{piece} cannot be read: {error!r}") from error
+            points.append(np.asarray(mesh.points, dtype=float))
+            for block in mesh.cells:
+                cells.append(np.asarray(block.data) + n_points)
+            data.append(mesh.point_data)
+            n_points += len(mesh.points)
+        if not points:
+            raise UserError(f"{path} contains no cells")
+        if len({block.shape[1] for block in cells}) > 1:
+            raise UserError(f"{path} mixes cells of different shapes")
+        self.path = path
+        self.points = np.concatenate(points)
+        self.cells = np.concatenate(cells)
+        self.data = {
+            name: np.concatenate([np.asarray(piece[name]) for piece in data])
+            for name in data[0]
+        }
+
+    def __contains__(self, name):
+        return name in self.data
+
+    def __getitem__(self, name):
+        if name not in self.data:
+            raise UserError(
+                f'{self.path} has no "{name}", only: ' + ", ".join(sorted(self.data))
+            )
+        return self.data[name].astype(float)
+
+    @property
+    def size(self):
+        return np.ptp(self.points, axis=0).max()
+
+
+def parse_xml(path):
+    try:
+        return ElementTree.parse(path).getroot()
+    except (OSError, ElementTree.ParseError) as error:
+        raise UserError(f"{path} cannot be read: {error}") from error
+
+
+def pieces(path):
+    if path.suffix != ".pvtu":
+        return [path]
+    return [
+        path.parent / piece.get("Source") for piece in parse_xml(path).iter("Piece")
+    ]
+
+
+def is_empty(vtu):
+    """Whether a rank had nothing to write; meshio stumbles over such files."""
+    with open(vtu, "rb") as file:
+        start = file.read(4096)
+    return re.search(rb'<Piece [^>]*NumberOfCells="0"', start) is not None
+
+
+def series(path):
+    """The (time, file) pairs of a .pvd file."""
+    found = [
+        (float(item.get("timestep")), path.parent / item.get("file"))
+        for item in parse_xml(path).iter("DataSet")
+    ]
+    if not found:
+        raise UserError(f"{path} lists no files")
+    return found
+
+
+def number(path):
+    """The number in solution_00012.pvtu."""
+    match = re.search(r"_(\d+)\.p?vtu$", path.name)
+    return int(match.group(1)) if match else None
+
+
+def read_statistics(path):
+    """The columns of statistics.csv that are numbers, by name."""
+    if not path.exists():
+        return {}
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file, skipinitialspace=True))
+    columns = {}
+    if len(rows) < 2:
+        return columns
+    for i, name in enumerate(rows[0]):
+        try:
+            columns[name.strip()] = np.array(
+                [float(row[i]) for row in rows[1:] if row]
+            )
+        except (ValueError, IndexError):
+            continue
+    return columns
+
+
+def read_parameters(path):
+    """The entries of parameters.prm: {("Section", ..., "Entry"): value}."""
+    entries, sections = {}, []
+    if not path.exists():
+        return entries
+    for line in path.read_text(encoding="utf-8").splitlines():
+        line = line.split("#")[0].strip()
+        if line.startswith("subsection "):
+            sections.append(line.split(None, 1)[1].strip())
+        elif line == "end":
+            del sections[-1:]
+        elif line.startswith("set ") and "=" in line:
+            name, value = line[4:].split("=", 1)
+            entries[(*sections, name.strip())] = value.strip()
+    return entries
+
+
+class Results:
+    """A directory of results; what a picture does not need is not read."""
+
+    def __init__(self, directory):
+        self.directory = directory.resolve()
+        self.name = self.directory.name
+        if not self.directory.is_dir():
+            raise UserError(f"there is no directory {directory}")
+        solution = self.directory / "solution.pvd"
+        self.statistics = read_statistics(self.directory / "statistics.csv")
+        if not solution.exists() and not self.statistics:
+            raise UserError(
+                f"{self.directory} holds neither a solution.pvd nor a "
+                "statistics.csv with rows, so it is no directory of results"
+            )
+        self.solution = series(solution) if solution.exists() else []
+        contact = self.directory / "contact.pvd"
+        self.contact = series(contact) if contact.exists() else []
+        self.records = {}
+
+    @property
+    def parameters(self):
+        return read_parameters(self.directory / "parameters.prm")
+
+    def read(self, path):
+        """A record; those read last are kept, for pictures of the same time."""
+        if path not in self.records:
+            while len(self.records) >= 4:
+                del self.records[next(iter(self.records))]
+            self.records[path] = Record(path)
+        return self.records[path]
+
+    def index(self, step=None, time=None):
+        """The output to draw: the last, number `step`, the nearest to `time`."""
+        if not self.solution:
+            raise NoPicture(f"{self.directory} has no solution.pvd: no fields to draw")
+        if step is not None:
+            for i, (_, path) in enumerate(self.solution):
+                if number(path) == step:
+                    return i
+            numbers = ", ".join(str(number(path)) for _, path in self.solution)
+            raise UserError(f"there is no output number {step}; there are {numbers}")
+        if time is not None:
+            times = np.array([t for t, _ in self.solution])
+            return int(np.argmin(np.abs(times - time)))
+        return len(self.solution) - 1
+
+    def body(self, index):
+        record = self.read(self.solution[index][1])
+        if record.cells.shape[1] not in (4, 8):
+            raise UserError(
+                f"{record.path} has cells with {record.cells.shape[1]} vertices; "
+                "only quadrilaterals and hexahedra can be drawn"
+            )
+        return record
+
+    def face(self, index):
+        """The contact boundary at the time of an output, or None."""
+        time, path = self.solution[index]
+        if not self.contact:
+            return None
+        # Several outputs may share a time in files of other programs.
+        nearest = min(
+            self.contact,
+            key=lambda item: (abs(item[0] - time), number(item[1]) != number(path)),
+        )
+        if abs(nearest[0] - time) > 1e-9 * max(abs(time), abs(nearest[0])):
+            return None
+        return self.read(nearest[1])
+
+    def dimension(self):
+        return 2 if self.body(0).cells.shape[1] == 4 else 3
+
+    def column(self, name):
+        if name not in self.statistics:
+            raise UserError(
+                f'statistics.csv has no column "{name}"; it has '
+                + ", ".join(self.statistics)
+            )
+        return self.statistics[name]

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stick, slip and slip rate of a 2D face over arc length and time."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import ListedColormap
+
+from . import style
+from .contact import MOST_PIECES, node_intervals
+from .faces import friction_state, lines
+from .results import NoPicture
+
+FEWEST_TIMES = 3
+FINEST = 2000  # columns of the map
+
+
+def columns_for(nodes):
+    """Cells of the map over a unit length for the finest mesh of the run.
+
+    nodes: for each time the arc lengths of the nodes, divided by the length.
+    """
+    smallest = min(np.diff(s).min() for s in nodes)
+    return int(np.clip(np.ceil(2.0 / smallest), 50, FINEST))
+
+
+def resample(s, values, centres):
+    """Values of nodes at s where each holds half way to its neighbours."""
+    ends = node_intervals(s)
+    index = np.searchsorted(ends[1:-1], centres, side="right")
+    return values[index]
+
+
+def read(results):
+    """(time, contact record) of every output but the initial state.
+
+    That one belongs to no step; an equilibrated one is a single instant.
+    """
+    for time, path in results.contact[1:]:
+        yield time, results.read(path)
+
+
+def draw(results, options):
+    if not results.contact:
+        raise NoPicture(
+            f"{results.directory} has no contact.pvd: a scene without contact"
+        )
+    if len(results.contact) < FEWEST_TIMES:
+        raise NoPicture(
+            f"contact.pvd lists only {len(results.contact)} times; a map over time "
+            "needs more: run the scene with 'Output/Fields every = 1'"
+        )
+    first = results.read(results.contact[0][1])
+    if first.cells.shape[1] != 2:
+        raise NoPicture(
+            "maps over arc length and time are for two-dimensional scenes; in three "
+            "dimensions draw contact, with --animate"
+        )
+    if "stick" not in first:
+        raise NoPicture("the scene has no friction, so nothing sticks or slips")
+    edges = np.array([time for time, _ in results.contact])
+    pieces = []  # for each piece of the face: s, states and rates at each time
+    for _, contact in read(results):
+        states, rates = friction_state(contact), contact["slip_rate"]
+        for i, line in enumerate(lines(contact)):
+            if i == len(pieces):
+                pieces.append((line, []))
+            pieces[i][1].append((line.s, states[line.nodes], line.component(rates)))
+    pieces = [piece for piece in pieces if len(piece[1]) == len(edges) - 1]
+    shown = pieces[:MOST_PIECES]
+    return draw_maps(results, edges, shown, len(pieces) - len(shown))
+
+
+def draw_maps(results, times, pieces, left_out):
+    figure, panels = plt.subplots(
+        2,
+        len(pieces),
+        figsize=(max(7.6, 4.4 * len(pieces) + 1.0), 7.6),
+        sharex="col",
+        sharey=True,
+        squeeze=False,
+        layout="constrained",
+    )
+    everything = np.concatenate(
+        [[0.0], *(rate for _, found in pieces for _, _, rate in found)]
+    )
+    shade = style.Shade(everything, "the slip rate")
+    states_map = ListedColormap(
+        [
+            style.STATE_COLOURS[state]
+            for state in (style.NO_FRICTION, style.STICKING, style.SLIPPING)
+        ]
+    )
+    occurring = []
+    for (line, found), (upper, lower) in zip(pieces, panels.T):
+        count = columns_for([s / line.length for s, _, _ in found])
+        ends = np.linspace(0.0, line.length, count + 1)
+        centres = 0.5 * (ends[1:] + ends[:-1])
+        # A state is that of the step that ends at the time of the output.
+        states = np.array([resample(s, state, centres) for s, state, _ in found])
+        rates = np.array([np.interp(centres, s, rate) for s, _, rate in found])
+        upper.pcolormesh(
+            ends, times, states, cmap=states_map, vmin=-1.5, vmax=1.5, rasterized=True
+        )
+        lower.pcolormesh(
+            ends, times, rates, cmap=shade.map, norm=shade.norm, rasterized=True
+        )
+        lower.set_xlabel(line.label())
+        occurring.append(np.unique(states))
+    panels[0, 0].set_ylabel("time $t$")
+    panels[1, 0].set_ylabel("time $t$")
+    handles = style.state_legend(np.concatenate(occurring))
+    panels[0, -1].legend(
+        handles=handles,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        ncol=len(handles),
+        frameon=False,
+    )
+    style.add_colour_bar(
+        figure,
+        shade,
+        r"slip rate $\dot{s}_\tau$",
+        everything,
+        ax=panels[1].tolist(),
+        pad=0.02,
+    )
+    heading = style.plain(results.name)
+    if left_out:
+        heading += f"   (the {MOST_PIECES} longest of {MOST_PIECES + left_out} pieces)"
+    figure.suptitle(heading, fontsize="large")
+    return figure

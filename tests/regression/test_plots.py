@@ -1,0 +1,345 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""contrib/plot: its numbers on made-up data, its pictures on real results."""
+
+import subprocess
+import sys
+
+import matplotlib.image
+import numpy as np
+
+from harness import SOURCE, TestCase, main, run
+
+sys.path.insert(0, str(SOURCE / "contrib"))
+
+from plotting import geometry, hysteresis, stick_slip, style
+from plotting.expression import evaluate
+from plotting.faces import lines, planes, state_runs
+from plotting.results import UserError
+
+PLOT = SOURCE / "contrib" / "plot"
+
+
+class Mesh:
+    """What pictures use of a record."""
+
+    def __init__(self, points, cells, **data):
+        self.points = np.array(points, dtype=float)
+        self.cells = np.array(cells)
+        self.data = {name: np.array(values, float) for name, values in data.items()}
+        self.size = np.ptp(self.points, axis=0).max()
+
+    def __contains__(self, name):
+        return name in self.data
+
+    def __getitem__(self, name):
+        return self.data[name]
+
+
+def polyline(corners):
+    """Segments with points of their own, as a series has them."""
+    corners = np.array([(*corner, 0) for corner in corners], float)
+    points = np.stack([corners[:-1], corners[1:]], axis=1).reshape(-1, 3)
+    return points, np.arange(len(points)).reshape(-1, 2)
+
+
+class Numbers(TestCase):
+    def test_area_of_a_loop(self):
+        """Clockwise in the (displacement, force) plane is work put in."""
+        u = np.array([0, 0, 2, 2, 0.0])
+        f = np.array([0, 3, 3, 0, 0.0])
+        self.assertClose(hysteresis.work(u, f), 6, relative=1e-15)
+        self.assertClose(hysteresis.work(u[::-1], f[::-1]), -6, relative=1e-15)
+        self.assertClose(hysteresis.work(u[2:4], f[:2]), 0, absolute=1e-15)
+        self.assertClose(hysteresis.work(u[1:3], f[:2]), 3, relative=1e-15)
+        angle = np.linspace(0, 2 * np.pi, 401)
+        area = hysteresis.work(5 * np.cos(angle), -3 * np.sin(angle))
+        self.assertClose(area, 15 * np.pi, relative=1e-4)
+
+    def test_last_cycle(self):
+        angle = np.linspace(0, 4 * np.pi, 81)
+        u, f = 1e-3 * np.sin(angle), 1e6 * np.cos(angle)
+        self.assertEqual(hysteresis.last_cycle(u, f), 40)
+        loading = np.linspace(0, 1, 11)
+        self.assertIsNone(hysteresis.last_cycle(loading, loading**2))
+        self.assertIsNone(hysteresis.last_cycle(0 * loading, 0 * loading))
+        # a way in, then a cycle
+        u, f = np.append([-5.0, -3.0], u[:41] * 1e3), np.append([-4.0, 0], f[:41] / 1e6)
+        self.assertEqual(hysteresis.last_cycle(u, f), 2)
+
+    def test_expressions_of_time(self):
+        t = np.linspace(0, 2, 9)
+        for text, values in (
+            ("0.3*min(t, 2 - t)", 0.3 * np.minimum(t, 2 - t)),
+            ("-1e-3*t^2", -1e-3 * t**2),
+            ("if(t < 1 && t > 0.5, 1, -pi)", np.where((t < 1) & (t > 0.5), 1, -np.pi)),
+            ("if(t <= 0.5 || t >= 1, sin(t), abs(-2))",
+             np.where((t <= 0.5) | (t >= 1), np.sin(t), 2)),
+            ("4", np.full(9, 4.0)),
+        ):
+            self.assertClose(evaluate(text, t), values, relative=1e-14, what=text)
+
+    def test_expressions_that_are_refused(self):
+        t = np.zeros(2)
+        for text in ("x*t", "t t", "__import__('os')", "t.shape", "foo(t)", "free", ""):
+            with self.assertRaises(UserError, msg=text):
+                evaluate(text, t)
+
+    def test_pieces_of_a_line(self):
+        """An oblique piece of unequal edges, one at an angle, a separate one."""
+        a = polyline([(0, 0), (3, 4), (4.5, 6), (6, 8), (16, 8)])
+        b = polyline([(20, 8), (22, 8)])
+        points = np.concatenate([a[0], b[0]])
+        cells = np.concatenate([a[1], b[1] + len(a[0])])
+        # in any order and direction
+        cells = cells[[3, 1, 4, 0, 2]]
+        cells[[0, 3]] = cells[[0, 3]][:, ::-1]
+        found = lines(Mesh(points, cells))
+        self.assertEqual([len(line.nodes) for line in found], [4, 2, 2])
+        self.assertClose(found[0].s, (0, 5, 7.5, 10), absolute=1e-12)
+        self.assertClose(found[1].s, (0, 10), absolute=1e-12)
+        self.assertClose(found[2].start, (20, 8), absolute=1e-12)
+        along = np.tile([0.6, 0.8, 0], (len(points), 1))
+        self.assertClose(found[0].component(along), 1, absolute=1e-12)
+        self.assertClose(found[1].component(along), 0.6, absolute=1e-12)
+
+    def test_runs_of_states(self):
+        self.assertEqual(
+            [tuple(map(int, run)) for run in state_runs(np.array([1, 1, 0, -1, -1]))],
+            [(1, 0, 1), (0, 2, 2), (-1, 3, 4)],
+        )
+
+    def test_resampling_keeps_the_measure(self):
+        """A node stands for half its edges, on meshes of any size."""
+        s = np.array([0, 0.5, 1, 1.125, 1.25, 2])
+        slips = np.array([1, 1, 0, 1, 0, 0])
+        count = stick_slip.columns_for([s / 2])
+        centres = (np.arange(count) + 0.5) * 2 / count
+        measure = stick_slip.resample(s, slips, centres).mean() * 2
+        self.assertClose(measure, 0.25 + 0.5 + 0.125, absolute=2 * 2 / count)
+        self.assertGreaterEqual(count, 2 * 2 / 0.125)
+
+    def test_boundary_with_hanging_nodes(self):
+        """One large square beside two small ones: no face between them."""
+        square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
+        corners = [square, [1, 0] + square / 2, [1, 0.5] + square / 2]
+        points = np.concatenate([np.column_stack([c, 0 * c[:, 0]]) for c in corners])
+        mesh = Mesh(points, np.arange(12).reshape(3, 4))
+        faces, owners, _ = geometry.boundary_faces(mesh, 1.5)
+        ends = points[faces]
+        lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        self.assertClose(lengths.sum(), 5, absolute=1e-12)
+        self.assertEqual(sorted(np.bincount(owners)), [2, 2, 3])
+
+    def test_planes_are_seen_from_outside(self):
+        """On the underside of a cube with x to the right y points down."""
+        bits = [(i, j, k) for k in (0, 1) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        body = Mesh(bits, [range(8)])
+        for cell, normal in (([0, 1, 2, 3], (0, 0, -1)), ([4, 5, 6, 7], (0, 0, 1))):
+            (plane,) = planes(Mesh(bits, [cell]), body)
+            self.assertClose(plane.normal, normal, absolute=1e-12)
+            self.assertEqual((plane.label(0), plane.label(1)), ("$x$", "$y$"))
+            self.assertEqual(plane.reversed, [1] if normal[2] < 0 else [])
+            self.assertClose(plane.area, 1, absolute=1e-12)
+
+    def test_thinned_nodes_are_a_regular_pattern(self):
+        x, y = np.meshgrid(np.arange(9.0), np.arange(5.0))
+        place = np.column_stack([x.ravel(), y.ravel()])
+        chosen = place[geometry.thinned(place, np.arange(45), 2.0)]
+        expected = {(a, b) for a in range(0, 9, 2) for b in range(0, 5, 2)}
+        self.assertEqual({tuple(map(int, p)) for p in chosen}, expected)
+
+    def test_colours(self):
+        """White is zero where signs differ; few huge values do not dim the rest."""
+        signed = style.Shade(np.array([-1.0, 0.5, 0.2]), "test")
+        self.assertEqual((signed.norm.vmin, signed.norm.vmax), (-1, 1))
+        self.assertEqual(signed.extend, "neither")
+        peaked = style.Shade(np.append(np.linspace(0, 1, 999), 50.0), "test")
+        self.assertLess(peaked.norm.vmax, 1.01)
+        self.assertEqual(peaked.extend, "max")
+        uniform = style.Shade(np.full(5, 3.0), "test")
+        self.assertLess(uniform.norm.vmin, 3)
+        self.assertGreater(uniform.norm.vmax, 3)
+        with self.assertRaisesRegex(UserError, "not finite"):
+            style.Shade(np.array([1, np.nan]), "test")
+
+    def test_magnification(self):
+        for largest, expected in ((0.0, 1), (0.5, 1), (1e-3, 50), (4e-6, 1e4)):
+            self.assertClose(
+                style.rounded_magnification(largest, 1.0), expected, relative=1e-12
+            )
+
+
+SMALL_SLAB = {"Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true"}
+
+
+def plot(*arguments):
+    return subprocess.run(
+        [sys.executable, PLOT, *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+class Pictures(TestCase):
+    def assertPicture(self, path):
+        """A picture, not a blank page: some ink, several colours."""
+        image = matplotlib.image.imread(path)
+        self.assertGreater(min(image.shape[:2]), 100, path)
+        colours = np.unique((image[:, :, :3] * 15).astype(int).reshape(-1, 3), axis=0)
+        self.assertGreater(len(colours), 8, path)
+        ink = (image[:, :, :3].min(axis=2) < 0.9).mean()
+        self.assertGreater(ink, 0.01, path)
+
+    def draw(self, result, *arguments, reason=None):
+        """The pictures that contrib/plot says it has drawn."""
+        process = plot(result.directory, *arguments)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertNotIn("Traceback", process.stderr)
+        if reason is None:
+            self.assertEqual(process.stderr, "")
+        else:
+            self.assertRegex(process.stderr, reason)
+        paths = [
+            result.directory / line for line in process.stdout.strip().split("\n")
+        ]
+        for path in paths:
+            self.assertTrue(path.exists(), path)
+            if path.suffix == ".png":
+                self.assertPicture(path)
+        return {path.name for path in paths}
+
+    def refuse(self, result, *arguments):
+        process = plot(result.directory, *arguments)
+        self.assertEqual(process.returncode, 1)
+        self.assertNotIn("Traceback", process.stderr)
+        self.assertEqual(process.stdout, "")
+        return process.stderr
+
+    def test_everything_in_two_dimensions(self):
+        result = run("slab", {**SMALL_SLAB, "Output/Fields every": 4})
+        names = self.draw(result, "--all", "--dpi", 60)
+        self.assertLessEqual(
+            {"overview.png", "von_mises.png", "displacement_x.png", "stress_xy.png",
+             "pressure.png", "contact.png", "history.png", "hysteresis.png",
+             "stick-slip.png"},
+            names,
+        )
+        self.assertNotIn("estimator.png", names)
+        # the overview alone, as contrib/run wants it
+        self.assertEqual(self.draw(result), {"results.png"})
+        self.assertEqual(self.draw(result, "--step", 4), {"results_00004.png"})
+        names = self.draw(result, "displacement_y", "--format", "pdf,svg", "--time", 1)
+        self.assertEqual(names, {"displacement_y_00004.pdf", "displacement_y_00004.svg"})
+        pdf = result.directory / "pictures" / "displacement_y_00004.pdf"
+        self.assertEqual(pdf.read_bytes()[:4], b"%PDF")
+
+    def test_map_agrees_with_the_statistics(self):
+        """The slipping part of each row of the stick-slip map is slip_area."""
+        result = run("slab", {"Output/Fields every": 1})
+        contact = result.series("contact")
+        from plotting.faces import friction_state
+        from plotting.results import Results
+
+        results = Results(result.directory)
+        self.assertEqual(len(contact), 33)
+        for index in range(1, len(contact)):
+            record = results.face(index)
+            (line,) = lines(record)
+            count = stick_slip.columns_for([line.s / line.length])
+            centres = (np.arange(count) + 0.5) * line.length / count
+            states = stick_slip.resample(
+                line.s, friction_state(record)[line.nodes], centres
+            )
+            slipping = (states == style.SLIPPING).mean() * line.length
+            self.assertClose(slipping, result["slip_area"][index], absolute=1e-6)
+
+    def test_loop_of_the_coulomb_block(self):
+        """The work of the plate is what friction dissipates and shear stores.
+
+        tau^2/(2 mu) on area 2, tau = -0.04 at the end; the trapezoidal rule is
+        exact but for the two steps in which the foot begins to slip, 2 % here.
+        """
+        result = run("coulomb_block_2d")
+        from plotting.results import Results
+
+        found = hysteresis.displacements(Results(result.directory), result.statistics)
+        u = found["boundary3_x"][0]
+        t = result["t"]
+        plate = 0.3 * np.where(t < 2, np.maximum(t - 1, 0), 3 - t)
+        self.assertClose(u, plate, absolute=1e-12)
+        work = hysteresis.work(u, result["friction_force_x"])
+        stored = 2 * 0.04**2 / (2 / 2.6)
+        dissipated = result["friction_dissipation"][-1]
+        self.assertClose(work, dissipated + stored, relative=0.02)
+
+    def test_three_dimensions_hanging_nodes_and_two_ranks(self):
+        result = run(
+            "pad_adaptive", {"Time/Phases": "0.5: 5", "Output/Fields every": 1}, ranks=2
+        )
+        wanted = ("displacement_z", "estimator", "subdomain", "contact", "history",
+                  "hysteresis")
+        names = self.draw(result, "overview", *wanted, "--view", "30,120", "--dpi", 50)
+        self.assertLessEqual({f"{name}.png" for name in wanted}, names)
+        self.assertIn("two-dimensional scenes", self.refuse(result, "stick-slip"))
+
+    def test_adaptive_face_and_pieces_at_an_angle(self):
+        result = run("slab_adaptive", {"Time/Phases": "1: 8", "Output/Fields every": 1})
+        self.draw(result, "stick-slip", "contact", "history", "estimator")
+        result = run("corner_coulomb_90_2d", {"Output/Fields every": 1})
+        self.draw(result, "overview", "contact", "stick-slip")
+        self.draw(run("corner_tresca_90_3d"), "overview", "contact")
+
+    def test_animation(self):
+        from PIL import Image
+
+        result = run("slab", {**SMALL_SLAB, "Output/Fields every": 8})
+        names = self.draw(result, "contact", "von_mises", "--animate", "--dpi", 50)
+        self.assertEqual(names, {"contact.gif", "von_mises.gif"})
+        frames = []
+        with Image.open(result.directory / "pictures" / "contact.gif") as image:
+            self.assertEqual(image.n_frames, 5)
+            for i in range(5):
+                image.seek(i)
+                frames.append(np.asarray(image.convert("RGB")).astype(int))
+        self.assertGreater(np.abs(frames[4] - frames[1]).max(), 100)
+        self.assertIn("no animation", self.refuse(result, "history", "--animate"))
+
+    def test_without_friction(self):
+        result = run("elastic_frictionless")
+        self.draw(result, "overview", "contact", "history", "hysteresis")
+        self.assertIn("no friction", self.refuse(result, "stick-slip"))
+
+    def test_without_contact_and_with_the_ends_only(self):
+        result = run(
+            "cantilever_creep", {"Output/Fields every": 0, "Time/Phases": "0.13: 1"}
+        )
+        self.draw(result, "--all", "--dpi", 50, reason="contact: .* without contact")
+        self.assertIn("without contact", self.refuse(result, "contact"))
+        self.assertIn("without contact", self.refuse(result, "stick-slip"))
+        result = run("slab", {**SMALL_SLAB, "Output/Fields every": 0})
+        self.assertIn("'Output/Fields every = 1'", self.refuse(result, "stick-slip"))
+
+    def test_what_is_wrong(self):
+        result = run("slab", {**SMALL_SLAB, "Output/Fields every": 0})
+        for arguments, words in (
+            (["--step", 7], "no output number 7; there are 0, 1"),
+            (["vonmises"], 'no picture and no field "vonmises".*von_mises'),
+            (["--columns", "energy"], 'no column "energy".*strain_energy'),
+            (["hysteresis", "--force", "f"], 'no force "f".*friction_force_x'),
+            (["hysteresis", "--displacement", "u"], 'no displacement "u".*point0_x'),
+            (["history", "--from", 9], "fewer than two rows"),
+        ):
+            self.assertRegex(self.refuse(result, *arguments), words)
+        directory = result.directory
+        (directory / "solution.pvd").write_text("<VTKFile/>")
+        self.assertIn("lists no files", self.refuse(result))
+        (directory / "solution.pvd").unlink()
+        self.draw(result, "history", "hysteresis")
+        self.assertIn("no solution.pvd", self.refuse(result, "von_mises"))
+        (directory / "statistics.csv").write_text("step,t\n")
+        self.assertIn("no directory of results", self.refuse(result))
+
+
+if __name__ == "__main__":
+    main()

@@ -14,6 +14,7 @@
 #include <viscoplastic_contact/messages.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -22,11 +23,47 @@ namespace Viscoplastic
 {
   namespace
   {
+    /// deal.II takes negative numbers of cells for huge ones.
+    void
+    check_numbers_of_cells(const GeometryParameters &geometry)
+    {
+      // Which of the arguments, counted from 0, are numbers of cells.
+      std::size_t place = numbers::invalid_unsigned_int;
+      if (geometry.generator.compare(0, 11, "subdivided_") == 0)
+        place = 0;
+      else if (geometry.generator.find("hyper_shell") != std::string::npos)
+        place = 3;
+      const auto arguments =
+        Utilities::split_string_list(geometry.arguments, ':');
+      if (place >= arguments.size())
+        return;
+      constexpr double most  = 10000000;
+      double           total = 1.;
+      for (const std::string &text :
+           Utilities::split_string_list(arguments[place], ','))
+        {
+          char        *end   = nullptr;
+          const double value = std::strtod(text.c_str(), &end);
+          if (*end != '\0')
+            return; // deal.II says it
+          // Zero cells of a shell let deal.II choose.
+          total *= value < 0. ? 2. * most : std::max(1., value);
+        }
+      AssertThrow(total <= most,
+                  ExcMessage("'Geometry/Arguments' = " + geometry.arguments +
+                             " asks for " + arguments[place] +
+                             " cells; possible are 1 to 10000000 (refinements "
+                             "make more)."));
+    }
+
+
+
     template <int dim>
     void
     generate(const GeometryParameters                  &geometry,
              parallel::distributed::Triangulation<dim> &triangulation)
     {
+      check_numbers_of_cells(geometry);
       try
         {
           GridGenerator::generate_from_name_and_arguments(triangulation,

@@ -5,6 +5,7 @@
 
 #include <viscoplastic_contact/mesh_check.h>
 
+#include <cmath>
 #include <sstream>
 #include <vector>
 
@@ -33,8 +34,10 @@ namespace Viscoplastic
           double scale = 1.;
           for (unsigned int d = 0; d < dim; ++d)
             scale *= transpose(jacobian)[d].norm();
-          least =
-            std::min(least, scale > 0. ? determinant(jacobian) / scale : 0.);
+          // Neither coinciding vertices nor coordinates beyond all measure.
+          if (!(scale > 0.) || !std::isfinite(scale))
+            return 0.;
+          least = std::min(least, determinant(jacobian) / scale);
         }
       return least;
     }

@@ -3,6 +3,7 @@
 whatever the format, and no file makes the program crash or hang."""
 
 import random
+import runpy
 import shutil
 import subprocess
 import tempfile
@@ -93,6 +94,10 @@ class Same(TestCase):
                 "Geometry/Boundary ids": IDS[3],
             }
             self.check_same(run("box", {**short, **file}, text=text), expected)
+
+    def test_files_are_those_of_the_script(self):
+        for name, text in runpy.run_path(MESHES / "make_meshes.py")["texts"]().items():
+            self.assertEqual((MESHES / name).read_text(), text, name)
 
     def test_file_beside_the_scene(self):
         """The name is relative to the parameter file, not to where we are."""

@@ -143,7 +143,8 @@ def abaqus(dim, nodes, cells, faces):
     return text
 
 
-def main():
+def texts():
+    """{name of the file: its text}"""
     formats = {
         "_2.msh": msh2,
         "_4.msh": msh4,
@@ -151,10 +152,16 @@ def main():
         ".vtk": vtk,
         ".inp": abaqus,
     }
-    for suffix, write in formats.items():
-        for dim, name in (2, "two_materials"), (3, "two_materials_3d"):
-            text = write(dim, *box(dim, 2 if dim == 2 else 1))
-            (HERE / (name + suffix)).write_text(text)
+    return {
+        name + suffix: write(dim, *box(dim, n))
+        for suffix, write in formats.items()
+        for dim, name, n in ((2, "two_materials", 2), (3, "two_materials_3d", 1))
+    }
+
+
+def main():
+    for name, text in texts().items():
+        (HERE / name).write_text(text)
 
 
 if __name__ == "__main__":

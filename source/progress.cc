@@ -22,6 +22,22 @@ namespace Viscoplastic
 
 
     std::string
+    whole_number(const double value)
+    {
+      return std::to_string(static_cast<std::uint64_t>(value));
+    }
+
+
+
+    std::string
+    percent(const double fraction)
+    {
+      return std::to_string(std::lround(100. * fraction)) + " %";
+    }
+
+
+
+    std::string
     padded(const unsigned int n, const unsigned int like)
     {
       std::ostringstream text;
@@ -31,10 +47,34 @@ namespace Viscoplastic
 
 
 
+    /// The step in words, for lines that stay.
+    std::string
+    in_words(const StepProgress &step,
+             const unsigned int  n_steps,
+             const double        elapsed,
+             const double        left)
+    {
+      std::string line =
+        "Step " + padded(step.n, n_steps) + '/' + std::to_string(n_steps) +
+        "  t = " + number(step.t, 5) + "  k = " + number(step.k, 3) +
+        "  cells " + whole_number(step.n_cells);
+      if (step.contact_iterations)
+        line +=
+          "  contact iterations " + std::to_string(*step.contact_iterations);
+      if (step.slipping)
+        line += "  slipping " + percent(*step.slipping);
+      if (step.error_estimate)
+        line += "  error estimate " + number(*step.error_estimate, 3);
+      return line + "  elapsed " + duration(elapsed) + "  left " +
+             duration(left);
+    }
+
+
+
     /// The step as a line of at most @p width characters: what matters least
     /// is left out first.
     std::string
-    describe(const StepProgress &step,
+    in_short(const StepProgress &step,
              const unsigned int  n_steps,
              const double        elapsed,
              const double        left,
@@ -45,22 +85,16 @@ namespace Viscoplastic
       parts.emplace_back("Step " + padded(step.n, n_steps) + '/' +
                            std::to_string(n_steps),
                          0);
-      parts.emplace_back("t = " + number(step.t, 5), 0);
-      parts.emplace_back("k = " + number(step.k, 3), 2);
-      parts.emplace_back(
-        "cells " + std::to_string(static_cast<std::uint64_t>(step.n_cells)), 3);
+      parts.emplace_back("t = " + number(step.t, 4), 6);
+      parts.emplace_back("k = " + number(step.k, 2), 2);
+      parts.emplace_back("cells " + whole_number(step.n_cells), 3);
       if (step.contact_iterations)
-        parts.emplace_back("contact iterations " +
-                             std::to_string(*step.contact_iterations),
+        parts.emplace_back("its " + std::to_string(*step.contact_iterations),
                            4);
       if (step.slipping)
-        parts.emplace_back(
-          "slipping " + std::to_string(std::lround(100. * *step.slipping)) +
-            " %",
-          6);
+        parts.emplace_back("slip " + percent(*step.slipping), 5);
       if (step.error_estimate)
-        parts.emplace_back("error estimate " + number(*step.error_estimate, 3),
-                           5);
+        parts.emplace_back("error " + number(*step.error_estimate, 2), 5);
       parts.emplace_back("elapsed " + duration(elapsed), 1);
       parts.emplace_back("left " + duration(left), 7);
 
@@ -124,8 +158,7 @@ namespace Viscoplastic
                           std::uint64_t(step.n - 1) * max_lines / n_steps;
     if (step.n == 1 || is_last || part > last_part)
       {
-        const std::string line =
-          describe(step, n_steps, elapsed, left, std::string::npos);
+        const std::string line = in_words(step, n_steps, elapsed, left);
         if (!console.has_status() || is_last)
           console.stream() << line << std::endl;
         else
@@ -135,7 +168,7 @@ namespace Viscoplastic
     if (console.has_status() && !is_last && elapsed - last_shown >= 0.1)
       {
         console.show_status(
-          describe(step, n_steps, elapsed, left, console.width() - 1));
+          in_short(step, n_steps, elapsed, left, console.width() - 1));
         last_shown = elapsed;
       }
   }

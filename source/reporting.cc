@@ -285,7 +285,7 @@ namespace Viscoplastic
 
     out << '\n';
     summary.print(console.stream());
-    out << "Iterations per step: ";
+    out << std::setprecision(3) << "Iterations per step: ";
     if (discretisation->face)
       out << static_cast<double>(accounts.contact_iterations) / n
           << " of the active set, ";

@@ -373,7 +373,7 @@ namespace
       }
     EXPECT_GT(n_refused, 0u);
     // Long lines, deep nesting, no end of digits.
-    for (const std::string damaged :
+    for (const std::string &damaged :
          {std::string(1000000, ' ') + "x" + std::string(1000000, ' '),
           "set " + std::string(1000000, '=') + "\n",
           "subsection Boundary " + std::string(100000, '1') + "\nend\n",

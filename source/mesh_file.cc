@@ -218,6 +218,9 @@ namespace Viscoplastic
                std::string(" but ") +
                  (dim == 2 ? "hexahedra" : "quadrilaterals") +
                  ", and 'Dimension' is " + std::to_string(dim) :
+             format == "msh" ?
+               "; once there are physical groups, Gmsh writes nothing but "
+               "their elements" :
                ""));
         if (dim == 2 && reader.has_dimension[3])
           throw std::runtime_error("it has hexahedra, and 'Dimension' is 2");

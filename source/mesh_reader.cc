@@ -183,7 +183,8 @@ namespace Viscoplastic
     if (shape.n_nodes != 1u << dimension)
       fail("this element is a " + shape.name +
            "; only quadrilaterals and hexahedra with nodes at their corners "
-           "are supported");
+           "are supported (in Gmsh, set Mesh.RecombineAll = 1 and "
+           "Mesh.SubdivisionAlgorithm = 1, in 3D 2)");
     has_dimension[dimension] = true;
     if (dimension + 1 < dim || dimension > dim)
       return;

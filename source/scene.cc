@@ -257,7 +257,11 @@ namespace Viscoplastic
                              std::to_string(id) +
                              "' with a role (free, if it carries no load). "
                              "The mesh has the ids " +
-                             list(ids) + "."));
+                             list(ids) +
+                             (id == 0 && !parameters.geometry.file.empty() ?
+                                "; faces that the file puts into no group "
+                                "have the id 0." :
+                                ".")));
     for (const auto &pair : boundary)
       AssertThrow(ids.count(pair.first) == 1,
                   ExcMessage("'Boundary " + std::to_string(pair.first) +

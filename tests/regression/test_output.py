@@ -14,6 +14,7 @@ STATISTICS_2D = [
     "cells",
     "dofs",
     "step_limit",
+    "tension_area",
     "contact_iterations",
     "linear_iterations",
     "duality_gap",

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -276,9 +277,9 @@ namespace Viscoplastic
     if (tension > 0.01)
       {
         std::ostringstream text;
-        text << std::setprecision(2)
-             << "Note: at t = " << summary.tension_area.t
-             << " the foundation pulls at the body on " << 100. * tension
+        text << "Note: at t = " << summary.tension_area.t
+             << " the foundation pulls at the body on "
+             << std::lround(100. * tension)
              << " % of the face in bilateral contact, which does not open.";
         remarks.push_back(text.str());
       }

@@ -33,8 +33,8 @@ namespace Viscoplastic
     }
 
     /// The part of it under a tensile normal stress of more than a thousandth
-    /// of the largest normal stress there, by the mean stress of the cells
-    /// behind. Collective.
+    /// of the largest stress there (Frobenius norm), by the mean stress of the
+    /// cells behind. Collective.
     double
     tension_area(const State<dim> &state) const;
 

@@ -290,6 +290,40 @@ class Junctions(TestCase):
         self.assertNotIn("Warning", result.stdout)
 
 
+class Tension(TestCase):
+    """Bilateral contact does not open; the user is told where it pulls."""
+
+    SCENE = {
+        "Boundary 2/Friction law": "tresca",
+        "Boundary 2/Friction bound": 0.1,
+        "Boundary 2/Foundation motion": "",
+        "Time/Phases": "1: 4",
+    }
+
+    def test_pulled_pressed_and_bent(self):
+        pulled = run(
+            "conveyor_2d", {**self.SCENE, "Boundary 3/Displacement": "0; 0.01*t"}
+        )
+        self.assertClose(pulled["tension_area"], [0, 2, 2, 2, 2], absolute=1e-12)
+        self.assertRegex(pulled.stdout, "Note: .* pulls at the body on 100 %")
+        pressed = run(
+            "conveyor_2d", {**self.SCENE, "Boundary 3/Displacement": "0; -0.01*t"}
+        )
+        self.assertClose(pressed["tension_area"], 0)
+        self.assertNotIn("pulls", pressed.stdout)
+        # Turned about its middle: one half presses, the other pulls.
+        bent = run(
+            "conveyor_2d",
+            {**self.SCENE, "Boundary 3/Displacement": "0; 0.01*t*(x - 1)"},
+            ranks=2,
+        )
+        self.assertClose(bent["tension_area"][1:], 1, absolute=1e-12)
+
+    def test_given_pressure_does_not_pull(self):
+        result = run("conveyor_2d", {"Time/Phases": "0.1: 1"})
+        self.assertNotIn("tension_area", result.statistics)
+
+
 class Pressures(TestCase):
     """S may change its sign: the bound is mu |S|, the load S itself."""
 

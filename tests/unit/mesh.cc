@@ -529,7 +529,7 @@ TEST(MeshFilesRefused, WithOtherCells)
                       ".ucd",
                       "line 5: this element is a triangle; only quadrilaterals "
                       "and hexahedra with nodes at their corners are "
-                      "supported.");
+                      "supported (in Gmsh, set Mesh.RecombineAll = 1");
   expect_text_refused("*NODE\n1, 0, 0\n2, 1, 0\n3, 0, 1\n"
                       "*ELEMENT, TYPE=CPE3\n1, 1, 2, 3\n",
                       ".inp",

@@ -83,10 +83,13 @@ namespace Viscoplastic
     // The initial data, and where they need no solution, the first step.
     state =
       make_initial_state(d.sampling, parameters.initial_state.equilibrate);
+    // Equilibrium at t = 0 would need a solution.
     if (!parameters.initial_state.equilibrate)
-      check_compatibility(d.loads.assemble(0.));
+      {
+        check_compatibility(d.loads.assemble(0.));
+        check_steps();
+      }
     const unsigned int n_steps = scene.schedule.n_steps();
-    check_steps();
 
     // The data of later times, of at most a hundred steps.
     const unsigned int stride = (n_steps + 99) / 100;
@@ -96,6 +99,7 @@ namespace Viscoplastic
         const TimeStep step = scene.schedule.step(std::min(i, n_steps));
         d.loads.assemble(step.t);
         d.space.set_prescribed(step.t, u);
+        d.laws.check(step.t);
         if (d.face)
           {
             d.face->bounds(step.t);

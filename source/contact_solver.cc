@@ -384,7 +384,8 @@ namespace Viscoplastic
         bulk.set_truncation(truncation);
         const Certificate certificate =
           certify(face, bounds, residual, diagonal, state, force);
-        const double size  = bulk.energy_norm();
+        const double size =
+          std::max(bulk.energy_norm(), bulk.rounding_error() / tolerance);
         const auto   bound = [&](const double dual_norm) {
           report.duality_gap = 0.5 * square(dual_norm) + certificate.defect;
           const double error =

@@ -22,8 +22,9 @@ namespace Viscoplastic
               {
                 const auto &condition =
                   space.scene.boundary.at(cell->face(f)->boundary_id());
+                // Glue is meant to pull.
                 if (condition.role != BoundaryRole::contact ||
-                    condition.friction_law == FrictionLaw::coulomb)
+                    !condition.is_bilateral() || condition.is_glued())
                   continue;
                 faces.push_back(
                   {index, condition.normal, cell->face(f)->measure()});

@@ -357,7 +357,7 @@ namespace Viscoplastic
     for (unsigned int pass = 0; pass < 20; ++pass)
       {
         const double error = dual_norm(no_force);
-        if (error <= tolerance * energy_norm())
+        if (error <= std::max(tolerance * energy_norm(), rounding_error()))
           return iterations;
         // The first solution sets the scale of a start from zero.
         const double size = energy_norm();

@@ -232,13 +232,14 @@ namespace Viscoplastic
     if (summary.capped_volume.value == 0. && step.capped_volume > 0.)
       {
         std::ostringstream volume;
-        volume << step.capped_volume << " at t = " << time_step.t;
+        volume << step.capped_volume << " at t = " << time_step.t_old;
         console.remark("Warning: the stress has passed the cap of a law, in "
                        "the volume " +
                        volume.str() +
                        "; beyond it the law is continued linearly.");
       }
-    summary.capped_volume.update(step.capped_volume, time_step.t);
+    // The rate of a step is that of its beginning.
+    summary.capped_volume.update(step.capped_volume, time_step.t_old);
     if (is_initial)
       first_set_up_seconds =
         timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];

@@ -140,6 +140,9 @@ namespace Viscoplastic
             optional_vector<dim>(parameters.foundation_motion,
                                  dim,
                                  entry(id, "Foundation motion"));
+        // Only its change counts.
+        if (foundation_motion && !foundation_motion->depends_on_time())
+          foundation_motion.reset();
       }
   }
 

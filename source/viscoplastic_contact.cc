@@ -63,6 +63,10 @@ namespace Viscoplastic
   {
     static const std::vector<types::global_dof_index> no_dofs;
     assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
+    diagonal = space.owned_vector();
+    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+      diagonal.begin()[i] =
+        matrix.diag_element(space.owned.nth_index_in_set(i));
     solver = make_bulk_solver(space,
                               matrix,
                               face ? face->layout() : no_face,
@@ -340,6 +344,22 @@ namespace Viscoplastic
                 }
       }
     space.set_prescribed(t, u);
+
+    // What rounding leaves of displacements and of loads that cancel.
+    double rounding = 0.;
+    for (std::size_t i = 0; i < space.excluded().size(); ++i)
+      if (!space.excluded()[i])
+        {
+          const double stiffness = d.diagonal.begin()[i];
+          const auto   square    = [](const double x) { return x * x; };
+          rounding += stiffness * square(u.begin()[i]) +
+                      (square(load.values.begin()[i]) +
+                       square(right_side.begin()[i])) /
+                        stiffness;
+        }
+    rounding = Utilities::MPI::sum(rounding, communicator);
+    d.solver->set_rounding_error(100. * std::numeric_limits<double>::epsilon() *
+                                 std::sqrt(rounding));
 
     ContactReport report;
     if (d.face)

@@ -80,9 +80,27 @@ namespace Viscoplastic
     confirmed_dual_norm(const Vector<double> &force,
                         unsigned int         &iterations) = 0;
 
-    /// A norm of the solution to compare dual_norm() with.
+    /// A norm of the solution to compare dual_norm() with. Zero for rigid
+    /// translations, hence the next one.
     virtual double
     energy_norm() const = 0;
+
+    /**
+     * An error in the energy norm that rounding leaves in any case, and that
+     * counts as none: of a body that moves without strain, or whose loads
+     * balance, nothing else remains.
+     */
+    void
+    set_rounding_error(const double error)
+    {
+      rounding = error;
+    }
+
+    double
+    rounding_error() const
+    {
+      return rounding;
+    }
 
     /**
      * Solve (A + springs) w = l - A u - force on the truncated space to the
@@ -112,6 +130,9 @@ namespace Viscoplastic
     /// iterations this took.
     virtual unsigned int
     finish() = 0;
+
+  private:
+    double rounding = 0.;
   };
 
 

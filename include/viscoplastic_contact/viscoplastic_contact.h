@@ -80,6 +80,7 @@ namespace Viscoplastic
       /// How often a solver will be used at least.
       unsigned int                n_solves;
       DistributedMatrix           matrix;
+      DistributedVector           diagonal; // of the matrix
       FrictionFace                no_face;
       std::unique_ptr<BulkSolver> solver;
     };

@@ -4,15 +4,24 @@
 import itertools
 import math
 
+import matplotlib
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
+from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from . import style
 from .faces import friction_state, lines, state_runs
-from .geometry import boundary_faces, chains, newell_normals, sharp_edges
+from .geometry import (
+    boundary_faces,
+    chains,
+    newell_normals,
+    sharp_edges,
+    unique_edges,
+)
+from .layout import add_colour_bar, is_flat
 from .results import NoPicture
 
 DASHES = (0, (5, 3))
@@ -110,45 +119,30 @@ class Body:
         self.values = self.at_points[body.cells].mean(axis=1)
         self.faces, self.owners, self.vertex = boundary_faces(body, body.size)
 
-    def colour_bar(self, figure, **options):
-        return style.add_colour_bar(
-            figure,
-            self.scale.shade,
-            style.field_label(self.scale.name),
-            self.values,
-            **options,
-        )
+    def colour_bar(self, axes, flat):
+        shade = self.scale.shade
+        name = style.field_label(self.scale.name)
+        label = style.range_label(shade, name, self.values, " " if flat else "\n")
+        add_colour_bar(axes, shade.mappable(), label, flat, extend=shade.extend)
 
 
 class Body2D(Body):
     def draw(self, axes):
         cells = self.body.cells
         points = self.deformed[:, :2]
-        few = len(cells) <= MANY
         if is_cell_data(self.scale.name):
-            polygons = PolyCollection(
+            polygons = tiles(
+                axes,
                 points[cells],
                 array=self.values,
                 cmap=self.scale.shade.map,
                 norm=self.scale.shade.norm,
-                # Without edges in the face's colour hairlines of background
-                # shine through between the cells.
-                edgecolors=(1, 1, 1, 0.25) if few else "face",
-                linewidths=0.3,
             )
-            polygons.set_rasterized(not few)  # else vector files grow huge
-            axes.add_collection(polygons)
+            # Else vector files grow huge.
+            polygons.set_rasterized(len(cells) > MANY)
         else:
             shaded(axes, points, cells, self.at_points, self.scale.shade)
-            if few:
-                axes.add_collection(
-                    PolyCollection(
-                        points[cells],
-                        facecolors="none",
-                        edgecolors=(1, 1, 1, 0.25),
-                        linewidths=0.3,
-                    )
-                )
+        draw_mesh(axes, points, cells, self.vertex)
         of_vertex = np.empty((self.vertex.max() + 1, 2))
         of_vertex[self.vertex] = self.body.points[:, :2]
         axes.add_collection(
@@ -177,6 +171,7 @@ class Body2D(Body):
         for side in ("left", "bottom"):
             axes.spines[side].set_position(("outward", 10))
         style.legend_above(axes, [*handles, undeformed_key()])
+        self.colour_bar(axes, is_flat(self.aspect()))
 
     def draw_contact(self, axes, states):
         contact = self.contact
@@ -213,6 +208,32 @@ class Body2D(Body):
         extent = self.scale.high - self.scale.low
         return extent[1] / extent[0]
 
+    def panel_height(self, width):
+        """Inches that the body needs in a panel so many inches wide."""
+        return float(np.clip(width * self.aspect(), 0.4, 7.5))
+
+
+def tiles(axes, polygons, **colours):
+    """Polygons without background between neighbours.
+
+    Each has an edge in its own colour, since two edges that cover a part of
+    the same pixels do not hide what is behind; and corners are not rounded to
+    pixels, as matplotlib does with rectangles only, not with their neighbours.
+    """
+    collection = PolyCollection(
+        polygons, edgecolors="face", linewidths=0.8, snap=False, **colours
+    )
+    return axes.add_collection(collection)
+
+
+def draw_mesh(axes, points, cells, vertex, colour=(1, 1, 1, 0.4)):
+    """Mesh lines, where they do not hide the colours."""
+    if len(cells) <= MANY:
+        lines = points[unique_edges(cells, vertex)]
+        axes.add_collection(
+            LineCollection(lines, colors=[colour], linewidths=0.3, snap=False)
+        )
+
 
 def shaded(axes, points, cells, values, shade):
     """Nodal values on quadrilaterals: four triangles about each centre."""
@@ -243,12 +264,14 @@ def undeformed_key():
 class Body3D(Body):
     """Its surface, from an elevated point of view and without perspective."""
 
-    LABELS = 1.3  # inches for the labels of the axes
+    LABELS = 1.2, 0.6  # inches beside and below the body for labels of axes
+    FLAT = 0.75  # height over width with the colour bar underneath
 
     def panel_height(self, width, view):
         """Inches that the body needs in a panel so many inches wide."""
         across, up = self.projected(view)
-        return float(np.clip((width - self.LABELS) * up / across, 1.2, 5.0)) + 1.1
+        beside, below = self.LABELS
+        return float(np.clip((width - beside) * up / across, 1.0, 4.5)) + below
 
     def projected(self, view):
         """Width and height of the body's box on the screen, over its diagonal."""
@@ -265,28 +288,69 @@ class Body3D(Body):
         )
         return np.abs(right) @ extent, np.abs(up) @ extent
 
-    def fill_panel(self, axes, view):
-        """Enlarge the body to its panel, once all of the figure is there.
+    def add_panel(self, figure, cell, view):
+        """Axes without content for the layout, to be filled by fill_panel."""
+        panel = figure.add_subplot(cell)
+        panel.set_axis_off()
+        across, up = self.projected(view)
+        self.colour_bar(panel, up < self.FLAT * across)
+        style.legend_above(panel, [undeformed_key()])
+        return panel
 
-        matplotlib scales a box by its diagonal to fit into a square; bodies
-        that are flat on the screen may be larger.
+    def fill_panel(self, panel, view):
+        """Draw the body as large as its panel, once all of the figure is there.
+
+        matplotlib scales a box by its diagonal to fit into a square and puts
+        labels at distances that are shares of the box.  So the body and the
+        numbers at its axes are drawn, measured, and drawn larger; the labels
+        are placed here.
         """
-        figure = axes.figure
+        figure = panel.figure
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
-        cell = axes.get_position(original=True)
-        width, height = figure.get_size_inches() * (cell.width, cell.height)
+        available = panel.get_window_extent()
+        axes = figure.add_axes(
+            panel.get_position(), projection="3d", computed_zorder=False
+        )
+        self.draw(axes, view)
+        labels = [
+            figure.text(0, 0, text, ha="center", va="center")
+            for text in axis_labels(axes)
+        ]
+        zoom, gap = 1.0, 6.0
+        for last in (False, False, False, False, True):
+            axes.set_box_aspect(self.scale.high - self.scale.low, zoom=zoom)
+            axes.draw(figure.canvas.get_renderer())
+            body = self.on_screen(axes)
+            numbers = [
+                [number.get_window_extent() for number in numbers_at(axis)]
+                for axis in axes_of_space(axes)
+            ]
+            for axis, label, boxes in zip(axes_of_space(axes), labels, numbers):
+                place_label(axes, axis, label, boxes, body, gap)
+            if last:
+                break
+            if touching(axes):
+                gap = 10.0
+            everything = Bbox.union(
+                [body, *sum(numbers, []), *(l.get_window_extent() for l in labels)]
+            )
+            around = everything.size - body.size
+            zoom *= min((available.size - around) / body.size)
+            shift = available.min + available.max - everything.min - everything.max
+            shift = figure.transFigure.inverted().transform(0.5 * shift)
+            axes.set_position(axes.get_position(original=True).translated(*shift))
+        for number in touching(axes):
+            number.set_visible(False)
+
+    def on_screen(self, axes):
+        """The rectangle that the body's box covers."""
         corners = np.array(
             [np.where(bits, self.scale.high, self.scale.low) for bits in BOX]
         )
         x, y, _ = proj3d.proj_transform(*corners.T, axes.get_proj())
-        drawn = np.ptp(axes.transData.transform(np.column_stack([x, y])), axis=0)
-        drawn /= figure.dpi
-        zoom = min((width - self.LABELS) / drawn[0], (height - 0.9) / drawn[1])
-        axes.set_box_aspect(self.scale.high - self.scale.low, zoom=zoom)
-        axes.patch.set_visible(False)
-        for artist in axes.collections:
-            artist.set_clip_on(False)
+        drawn = axes.transData.transform(np.column_stack([x, y]))
+        return Bbox([drawn.min(axis=0), drawn.max(axis=0)])
 
     def draw(self, axes, view=VIEW):
         axes.set_proj_type("ortho")
@@ -328,6 +392,7 @@ class Body3D(Body):
             zorder=2,
         )
         surface.set_rasterized(not few)
+        surface.set_snap(False)
         axes.add_collection3d(surface)
         if len(edges):
             undeformed = self.body.points[edges]
@@ -349,15 +414,99 @@ class Body3D(Body):
         axes.set_ylim(low[1], high[1])
         axes.set_zlim(low[2], high[2])
         axes.set_box_aspect(high - low)
-        for axis, length in zip("xyz", high - low):
-            # matplotlib moves labels by shares of the other extents.
-            others = np.delete(high - low, "xyz".index(axis)).max()
-            pad = min(12.0 * (high - low).max() / others - 8.0, 30.0)
-            getattr(axes, f"set_{axis}label")(f"${axis}$", labelpad=pad)
+        limits = matplotlib.rcParams["axes.formatter.limits"]
+        power = math.floor(math.log10(max(abs(low).max(), abs(high).max())))
+        for axis, length in zip(axes_of_space(axes), high - low):
             wanted = 2 + round(3 * length / (high - low).max())
-            axes.locator_params(axis=axis, nbins=wanted)
+            axis.get_major_locator().set_params(nbins=wanted)
+            # The same power of ten at all axes.
+            formatter = axis.get_major_formatter()
+            if limits[0] < power < limits[1]:
+                formatter.set_scientific(False)
+            else:
+                formatter.set_powerlimits((power, power))
         axes.tick_params(labelsize="small", pad=1)
-        axes.legend(handles=[undeformed_key()], loc="upper right", frameon=False)
+        axes.patch.set_visible(False)
+        for artist in axes.collections:
+            artist.set_clip_on(False)
+
+
+def axes_of_space(axes):
+    return axes.xaxis, axes.yaxis, axes.zaxis
+
+
+def axis_labels(axes):
+    """Names of the axes with the power of ten that their numbers lack.
+
+    matplotlib would put the power where the label is.
+    """
+    texts = []
+    for name, axis in zip("xyz", axes_of_space(axes)):
+        formatter = axis.get_major_formatter()
+        formatter.set_locs(axis.get_majorticklocs())
+        power = formatter.get_offset()
+        texts.append(f"${name}$  ({power})" if power else f"${name}$")
+        axis.offsetText.set_visible(False)
+    return texts
+
+
+def numbers_at(axis):
+    """The numbers that are drawn at an axis."""
+    low, high = sorted(axis.get_view_interval())
+    return [
+        tick.label1
+        for tick in axis.get_major_ticks()
+        if low <= tick.get_loc() <= high and tick.label1.get_text()
+    ]
+
+
+def touching(axes):
+    """Numbers too close to others of any axis, where these remain."""
+    margin = 1.5 * axes.figure.dpi / 72.0
+    kept, found = [], []
+    for number in itertools.chain(*map(numbers_at, axes_of_space(axes))):
+        box = number.get_window_extent().padded(margin)
+        if any(box.overlaps(other) for other in kept):
+            found.append(number)
+        else:
+            kept.append(box)
+    return found
+
+
+def place_label(axes, axis, label, numbers, body, gap):
+    """Put a label outside the numbers of its axis, at the middle.
+
+    The next time they are drawn the numbers, too, are at a distance from the
+    axis, `gap` points, that does not depend on the shape of the body.
+    """
+    points = axes.figure.dpi / 72.0
+    ends = axes.transData.transform(axis.line.get_xydata())
+    along = ends[1] - ends[0]
+    if not numbers or np.linalg.norm(along) < points:  # seen from its end
+        label.set_visible(False)
+        return
+    middle = ends.mean(axis=0)
+    outwards = np.array([-along[1], along[0]]) / np.linalg.norm(along)
+    if outwards @ (middle - 0.5 * (body.min + body.max)) < 0.0:
+        outwards = -outwards
+
+    def half(box):
+        return 0.5 * np.abs(outwards) @ box.size
+
+    def distance(box):
+        return outwards @ (0.5 * (box.min + box.max) - middle)
+
+    outermost = max(distance(box) + half(box) for box in numbers)
+    place = outermost + 3.0 * points + half(label.get_window_extent())
+    label.set_position(
+        axes.figure.transFigure.inverted().transform(middle + place * outwards)
+    )
+    # matplotlib moves numbers by `pad` and eight more shares of the box.
+    pad = axis.get_major_ticks()[0].get_pad()
+    wanted = gap * points + max(half(box) for box in numbers)
+    found = max(distance(box) for box in numbers)
+    if found > 0.0:
+        axis.set_tick_params(pad=(pad + 8.0) * wanted / found - 8.0)
 
 
 def make_body(results, index, scale):

@@ -10,16 +10,16 @@ import math
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from scipy.spatial import cKDTree
 
 from . import style
-from .body import MANY, shaded
+from .body import draw_mesh, shaded, tiles
 from .faces import friction_state, lines, planes, required, state_runs
-from .geometry import thinned, weld
+from .geometry import thinned
+from .layout import add_colour_bar
 
 MOST_PIECES = 4
 
@@ -175,8 +175,11 @@ def draw_planes(contact, body, scale):
     shown = found[:MOST_PIECES]
     friction = "stick" in contact
     columns = 3 if friction else 1
-    shape = np.ptp(shown[0].plane[np.unique(shown[0].cells)], axis=0)
-    height = float(np.clip(3.6 * shape[1] / shape[0], 1.4, 5.0)) + 1.1
+    aspect = shown[0].aspect()
+    if shown[0].is_flat():
+        height = max(4.4 * aspect, 0.4) + 1.7
+    else:
+        height = min(3.6 * aspect, 5.0) + 1.1
     figure, panels = plt.subplots(
         len(shown),
         columns,
@@ -194,8 +197,8 @@ def draw_planes(contact, body, scale):
         shaded(axes, plane.plane, plane.cells, values, slips)
         add_arrows(axes, plane, contact, scale.largest["slip"], "white")
         plane.prepare(axes)
-        figure.colorbar(slips.mappable(), cax=style.beside(axes)).set_label(
-            r"slip since $t=0$ $|s_\tau|$"
+        add_colour_bar(
+            axes, slips.mappable(), r"slip since $t=0$ $|s_\tau|$", plane.is_flat()
         )
         axes.set_title(f"{plane.name()}, seen from the foundation", pad=10)
         if not friction:
@@ -204,8 +207,11 @@ def draw_planes(contact, body, scale):
         values = np.linalg.norm(contact["traction"], axis=1)
         shaded(axes, plane.plane, plane.cells, values, tractions)
         plane.prepare(axes)
-        figure.colorbar(tractions.mappable(), cax=style.beside(axes)).set_label(
-            r"tangential traction $|\sigma_\tau|$"
+        add_colour_bar(
+            axes,
+            tractions.mappable(),
+            r"tangential traction $|\sigma_\tau|$",
+            plane.is_flat(),
         )
         axes = row[2]
         states = draw_states(axes, plane, contact)
@@ -225,24 +231,14 @@ def draw_states(axes, plane, contact):
             [corners[:, i], middles[:, i], centres, middles[:, i - 1]], axis=1
         )
         colours = [style.STATE_COLOURS[state] for state in states[plane.cells[:, i]]]
-        axes.add_collection(
-            PolyCollection(
-                quarters, facecolors=colours, edgecolors="face", linewidths=0.3
-            )
-        )
-    outline = PolyCollection(
-        corners,
-        facecolors="none",
-        edgecolors=(0, 0, 0, 0.35),
-        linewidths=0.3 if len(corners) <= MANY else 0.0,
-    )
-    axes.add_collection(outline)
+        tiles(axes, quarters, facecolors=colours)
+    draw_mesh(axes, plane.plane, plane.cells, plane.vertex(), (0, 0, 0, 0.5))
     return states[np.unique(plane.cells)]
 
 
 def add_arrows(axes, plane, contact, longest, colour):
     """Arrows of the slip at some nodes; the longest has a key."""
-    nodes = one_of_each(plane, contact)
+    nodes = one_of_each(plane)
     slip = plane.project(contact["slip"])
     length = np.linalg.norm(slip, axis=1)
     if longest <= 0.0 or length[nodes].max(initial=0.0) <= 0.0:
@@ -269,28 +265,25 @@ def add_arrows(axes, plane, contact, longest, colour):
     return arrows
 
 
-def one_of_each(plane, contact):
+def one_of_each(plane):
     """One copy of each node of the plane."""
     used = np.unique(plane.cells)
-    vertex = weld(contact.points[used], 1e-6 * contact.size)
-    _, first = np.unique(vertex, return_index=True)
+    _, first = np.unique(plane.vertex()[used], return_index=True)
     return used[first]
 
 
-def draw_utilisation(figure, axes, plane, contact):
+def draw_utilisation(axes, plane, contact):
     """The panel of the overview: utilisation, slipping nodes, slip."""
     utilisation = contact["utilisation"]
-    few = len(plane.cells) <= MANY
-    faces = PolyCollection(
+    faces = tiles(
+        axes,
         plane.plane[plane.cells],
         array=utilisation[plane.cells].mean(axis=1),
         cmap=matplotlib.colormaps["cividis"],
         norm=Normalize(0.0, 1.0),
-        edgecolors=(1, 1, 1, 0.25) if few else "face",
-        linewidths=0.3,
     )
-    axes.add_collection(faces)
-    nodes = one_of_each(plane, contact)
+    draw_mesh(axes, plane.plane, plane.cells, plane.vertex())
+    nodes = one_of_each(plane)
     slipping = nodes[friction_state(contact)[nodes] == style.SLIPPING]
     axes.plot(
         *plane.plane[slipping].T,
@@ -313,4 +306,4 @@ def draw_utilisation(figure, axes, plane, contact):
             fontproperties={"size": "small"},
         )
     plane.prepare(axes)
-    figure.colorbar(faces, cax=style.beside(axes)).set_label("utilisation of the bound")
+    add_colour_bar(axes, faces, "utilisation of the bound", plane.is_flat())

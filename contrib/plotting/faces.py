@@ -4,7 +4,8 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .geometry import newell_normals
+from .geometry import newell_normals, weld
+from .layout import is_flat
 from .results import NoPicture
 from .style import NO_FRICTION
 
@@ -138,6 +139,18 @@ class Plane:
         )
         self.area = 0.5 * np.abs(twice.sum(axis=1)).sum()
         self.normal = normal
+
+    def vertex(self):
+        """A number for each point of the record, equal at the same place."""
+        return weld(self.contact.points, 1e-6 * self.contact.size)
+
+    def aspect(self):
+        """Height over width."""
+        width, height = np.ptp(self.plane[np.unique(self.cells)], axis=0)
+        return height / width
+
+    def is_flat(self):
+        return is_flat(self.aspect())
 
     def label(self, i):
         for component, name in zip(self.directions[i], "xyz"):

@@ -82,6 +82,13 @@ def boundary_faces(record, size):
     return faces[~interior], owners[~interior], vertex
 
 
+def unique_edges(cells, vertex):
+    """The edges of quadrilaterals, pairs of points, each edge once."""
+    edges = np.concatenate([cells[:, edge] for edge in QUADRILATERAL_EDGES])
+    _, first = np.unique(np.sort(vertex[edges], axis=1), axis=0, return_index=True)
+    return edges[first]
+
+
 def chains(edges):
     """The polylines that edges, pairs of vertices, make up.
 

@@ -160,6 +160,7 @@ def draw(results, options):
         statistics["t"],
         possible_displacements[displacement],
         possible_forces[force],
+        plane=not any(name.endswith("_z") for name in possible_forces),
     )
 
 
@@ -169,18 +170,23 @@ def drives(force, names):
     return bool(match) and f"boundary{match.group(1)}_{match.group(2)}" in names
 
 
-def draw_loop(results, t, displacement, force):
+def draw_loop(results, t, displacement, force, plane):
+    """plane: in two dimensions forces are those on a unit of thickness."""
     (u, u_label), (f, f_label) = displacement, force
     figure, axes = plt.subplots(figsize=(7.6, 5.6), layout="constrained")
     begin = last_cycle(u, f)
     if begin is not None:
         axes.fill(u[begin:], f[begin:], color=style.SERIES[5], alpha=0.2, lw=0)
-        area = rf"loop area $\oint F\,dU$ = {style.short(work(u[begin:], f[begin:]))}"
+        area = (
+            rf"loop area $\oint F\,dU$ = {style.short(work(u[begin:], f[begin:]))}: "
+            f"work per cycle{' and unit thickness' if plane else ''}"
+        )
         if begin > 0:
-            area += f"   (cycle from t = {style.short(t[begin])})"
+            area += f"   (from t = {style.short(t[begin])})"
     else:
         area = (
-            rf"open path, $\int F\,dU$ = {style.short(work(u, f))}"
+            rf"open path, $\int F\,dU$ = {style.short(work(u, f))}: "
+            f"work{' per unit thickness' if plane else ''}"
             f"   (t = {style.short(t[0])} to {style.short(t[-1])})"
         )
     points = np.column_stack([u, f])

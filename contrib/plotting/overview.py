@@ -5,9 +5,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import style
-from .body import Body2D, Body3D, Scale, make_body
+from .body import Body2D, Scale, make_body
 from .contact import draw_utilisation
 from .faces import planes
+from .layout import cell, fit_rows
 
 MOST_PLANES = 2
 
@@ -19,70 +20,71 @@ def scale(results, indices, options):
 def draw(results, index, options, scale):
     body = make_body(results, index, scale)
     time = results.solution[index][0]
-    curve = has_force_curve(results.statistics)
-    if isinstance(body, Body2D):
-        figure, axes, curve_axes = draw_2d(body, curve)
-    else:
-        figure, axes, curve_axes = draw_3d(body, curve, options.view)
-    if curve:
-        draw_force_curve(curve_axes, results.statistics, time)
     heading = style.title(results.name, time, body.magnification)
-    figure.suptitle(heading, fontsize="large")
-    if isinstance(body, Body3D):
-        body.fill_panel(axes, options.view)
+    curve = None
+    if has_force_curve(results.statistics):
+        curve = results.statistics, time
+    if isinstance(body, Body2D):
+        return draw_2d(body, heading, curve)
+    return draw_3d(body, heading, curve, options.view)
+
+
+def draw_2d(body, heading, curve):
+    figure, grid = begin(8.5, heading, curve)
+    axes = figure.add_subplot(grid[0])
+    body.draw(axes)
+    fit_rows(grid, axes, lambda size: body.panel_height(size[0]))
     return figure
 
 
-def draw_2d(body, curve):
-    height = float(np.clip(6.2 * body.aspect(), 2.2, 7.5))
-    figure = plt.figure(
-        figsize=(8.5, height + 1.2 + (2.1 if curve else 0.0)), layout="constrained"
-    )
-    grid = figure.add_gridspec(
-        2 if curve else 1, 1, height_ratios=(height + 0.9, 1.6) if curve else (1,)
-    )
-    axes = figure.add_subplot(grid[0])
-    body.draw(axes)
-    body.colour_bar(figure, cax=style.beside(axes))
-    return figure, axes, figure.add_subplot(grid[1]) if curve else None
-
-
-def draw_3d(body, curve, view):
+def draw_3d(body, heading, curve, view):
     found = []
     if body.contact is not None and "stick" in body.contact:
         found = planes(body.contact, body.body)
     shown = found[:MOST_PLANES]
-    height = max(body.panel_height(5.2 if shown else 6.4, view), 3.3 * len(shown))
-    figure = plt.figure(
-        figsize=(
-            12.0 if shown else 8.0,
-            height + 0.5 + (2.2 if curve else 0.0),
-        ),
-        layout="constrained",
+    figure, grid = begin(
+        12.0 if shown else 8.5, heading, curve, (1.15, 1.0) if shown else (1.0,)
     )
-    grid = figure.add_gridspec(
-        2 if curve else 1,
-        2 if shown else 1,
-        width_ratios=(1.15, 1.0) if shown else (1,),
-        height_ratios=(height, 1.7) if curve else (1,),
-    )
-    body_axes = figure.add_subplot(grid[0, 0], projection="3d", computed_zorder=False)
-    body.colour_bar(
-        figure, ax=body_axes, location="left", shrink=0.75, pad=0.02, aspect=28
-    )
-    body.draw(body_axes, view)
+    panel = body.add_panel(figure, grid[0, 0], view)
+    faces = []
     if shown:
-        panels = grid[0, 1].subgridspec(len(shown), 1, hspace=0.15)
-        for i, plane in enumerate(shown):
-            axes = figure.add_subplot(panels[i])
-            draw_utilisation(figure, axes, plane, body.contact)
-            if i == 0:
-                title = "Contact face" if len(found) == 1 else "Contact faces"
-                if len(found) > len(shown):
-                    title += f" (the {len(shown)} largest of {len(found)})"
-                title += " seen from the foundation, slipping nodes marked"
-                axes.set_title(title, pad=24)
-    return figure, body_axes, figure.add_subplot(grid[1, :]) if curve else None
+        column = grid[0, 1].subgridspec(
+            len(shown),
+            1,
+            hspace=0.15,  # for the keys of the arrows
+            height_ratios=[plane.aspect() for plane in shown],
+        )
+        for plane, place in zip(shown, column):
+            faces.append(figure.add_subplot(place))
+            draw_utilisation(faces[-1], plane, body.contact)
+        title = "Contact face" if len(found) == 1 else "Contact faces"
+        if len(found) > len(shown):
+            title += f" (the {len(shown)} largest of {len(found)})"
+        title += " seen from the foundation, slipping nodes marked"
+        faces[0].set_title(title, pad=24)
+
+    def needed(size):
+        cells = [cell(axes) for axes in faces]
+        around = size[1] - sum(height for _, height in cells)
+        heights = [width * plane.aspect() for (width, _), plane in zip(cells, shown)]
+        return max(body.panel_height(size[0], view), around + min(sum(heights), 5.5))
+
+    fit_rows(grid, panel, needed)
+    body.fill_panel(panel, view)
+    return figure
+
+
+def begin(width, heading, curve, columns=(1.0,)):
+    """A figure with a grid for panels, above the friction force if there is any."""
+    figure = plt.figure(figsize=(width, 8.0), layout="constrained")
+    figure.suptitle(heading, fontsize="large")
+    heights = (4.0, 1.6) if curve else (4.0,)
+    grid = figure.add_gridspec(
+        len(heights), len(columns), width_ratios=columns, height_ratios=heights
+    )
+    if curve:
+        draw_force_curve(figure.add_subplot(grid[1, :]), *curve)
+    return figure, grid
 
 
 def has_force_curve(statistics):

@@ -116,13 +116,10 @@ def draw_maps(results, times, pieces, left_out):
         ncol=len(handles),
         frameon=False,
     )
-    style.add_colour_bar(
-        figure,
-        shade,
-        r"slip rate $\dot{s}_\tau$",
-        everything,
-        ax=panels[1].tolist(),
-        pad=0.02,
+    figure.colorbar(
+        shade.mappable(), extend=shade.extend, ax=panels[1].tolist(), pad=0.02
+    ).set_label(
+        style.range_label(shade, r"slip rate $\dot{s}_\tau$", everything, "\n")
     )
     heading = style.plain(results.name)
     if left_out:

@@ -150,25 +150,16 @@ def robust(values):
     return quantile, True
 
 
-def add_colour_bar(figure, shade, label, values, **options):
-    """values: those of the picture; the bar says how far they go beyond it."""
-    bar = figure.colorbar(shade.mappable(), extend=shade.extend, **options)
-    if shade.extend != "neither":
-        low, high = values.min(), values.max()
-        if shade.extend == "max":
-            label += f" (at most {short(high)})"
-        elif shade.extend == "min":
-            label += f" (at least {short(low)})"
-        else:
-            label += f"\n({short(low)} to {short(high)})"
-    bar.set_label(label)
-    return bar
-
-
-def beside(axes):
-    """Axes for a colour bar as high as the panel that it explains."""
-    width = 0.18 / axes.get_position().width / axes.figure.get_figwidth()
-    return axes.inset_axes((1.0 + 1.2 * width, 0.0, width, 1.0))
+def range_label(shade, label, values, separator=" "):
+    """The label of a colour bar with how far `values` go beyond its ends."""
+    low, high = short(values.min()), short(values.max())
+    beyond = {
+        "neither": "",
+        "max": f"{separator}(at most {high})",
+        "min": f"{separator}(at least {low})",
+        "both": f"{separator}({low} to {high})",
+    }
+    return label + beyond[shade.extend]
 
 
 def rounded_magnification(largest, size):

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """contrib/plot: its numbers on made-up data, its pictures on real results."""
 
+import itertools
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
 
 import matplotlib.image
 import numpy as np
@@ -11,7 +14,15 @@ from harness import SOURCE, TestCase, main, run
 
 sys.path.insert(0, str(SOURCE / "contrib"))
 
-from plotting import geometry, hysteresis, stick_slip, style
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+from plotting import fields, geometry, hysteresis, stick_slip, style
+from matplotlib.transforms import Bbox
+from mpl_toolkits.mplot3d import proj3d
+from plotting.body import MANY, VIEW, numbers_at, tiles
 from plotting.expression import evaluate
 from plotting.faces import lines, planes, state_runs
 from plotting.results import UserError
@@ -42,7 +53,141 @@ def polyline(corners):
     return points, np.arange(len(points)).reshape(-1, 2)
 
 
+def block(*extent, cells=(4, 2, 3), displacement=0.0):
+    """Results of a body of that size, its stress from 1 to 100000."""
+    dim = len(extent)
+    lattice = np.array(list(itertools.product(*map(range, cells[:dim]))))
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    if dim == 2:
+        corners = square
+    else:
+        corners = np.array([(*corner, k) for k in (0, 1) for corner in square])
+    points = (lattice[:, None] + corners).reshape(-1, dim) / cells[:dim] * extent
+    points = np.pad(points, ((0, 0), (0, 3 - dim)))
+    numbers = np.arange(len(points)).reshape(len(lattice), -1)
+    stress = np.repeat(np.linspace(1, 1e5, len(lattice)), len(corners))
+    moved = np.zeros_like(points)
+    moved[:, 0] = displacement * points[:, 1]
+    mesh = Mesh(points, numbers, von_mises=stress, displacement=moved)
+    return SimpleNamespace(
+        name="block",
+        solution=[(0.0, Path())],
+        body=lambda index: mesh,
+        face=lambda index: None,
+    )
+
+
+class Figures(TestCase):
+    def setUp(self):
+        style.set_up()
+
+    def tearDown(self):
+        plt.close("all")
+
+    def draw(self, results, view=VIEW):
+        options = SimpleNamespace(magnification=None, view=view)
+        scale = fields.scale(results, [0], options, "von_mises")
+        figure = fields.draw(results, 0, options, scale)
+        figure.draw_without_rendering()
+        return figure
+
+    def boxes(self, texts):
+        return [
+            text.get_window_extent()
+            for text in texts
+            if text.get_visible() and text.get_text()
+        ]
+
+    def test_labels_in_three_dimensions(self):
+        """Numbers and labels stay apart, one power of ten holds for all axes."""
+        for extent in ((1, 1, 1), (0.03, 0.02, 0.008), (4, 1, 0.3), (0.1, 0.1, 1),
+                       (4e-4, 1e-4, 5e-5), (2e6, 1e6, 3e5)):
+            for view in (VIEW, (50, 200), (30, 120)):
+                figure = self.draw(block(*extent), view)
+                labels = [t for t in figure.texts if t.get_text()[0] == "$"]
+                self.assertEqual(len(labels), 3)
+                powers = {label.get_text()[3:] for label in labels}
+                self.assertEqual(len(powers), 1, powers)
+                plain = 1e-3 <= max(extent) < 1e4
+                self.assertEqual(powers == {""}, plain, powers)
+                (axes,) = [a for a in figure.axes if a.name == "3d"]
+                groups = [self.boxes([label]) for label in labels]
+                for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+                    groups += [self.boxes([number]) for number in numbers_at(axis)]
+                    self.assertFalse(axis.offsetText.get_visible())
+                for these, those in itertools.combinations(groups, 2):
+                    for a, b in itertools.product(these, those):
+                        self.assertFalse(a.overlaps(b), (extent, view))
+                self.assertGreaterEqual(sum(map(len, groups)), 3 + 5)
+
+    def test_bodies_fill_their_panels(self):
+        """Body, numbers and labels reach the edges of the panel, not beyond."""
+        for extent in ((1, 1, 1), (4, 1, 0.3), (0.1, 0.1, 1), (0.1, 0.05, 0.012)):
+            figure = self.draw(block(*extent))
+            panel = figure.axes[0].get_window_extent()
+            (axes,) = [a for a in figure.axes if a.name == "3d"]
+            texts = [t for t in figure.texts if t.get_text()[0] == "$"]
+            for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+                texts += numbers_at(axis)
+            corners = np.array(list(itertools.product((0, 1), repeat=3))) * extent
+            x, y, _ = proj3d.proj_transform(*corners.T, axes.get_proj())
+            body = axes.transData.transform(np.column_stack([x, y]))
+            body = Bbox([body.min(axis=0), body.max(axis=0)])
+            share = Bbox.union([body, *self.boxes(texts)]).size / panel.size
+            self.assertClose(share.max(), 1.0, absolute=0.05, what=extent)
+
+    def test_height_of_pictures_in_the_plane(self):
+        """No empty space about flat or tall bodies; labels fit the colour bar."""
+        for height in (0.1, 0.25, 0.46, 0.8):
+            figure = self.draw(block(1.0, height))
+            body, *bars = figure.axes
+            legend = body.get_legend().get_window_extent()
+            title = figure._suptitle.get_window_extent()
+            self.assertGreater(title.y0, legend.y0)
+            self.assertLess(title.y0 - legend.y1, 0.3 * figure.dpi)
+            (bar,) = bars or body.child_axes
+            underneath = height < 0.4
+            self.assertEqual(bool(bars), underneath)
+            if underneath:
+                gap = body.xaxis.label.get_window_extent().y0
+                gap -= bar.get_window_extent().y1
+                self.assertLess(gap, 0.3 * figure.dpi)
+            axis, along = (bar.xaxis, 0) if underneath else (bar.yaxis, 1)
+            self.assertLess(
+                axis.label.get_window_extent().size[along],
+                bar.get_window_extent().size[along],
+            )
+
+    def test_no_hairlines_between_cells(self):
+        """Rectangles beside cells that are nearly ones, of any size in pixels."""
+        figure = plt.figure(figsize=(3, 3), dpi=100)
+        axes = figure.add_axes((0, 0, 1, 1))
+        axes.set_axis_off()
+        n = 61
+        x, y = np.meshgrid(np.linspace(-0.1, 1.1, n), np.linspace(-0.1, 1.1, n))
+        x[:, ::3] += 1e-6 * np.arange(n)[:, None] ** 2
+        place = np.stack([x, y], axis=-1)
+        cells = np.stack(
+            [place[:-1, :-1], place[:-1, 1:], place[1:, 1:], place[1:, :-1]], axis=2
+        ).reshape(-1, 4, 2)
+        self.assertGreater(len(cells), MANY)
+        tiles(axes, cells, facecolors=[(0, 0, 0)])
+        figure.canvas.draw()
+        pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3]
+        self.assertLess(pixels.max(), 0.03 * 255)
+
+
 class Numbers(TestCase):
+    def test_edges_once(self):
+        """Cells have points of their own; those of an edge count as one."""
+        mesh = block(2.0, 1.0, cells=(3, 2)).body(0)
+        vertex = geometry.weld(mesh.points, 1e-6)
+        edges = geometry.unique_edges(mesh.cells, vertex)
+        self.assertEqual(len(edges), 3 * 3 + 4 * 2)
+        ends = mesh.points[edges]
+        lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        self.assertClose(lengths.sum(), 3 * 2.0 + 4 * 1.0, absolute=1e-12)
+
     def test_area_of_a_loop(self):
         """Clockwise in the (displacement, force) plane is work put in."""
         u = np.array([0, 0, 2, 2, 0.0])

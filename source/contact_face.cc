@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace Viscoplastic
 {
@@ -259,31 +258,83 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<double>
+  ContactFace<dim>::bounds_by_id(const double t) const
+  {
+    std::vector<std::size_t> first{0};
+    for (const auto &ids : boundary_ids)
+      first.push_back(first.back() + ids.size());
+    std::vector<double> result(first.back(), 0.);
+    for (const Share &share : shares)
+      {
+        const Sample &sample = samples[share.sample];
+        const auto   &ids    = boundary_ids[share.point];
+        const auto id = std::find(ids.begin(), ids.end(), sample.condition->id);
+        result[first[share.point] + (id - ids.begin())] +=
+          share.value * sample.condition->bound(sample.x, t);
+      }
+    Utilities::MPI::sum(result, space.communicator, result);
+    return result;
+  }
+
+
+
+  template <int dim>
   Vector<double>
   ContactFace<dim>::foundation_step(const double t_old, const double t) const
   {
     if (!space.scene.has_moving_foundation())
       return {};
-    Vector<double> result(face.n_dofs());
+    const std::vector<double> weights = bounds_by_id(t);
+    Vector<double>            result(face.n_dofs());
+    std::size_t               k = 0; // among the weights
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
-        const Node                  &node = nodes[n];
-        std::set<types::boundary_id> ids;
+        const Node &node = nodes[n];
+        // The motion of an id in face components.
+        const auto motion = [&](const types::boundary_id id) {
+          const BoundaryCondition<dim> &condition = space.scene.boundary.at(id);
+          const Tensor<1, dim>          step      = transpose(node.directions) *
+                                      (condition.sliding(node.position, t) -
+                                       condition.sliding(node.position, t_old));
+          Tensor<1, 3> on_face;
+          for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+            on_face[i] = step[node.components[i]];
+          return on_face;
+        };
+
+        // Least squares of M_p x = M_p w over the points p and their ids.
+        SymmetricTensor<2, 3> matrix;
+        Tensor<1, 3>          right_side, first_motion;
+        unsigned int          n_motions = 0;
         for (unsigned int p = face.first_point[n]; p < face.first_point[n + 1];
              ++p)
-          ids.insert(boundary_ids[p].begin(), boundary_ids[p].end());
-        Tensor<1, dim> step;
-        for (const types::boundary_id id : ids)
+          for (const types::boundary_id id : boundary_ids[p])
+            {
+              const double weight = weights[k++];
+              if (weight == 0.)
+                continue;
+              const FrictionFace::Point &point = face.points[p];
+              const Tensor<1, 3>         w     = motion(id);
+              if (n_motions++ == 0)
+                first_motion = w;
+              right_side += weight * node_force(point, slip(point, w));
+              for (unsigned int row = 0; row < point.n_tangents; ++row)
+                matrix += weight * symmetrize(outer_product(point.map[row],
+                                                            point.map[row]));
+            }
+        Tensor<1, 3> x = first_motion;
+        if (n_motions > 1)
           {
-            const BoundaryCondition<dim> &condition =
-              space.scene.boundary.at(id);
-            step += (condition.sliding(node.position, t) -
-                     condition.sliding(node.position, t_old)) /
-                    static_cast<double>(ids.size());
+            // The change against one of them, of least norm: directions that
+            // no point sees drop out, and equal motions are met exactly.
+            right_side -= matrix * first_motion;
+            const auto modes = eigenvectors(matrix);
+            for (const auto &[value, mode] : modes)
+              if (value > 1e-12 * modes[0].first)
+                x += (mode * right_side / value) * mode;
           }
-        step = transpose(node.directions) * step;
-        for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
-          result[face.first_dof[n] + i] = step[node.components[i]];
+        face.set_node_values(x, n, result);
       }
     return result;
   }

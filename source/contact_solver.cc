@@ -386,7 +386,7 @@ namespace Viscoplastic
           certify(face, bounds, residual, diagonal, state, force);
         const double size =
           std::max(bulk.energy_norm(), bulk.rounding_error() / tolerance);
-        const auto   bound = [&](const double dual_norm) {
+        const auto bound = [&](const double dual_norm) {
           report.duality_gap = 0.5 * square(dual_norm) + certificate.defect;
           const double error =
             0.5 * (dual_norm +

@@ -352,10 +352,10 @@ namespace Viscoplastic
         {
           const double stiffness = d.diagonal.begin()[i];
           const auto   square    = [](const double x) { return x * x; };
-          rounding += stiffness * square(u.begin()[i]) +
-                      (square(load.values.begin()[i]) +
-                       square(right_side.begin()[i])) /
-                        stiffness;
+          rounding +=
+            stiffness * square(u.begin()[i]) +
+            (square(load.values.begin()[i]) + square(right_side.begin()[i])) /
+              stiffness;
         }
     rounding = Utilities::MPI::sum(rounding, communicator);
     d.solver->set_rounding_error(100. * std::numeric_limits<double>::epsilon() *

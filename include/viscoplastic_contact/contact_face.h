@@ -65,9 +65,10 @@ namespace Viscoplastic
     face_vector(const DistributedVector &in_frames) const;
 
     /**
-     * How far the foundation slides between two times, as a face vector; where
-     * boundary ids with different motions share a node, their mean. Empty if
-     * no foundation moves.
+     * How far the foundation slides between two times, as a face vector. At a
+     * node of several boundary ids it is what fits the motions of all of them
+     * best, each weighed by its share of the bound at time t: a piece without
+     * friction does not count. Empty if no foundation moves. Collective.
      */
     Vector<double>
     foundation_step(const double t_old, const double t) const;
@@ -127,6 +128,11 @@ namespace Viscoplastic
     make_nodes();
     void
     make_shares();
+
+    /// The bounds at time t by point and boundary id, in the order of
+    /// boundary_ids. Collective.
+    std::vector<double>
+    bounds_by_id(const double t) const;
 
     const AdmissibleSpace<dim>          &space;
     FrictionFace                         face;

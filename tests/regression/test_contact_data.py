@@ -272,6 +272,105 @@ class Glued(TestCase):
         self.assertClose(result["reaction_4_x"], -0.1 * result["t"], absolute=1e-9)
 
 
+class Passenger(TestCase):
+    """A body that is carried along without strain: exact on any mesh."""
+
+    def check(self, pressure=0.01, speed=0.1, ranks=1, **more):
+        result = run("passenger_2d", more, ranks=ranks)
+        path = speed * result["t"]
+        for point in ("point0_x", "point1_x", "point2_x"):
+            self.assertClose(
+                result[point], path, absolute=1e-9 * max(1, path[-1]), what=point
+            )
+        self.assertClose(
+            result["max_von_mises"], pressure, absolute=1e-9 * max(1, path[-1])
+        )
+        self.assertLessEqual(result["algebraic_error"].max(), 1e-10)
+        return result
+
+    def test_wall_without_friction_does_not_hold_the_corner(self):
+        for arguments in ("8, 8", "16, 16"):
+            self.check(
+                **{"Geometry/Arguments": f"{arguments} : 0, 0 : 1, 1 : true"}
+            )
+
+    def test_wall_without_friction_on_two_ranks(self):
+        self.check(ranks=2)
+
+    def test_floor_of_two_pieces_of_which_one_rubs(self):
+        """They share a node and a friction point."""
+        self.check(
+            **{
+                "Geometry/Boundary ids": "if(y < 1e-6 && x > 0.5, 7, id)",
+                "Boundary 7/Role": "contact",
+                "Boundary 7/Friction law": "coulomb",
+                "Boundary 7/Friction coefficient": 0,
+                "Boundary 7/Normal stress": -0.01,
+            }
+        )
+
+    UNSTRAINED = {
+        "Boundary 2/Normal stress": "-0.01*max(0, t - 1)",
+        "Time/Phases": "1: 4, 2: 4",
+        "Boundary 1/Role": "free",
+    }
+
+    def test_nothing_strains(self):
+        for solver in ("direct", "multigrid"):
+            result = run(
+                "passenger_2d", {**self.UNSTRAINED, "Solver/Linear solver": solver}
+            )
+            self.assertClose(
+                result["point0_x"], 0.1 * result["t"], absolute=1e-9, what=solver
+            )
+            self.assertClose(
+                result["max_von_mises"],
+                0.01 * np.maximum(0, result["t"] - 1),
+                absolute=1e-9,
+                what=solver,
+            )
+
+    def test_nothing_strains_with_given_bound(self):
+        result = run(
+            "passenger_2d",
+            {
+                "Boundary 1/Role": "free",
+                "Boundary 2/Friction law": "tresca",
+                "Boundary 2/Friction bound": 0.1,
+            },
+        )
+        self.assertClose(result["max_von_mises"], 0, absolute=1e-12)
+        self.assertClose(result["point0_x"], 0.1 * result["t"], absolute=1e-12)
+
+    def test_far_away(self):
+        """Displacements of a million lengths; rounding of 1e-16 of them."""
+        self.check(
+            speed=1e6,
+            **{
+                "Boundary 1/Role": "free",
+                "Boundary 2/Foundation motion": "1e6*t; 0",
+                "Boundary 3/Displacement": "1e6*t; 0",
+            },
+        )
+
+    def test_initial_stress_that_balances(self):
+        """Not a carried body, but the same for the solver: loads and initial
+        stress cancel, the displacement stays zero."""
+        result = run(
+            "slab",
+            {
+                "Material/Law": "elastic",
+                "Initial state/Stress": "0; 0; 0; 0.05",
+                "Boundary 0/Traction": "0; -0.05",
+                "Boundary 1/Role": "traction",
+                "Boundary 1/Traction": "0; 0.05",
+                "Time/Phases": "1: 4",
+            },
+        )
+        self.assertClose(result["friction_force_x"], 0.1, absolute=1e-12)
+        self.assertClose(result["max_displacement"], 0, absolute=1e-12)
+
+
 class Junctions(TestCase):
     """Clamped next to friction: allowed, but the user is told."""
 

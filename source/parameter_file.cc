@@ -221,7 +221,7 @@ namespace Viscoplastic
       const std::size_t dots  = bounds.find("...");
       const std::string lower = bounds.substr(0, dots),
                         upper = bounds.substr(dots + 3);
-      if (lower != lowest && (upper != highest || what == "a whole number"))
+      if (lower != lowest && upper != highest)
         return what + " from " + lower + " to " + upper;
       if (lower != lowest)
         return what + " of at least " + lower;

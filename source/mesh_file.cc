@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/mesh_file.h>
 #include <viscoplastic_contact/mesh_reader.h>
+#include <viscoplastic_contact/messages.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace Viscoplastic
 {
@@ -30,8 +32,8 @@ namespace Viscoplastic
                   ExcMessage(it + "is not a regular file."));
       std::ifstream input(name, std::ios::binary);
       AssertThrow(input, ExcMessage(it + "cannot be opened."));
-      const std::string text{std::istreambuf_iterator<char>(input),
-                             std::istreambuf_iterator<char>()};
+      std::string text{std::istreambuf_iterator<char>(input),
+                       std::istreambuf_iterator<char>()};
       AssertThrow(text.find_first_not_of(" \t\r\n") != std::string::npos,
                   ExcMessage(it + "is empty."));
       return text;
@@ -182,7 +184,7 @@ namespace Viscoplastic
               "; a face can be in one group only");
           kept.push_back(element);
         }
-      mesh.faces = kept;
+      mesh.faces = std::move(kept);
     }
   } // namespace
 
@@ -190,12 +192,12 @@ namespace Viscoplastic
 
   MeshFile
   read_mesh_file(const std::string &name,
-                 const std::string &format_,
+                 const std::string &file_format,
                  const unsigned int dim)
   {
-    const std::string text = content(name);
+    std::string       text = content(name);
     const std::string format =
-      format_ == "automatic" ? format_of(name, text) : format_;
+      file_format == "automatic" ? format_of(name, text) : file_format;
     const std::map<std::string, void (*)(MeshReader &)> readers{
       {"msh", read_msh},
       {"ucd", read_ucd},
@@ -206,7 +208,7 @@ namespace Viscoplastic
                 ExcMessage("'Geometry/File format' = " + format +
                            " is none of automatic, msh, ucd, vtk, abaqus."));
 
-    MeshReader reader(text, dim);
+    MeshReader reader(std::move(text), dim);
     try
       {
         read->second(reader);
@@ -237,8 +239,8 @@ namespace Viscoplastic
         AssertThrow(false,
                     ExcMessage("The mesh file '" + name +
                                "' cannot be read as " + format + ": " +
-                               exception.what() + "."));
+                               reason(exception) + "."));
       }
-    return reader.mesh;
+    return std::move(reader.mesh);
   }
 } // namespace Viscoplastic

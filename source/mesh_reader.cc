@@ -106,10 +106,13 @@ namespace Viscoplastic
   long
   MeshReader::to_integer(const std::string &word, const std::string &what) const
   {
-    // Ids and numbers of nodes that anyone uses are far below.
-    char      *end   = nullptr;
+    // Ids and numbers of nodes that anyone uses are far below; and signs can
+    // be changed and differences taken without a second look.
+    constexpr long largest = 1000000000000;
+    char          *end     = nullptr;
+    // Beyond its range, this is one end of it.
     const long value = std::strtol(word.c_str(), &end, 10);
-    if (word.empty() || *end != '\0' || std::abs(value) > 1000000000000)
+    if (word.empty() || *end != '\0' || value < -largest || value > largest)
       fail("expected " + what + ", found " + quoted(word));
     return value;
   }

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/messages.h>
 
+#include <new>
 #include <sstream>
 
 namespace Viscoplastic
@@ -13,6 +14,8 @@ namespace Viscoplastic
     std::ostringstream message;
     if (const auto *e = dynamic_cast<const dealii::ExceptionBase *>(&exception))
       e->print_info(message);
+    else if (dynamic_cast<const std::bad_alloc *>(&exception) != nullptr)
+      message << "there is not enough memory";
     else
       message << exception.what();
     std::istringstream words(message.str());
@@ -20,5 +23,16 @@ namespace Viscoplastic
     while (words >> word)
       line += (line.empty() ? "" : " ") + word;
     return line;
+  }
+
+
+
+  std::string
+  list(const std::set<unsigned int> &ids)
+  {
+    std::string result;
+    for (const unsigned int id : ids)
+      result += (result.empty() ? "" : ", ") + std::to_string(id);
+    return result;
   }
 } // namespace Viscoplastic

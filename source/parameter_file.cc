@@ -5,6 +5,7 @@
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/mesh_file.h>
 #include <viscoplastic_contact/parameter_file.h>
 #include <viscoplastic_contact/spelling.h>
 
@@ -21,8 +22,6 @@ namespace Viscoplastic
   namespace
   {
     using Tree = boost::property_tree::ptree;
-
-    const unsigned int max_id = 1'000'000'000;
 
 
 
@@ -314,13 +313,13 @@ namespace Viscoplastic
         const bool        is_id =
           digits.size() <= 10 &&
           digits.find_first_not_of("0123456789") == std::string::npos &&
-          std::stoull(digits) <= max_id;
+          std::stoull(digits) <= largest_id;
         AssertThrow(is_id,
                     ExcMessage(statement.origin() + ": '" + excerpt(digits) +
                                "' in the subsection '" + excerpt(name) +
                                "' is no id; it must be a whole number from 0 "
                                "to " +
-                               std::to_string(max_id) + "."));
+                               std::to_string(largest_id) + "."));
         const auto id = static_cast<unsigned int>(std::stoul(digits));
         if (kind == "Boundary")
           boundaries[id];

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/mesh.h>
+#include <viscoplastic_contact/mesh_ids.h>
+#include <viscoplastic_contact/mesh_pieces.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/scene.h>
 
 #include <sstream>
@@ -74,18 +76,6 @@ namespace Viscoplastic
       if (expression.is_zero())
         return {};
       return expression;
-    }
-
-
-
-    template <typename Id>
-    std::string
-    list(const std::set<Id> &ids)
-    {
-      std::string result;
-      for (const Id id : ids)
-        result += (result.empty() ? "" : ", ") + std::to_string(id);
-      return result;
     }
   } // namespace
 

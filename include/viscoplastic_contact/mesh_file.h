@@ -34,7 +34,7 @@ namespace Viscoplastic
   };
 
 
-  /// Ids go up to this in files and expressions.
+  /// Ids go up to this in mesh files, parameter files and expressions.
   constexpr unsigned int largest_id = 999999999;
 
 

@@ -48,7 +48,7 @@ namespace Viscoplastic
     void
     expect(const std::string &keyword);
 
-    /// The next word as a whole number.
+    /// The next word as a whole number, of magnitude 1e12 at most.
     long
     integer(const std::string &what);
 
@@ -104,7 +104,7 @@ namespace Viscoplastic
     std::array<bool, 4> has_dimension{};
 
   private:
-    const std::string                      text;
+    std::string                            text;
     std::size_t                            position = 0;
     std::unordered_map<long, unsigned int> node_indices;
   };

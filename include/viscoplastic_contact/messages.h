@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <set>
 #include <string>
 
 namespace Viscoplastic
@@ -12,4 +13,9 @@ namespace Viscoplastic
    */
   std::string
   reason(const std::exception &exception);
+
+
+  /// Ids of boundaries or materials, separated by commas.
+  std::string
+  list(const std::set<unsigned int> &ids);
 } // namespace Viscoplastic

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <set>
 #include <unordered_set>
 
 namespace Viscoplastic
@@ -59,6 +60,31 @@ namespace Viscoplastic
         return {};
       return std::stol(name.substr(begin));
     }
+
+
+
+    /// What a set consists of, as the file says it: copies of the elements of
+    /// sets in sets may need far more memory than the file.
+    struct ElementSet
+    {
+      struct Range
+      {
+        long first, last, step;
+      };
+
+      void
+      add(const long number)
+      {
+        if (!ranges.empty() && ranges.back().step == 1 &&
+            ranges.back().last + 1 == number)
+          ++ranges.back().last;
+        else
+          ranges.push_back({number, number, 1});
+      }
+
+      std::vector<Range>       ranges;
+      std::vector<std::string> sets;
+    };
 
 
 
@@ -186,6 +212,10 @@ namespace Viscoplastic
         MeshReader::Shape shape{type,
                                 2,
                                 static_cast<unsigned int>(nodes.size())};
+        if (type.find("AX") != std::string::npos)
+          reader.fail("this element is a " + type +
+                      ", which is axisymmetric; bodies in 2D are in plane "
+                      "strain");
         if (type.find("C3D") != std::string::npos)
           shape.dimension = 3;
         else if (nodes.size() <= 2)
@@ -203,19 +233,26 @@ namespace Viscoplastic
           reader.fail("the element " + std::to_string(number) +
                       " is there twice");
         if (!keyword["ELSET"].empty())
-          sets[keyword["ELSET"]].push_back(number);
+          sets[keyword["ELSET"]].add(number);
       }
 
       void
       add_to_set(const Keyword &keyword, const std::vector<std::string> &fields)
       {
-        std::vector<long> &set = sets[keyword["ELSET"]];
+        const std::string name = keyword["ELSET"];
+        ElementSet       &set  = sets[name];
         if (keyword.parameters.count("GENERATE") == 0)
           {
             for (const std::string &field : fields)
               {
-                const auto other = elements_of({field, 0, reader.line});
-                set.insert(set.end(), other.begin(), other.end());
+                const std::string other = without_instance(field);
+                if (other == name)
+                  reader.fail("the set " + MeshReader::quoted(name) +
+                              " contains itself");
+                if (sets.count(other) == 1)
+                  set.sets.push_back(other);
+                else
+                  set.add(element_number(other));
               }
             return;
           }
@@ -229,8 +266,7 @@ namespace Viscoplastic
         if (step < 1 || last < first ||
             static_cast<std::size_t>((last - first) / step) >= numbers.size())
           reader.fail("this range of elements is not in the mesh");
-        for (long number = first; number <= last; number += step)
-          set.push_back(number);
+        set.ranges.push_back({first, last, step});
       }
 
       void
@@ -251,20 +287,45 @@ namespace Viscoplastic
                             static_cast<std::size_t>(fields[1][1] - '1')});
       }
 
-      std::vector<long>
-      elements_of(const Selection &selection) const
+      /// Within an assembly, the name of an instance may come before a dot.
+      static std::string
+      without_instance(const std::string &name)
       {
-        // Within an assembly, the name of an instance may come before a dot.
-        const std::string name =
-          selection.elements.substr(selection.elements.rfind('.') + 1);
-        const auto set = sets.find(name);
-        if (set != sets.end())
-          return set->second;
-        reader.line       = selection.line;
-        const long number = reader.to_integer(name, "an element or set");
+        return name.substr(name.rfind('.') + 1);
+      }
+
+      long
+      element_number(const std::string &word) const
+      {
+        const long number = reader.to_integer(word, "an element or set");
         if (numbers.count(number) == 0)
           reader.fail("there is no element " + std::to_string(number));
-        return {number};
+        return number;
+      }
+
+      /// Each once.
+      std::set<long>
+      elements_of(const Selection &selection) const
+      {
+        const std::string name = without_instance(selection.elements);
+        reader.line            = selection.line;
+        if (sets.count(name) == 0)
+          return {element_number(name)};
+        std::set<long>           result;
+        std::set<std::string>    found{name};
+        std::vector<std::string> open{name};
+        while (!open.empty())
+          {
+            const ElementSet &set = sets.at(open.back());
+            open.pop_back();
+            for (const ElementSet::Range &range : set.ranges)
+              for (long n = range.first; n <= range.last; n += range.step)
+                result.insert(result.end(), n);
+            for (const std::string &other : set.sets)
+              if (found.insert(other).second)
+                open.push_back(other);
+          }
+        return result;
       }
 
       /// The cell or face; null for other elements.
@@ -278,13 +339,13 @@ namespace Viscoplastic
         return nullptr;
       }
 
-      MeshReader                              &reader;
-      bool                                     in_assembly = false;
-      std::vector<std::string>                 pending;
-      std::unordered_set<long>                 numbers;
-      std::unordered_map<long, std::size_t>    cells, faces;
-      std::map<std::string, std::vector<long>> sets;
-      std::vector<Selection> numbered_sets, sections, surfaces;
+      MeshReader                           &reader;
+      bool                                  in_assembly = false;
+      std::vector<std::string>              pending;
+      std::unordered_set<long>              numbers;
+      std::unordered_map<long, std::size_t> cells, faces;
+      std::map<std::string, ElementSet>     sets;
+      std::vector<Selection>                numbered_sets, sections, surfaces;
     };
   } // namespace
 

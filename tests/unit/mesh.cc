@@ -6,6 +6,10 @@
 #include "body.h"
 #include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_file.h>
+#include <viscoplastic_contact/mesh_ids.h>
+#include <viscoplastic_contact/mesh_pieces.h>
+
+#include <sys/resource.h>
 
 using namespace Viscoplastic;
 using namespace Viscoplastic::Testing;
@@ -470,8 +474,6 @@ TEST(MeshChecks, Generators)
   expect_mesh_refused<2>(generated("-2, 2 : 0, 0 : 1, 1 : true"),
                          "'Geometry/Arguments' = -2, 2 : 0, 0 : 1, 1 : true "
                          "asks for -2, 2 cells; possible are 1 to 10000000");
-  expect_mesh_refused<2>(generated("0, 0 : 0.5 : 1 : -8 : true", "hyper_shell"),
-                         "asks for -8 cells");
   GeometryParameters geometry =
     generated("0, 0 : 0.5 : 1 : 8 : true", "hyper_shell");
   geometry.translation = "1, 0";
@@ -479,6 +481,74 @@ TEST(MeshChecks, Generators)
   geometry             = generated("2, 2 : 0, 0 : 1, 1 : true");
   geometry.translation = "1, 0, 0";
   expect_mesh_refused<2>(geometry, "'Geometry/Translation' = 1, 0, 0 needs 2");
+}
+
+
+
+TEST(MeshChecks, NumbersOfCellsOfGenerators)
+{
+  // Beyond the limits deal.II would ask for all the memory, or for as many
+  // cells as an unsigned -1.
+  const auto refused = [](const std::string &generator,
+                          const std::string &arguments,
+                          const std::string &n_cells) {
+    const std::string sentence = "'Geometry/Arguments' = " + arguments +
+                                 " asks for " + n_cells +
+                                 " cells; possible are 1 to 10000000";
+    expect_mesh_refused<2>(generated(arguments, generator), sentence);
+    expect_mesh_refused<3>(generated(arguments, generator), sentence);
+  };
+  refused("hyper_shell", "0, 0 : 0.5 : 1 : -8 : true", "-8");
+  refused("eccentric_hyper_shell", "0, 0 : 0, 0 : 1 : 2 : 3e7", "3e+07");
+  refused("cylinder_shell", "1 : 0.5 : 1 : -3 : 4", "-3, 4");
+  refused("cylinder_shell", "1 : 0.5 : 1 : 10000 : 2000", "2e+07");
+  refused("concentric_hyper_shells",
+          "0, 0 : 1 : 2 : 10000 : 0.1 : 2000 : true",
+          "2e+07");
+  refused("hyper_cross", "20000000, 0, 0, 0 : true", "2e+07");
+  refused("subdivided_hyper_rectangle",
+          "5000, 5000 : 0, 0 : 1, 1 : true",
+          "2.5e+07");
+  // A power of the dimension.
+  expect_mesh_refused<2>(generated("100000 : 0 : 1 : true",
+                                   "subdivided_hyper_cube"),
+                         "asks for 1e+10 cells");
+  expect_mesh_refused<3>(generated("1000 : 0 : 1 : true",
+                                   "subdivided_hyper_cube"),
+                         "asks for 1e+09 cells");
+
+  // What is large is a radius; and arms of a cross may have no cells.
+  EXPECT_EQ(make<2>(
+              generated("0, 0 : 0, 0 : 1e7 : 2e7 : 8", "eccentric_hyper_shell"))
+              ->n_global_active_cells(),
+            8u);
+  EXPECT_EQ(make<2>(generated("2, 0, 1, 0 : false", "hyper_cross"))
+              ->n_global_active_cells(),
+            4u);
+}
+
+
+
+TEST(MeshChecks, WithoutEnoughMemory)
+{
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  // In pages: what we have, then what is resident.
+  std::ifstream statm("/proc/self/statm");
+  rlim_t        n_pages = 0;
+  if (!(statm >> n_pages))
+    GTEST_SKIP() << "no /proc";
+  rlimit limit   = before;
+  limit.rlim_cur = n_pages * sysconf(_SC_PAGESIZE) + (rlim_t(100) << 20);
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &limit), 0);
+  const std::string message = message_of(
+    [] { make<2>(generated("3000 : 0 : 1 : true", "subdivided_hyper_cube")); });
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  EXPECT_NE(message.find(
+              "'subdivided_hyper_cube' refuses the arguments '3000 : "
+              "0 : 1 : true': there is not enough memory"),
+            std::string::npos)
+    << message;
 }
 
 
@@ -539,6 +609,44 @@ TEST(MeshFilesRefused, WithOtherCells)
                                "\n1 8 2 1 1 1 4 7\n"),
                       ".msh",
                       "this element is a line of second order; only");
+}
+
+
+
+TEST(MeshFilesRefused, WithNumbersBeyondMeasure)
+{
+  const std::string ucd = content(two_materials<2>()[2]);
+  // strtol turns the first two into the ends of its range.
+  for (const std::string number :
+       {"-99999999999999999999999", "99999999999999999999999", "1000000000001"})
+    expect_text_refused(replaced(ucd, "\n1 0.0", "\n" + number + " 0.0"),
+                        ".ucd",
+                        "expected the number of a node, found '" + number);
+}
+
+
+
+TEST(MeshFilesRefused, ThatAreAxisymmetric)
+{
+  const std::string inp = content(two_materials<2>()[4]);
+  expect_text_refused(replaced(inp, "CPE4", "CAX4R"),
+                      ".inp",
+                      "this element is a CAX4R, which is axisymmetric; bodies "
+                      "in 2D are in plane strain");
+}
+
+
+
+TEST(MeshFilesRefused, WithSetsThatContainThemselves)
+{
+  const std::string inp  = content(two_materials<2>()[4]);
+  std::string       line = "B";
+  for (unsigned int i = 0; i < 30; ++i)
+    line += ",B";
+  std::string lines = "*ELSET, ELSET=B\n1\n";
+  for (unsigned int i = 0; i < 8; ++i)
+    lines += line + "\n";
+  expect_text_refused(inp + lines, ".inp", "the set 'B' contains itself");
 }
 
 
@@ -673,6 +781,28 @@ TEST(MeshFilesOfOthers, AbaqusWithLinesAndRanges)
   const auto mesh = make<2>(from_file(file.name));
   expect_measures(areas(*mesh), {{0, 3.}, {1, 1.}, {4, 1.}, {8, 1.}});
   expect_measures(volumes(*mesh), {{3, 2.}});
+}
+
+
+
+TEST(MeshFilesOfOthers, AbaqusWithSetsOfSets)
+{
+  // Each has the one before twice; the first gets the last, too. Copies of
+  // their elements would be 2^40.
+  std::string text =
+    "*NODE\n1, 0, 0\n2, 1, 0\n3, 2, 0\n4, 2, 1\n5, 1, 1\n6, 0, 1\n"
+    "*ELEMENT, TYPE=CPS4\n11, 1, 2, 5, 6\n12, 2, 3, 4, 5\n"
+    "*ELSET, ELSET=S100\n12\n";
+  for (unsigned int i = 101; i <= 140; ++i)
+    {
+      const std::string before = "S" + std::to_string(i - 1);
+      text += "*ELSET, ELSET=S" + std::to_string(i) + "\n" + before + ", " +
+              before + "\n";
+    }
+  text += "*ELSET, ELSET=S100\nS140\n";
+  const TemporaryFile file(text, ".inp");
+  expect_measures(volumes(*make<2>(from_file(file.name))),
+                  {{0, 1.}, {100, 1.}});
 }
 
 

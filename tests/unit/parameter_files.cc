@@ -222,7 +222,7 @@ namespace
     // ids
     refused("subsection Boundary left\nend",
             "line 1: 'left' in the subsection 'Boundary left' is no id; it "
-            "must be a whole number from 0 to 1000000000.");
+            "must be a whole number from 0 to 999999999.");
     refused("subsection Boundary 1000000001\nend", "line 1: '1000000001' in");
     refused("subsection Material -1\nend", "line 1: '-1' in");
     refused("subsection Material 99999999999999999999999\nend", "line 1: '999");

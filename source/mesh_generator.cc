@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+#include <deal.II/grid/grid_generator.h>
+
+#include <viscoplastic_contact/mesh_generator.h>
+#include <viscoplastic_contact/messages.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Which arguments of a generator, counted from 0, are numbers of cells.
+    struct CellCounts
+    {
+      std::vector<std::size_t> arguments;
+      enum
+      {
+        /// Each multiplies the number of cells.
+        product,
+        /// The one there is does so once a direction.
+        power,
+        /// They are added to each other.
+        sum
+      } kind = product;
+    };
+
+
+
+    const std::map<std::string, CellCounts> cell_counts{
+      {"channel_with_cylinder", {{1}}},
+      {"cheese", {{0}}},
+      {"concentric_hyper_shells", {{3, 5}}},
+      {"cylinder_shell", {{3, 4}}},
+      {"eccentric_hyper_shell", {{4}}},
+      {"half_hyper_shell", {{3}}},
+      {"hyper_cross", {{0}, CellCounts::sum}},
+      {"hyper_cube_with_cylindrical_hole", {{3}}},
+      {"hyper_shell", {{3}}},
+      {"moebius", {{0}}},
+      {"plate_with_a_hole", {{10}}},
+      {"quarter_hyper_shell", {{3}}},
+      {"subdivided_cylinder", {{0}}},
+      {"subdivided_hyper_cube", {{0}, CellCounts::power}},
+      {"subdivided_hyper_rectangle", {{0}}},
+      {"torus", {{2}}}};
+
+
+
+    /// deal.II takes negative numbers of cells for huge ones, and asks for all
+    /// the memory that huge ones need.
+    void
+    check_numbers_of_cells(const GeometryParameters &geometry,
+                           const unsigned int        dim)
+    {
+      const auto found = cell_counts.find(geometry.generator);
+      if (found == cell_counts.end())
+        return;
+      const CellCounts &counts = found->second;
+      const auto        arguments =
+        Utilities::split_string_list(geometry.arguments, ':');
+      double      total       = counts.kind == CellCounts::sum ? 0. : 1.;
+      bool        is_negative = false;
+      std::string numbers;
+      for (const std::size_t place : counts.arguments)
+        {
+          if (place >= arguments.size())
+            return; // deal.II says it
+          numbers += (numbers.empty() ? "" : ", ") + arguments[place];
+          for (const std::string &text :
+               Utilities::split_string_list(arguments[place], ','))
+            {
+              char        *end   = nullptr;
+              const double value = std::strtod(text.c_str(), &end);
+              if (*end != '\0')
+                return; // deal.II says it
+              is_negative = is_negative || value < 0.;
+              // Where zero is possible, deal.II chooses a small number.
+              if (counts.kind == CellCounts::sum)
+                total += value;
+              else
+                total *= std::pow(std::max(1., value),
+                                  counts.kind == CellCounts::power ? dim : 1);
+            }
+        }
+      constexpr unsigned int most = 10000000;
+      std::ostringstream     message;
+      message << "'Geometry/Arguments' = " << geometry.arguments
+              << " asks for ";
+      if (is_negative)
+        message << numbers;
+      else
+        message << total;
+      message << " cells; possible are 1 to " << most
+              << " (refinements make more).";
+      AssertThrow(!is_negative && total <= most, ExcMessage(message.str()));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  generate_mesh(const GeometryParameters                  &geometry,
+                parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    check_numbers_of_cells(geometry, dim);
+    try
+      {
+        GridGenerator::generate_from_name_and_arguments(triangulation,
+                                                        geometry.generator,
+                                                        geometry.arguments);
+      }
+    catch (const std::exception &exception)
+      {
+        AssertThrow(false,
+                    ExcMessage("The mesh generator '" + geometry.generator +
+                               "' refuses the arguments '" +
+                               geometry.arguments + "': " + reason(exception)));
+      }
+    AssertThrow(triangulation.all_reference_cells_are_hyper_cube(),
+                ExcMessage("The mesh must consist of quadrilaterals or "
+                           "hexahedra; simplices are not supported."));
+  }
+
+
+
+  template void
+  generate_mesh(const GeometryParameters &,
+                parallel::distributed::Triangulation<2> &);
+  template void
+  generate_mesh(const GeometryParameters &,
+                parallel::distributed::Triangulation<3> &);
+} // namespace Viscoplastic

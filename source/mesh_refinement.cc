@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/mesh_ids.h>
+#include <viscoplastic_contact/mesh_refinement.h>
+#include <viscoplastic_contact/messages.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// `Boundary refinements': how often by boundary id.
+    template <int dim>
+    std::map<types::boundary_id, unsigned int>
+    boundary_refinements(
+      const std::string                               &text,
+      const parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      const std::string entry = "'Geometry/Boundary refinements' = " + text;
+      std::map<types::boundary_id, unsigned int> result;
+      const std::set<types::boundary_id> ids = boundary_ids(triangulation);
+      const std::regex                   pair("(\\d{1,9})\\s*:\\s*(\\d{1,2})");
+      for (const std::string &part : Utilities::split_string_list(text, ','))
+        {
+          std::smatch match;
+          AssertThrow(std::regex_match(part, match, pair),
+                      ExcMessage(entry +
+                                 " consists of `boundary id: times' separated "
+                                 "by commas, but has '" +
+                                 part + "'."));
+          const types::boundary_id id = std::stoul(match[1]);
+          AssertThrow(ids.count(id) == 1,
+                      ExcMessage(
+                        entry + " names the boundary id " + std::to_string(id) +
+                        ", but the mesh has the ids " + list(ids) + "."));
+          AssertThrow(result.emplace(id, std::stoul(match[2])).second,
+                      ExcMessage(entry + " names the boundary id " +
+                                 std::to_string(id) + " twice."));
+        }
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  refine_mesh(const GeometryParameters                  &geometry,
+              parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    std::map<types::boundary_id, unsigned int> times;
+    if (!Utilities::trim(geometry.boundary_refinements).empty())
+      times =
+        boundary_refinements(geometry.boundary_refinements, triangulation);
+
+    // Halving is exact and indices suffice up to here.
+    const unsigned int global = geometry.global_refinements;
+    unsigned int       local  = 0;
+    for (const auto &pair : times)
+      local = std::max(local, pair.second);
+    const unsigned int n_levels = 18;
+    AssertThrow(global <= n_levels && global + local <= n_levels,
+                ExcMessage(
+                  "'Geometry/Global refinements' = " + std::to_string(global) +
+                  " with " + std::to_string(local) +
+                  " further ones at boundaries; together, " +
+                  std::to_string(n_levels) + " are possible."));
+    const double n_unknowns =
+      dim * std::ldexp(triangulation.n_cells(0), dim * global);
+    std::ostringstream message;
+    message << "'Geometry/Global refinements' = " << global
+            << " would make about " << n_unknowns
+            << " unknowns, more than can be numbered.";
+    AssertThrow(n_unknowns <
+                  std::numeric_limits<types::global_dof_index>::max(),
+                ExcMessage(message.str()));
+
+    triangulation.refine_global(global);
+    for (unsigned int pass = 0; pass < local; ++pass)
+      {
+        // A cell may touch the boundary in a vertex or an edge only.
+        std::vector<bool> touches(triangulation.n_vertices(), false);
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (!cell->is_artificial())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->at_boundary(f))
+                {
+                  const auto face  = cell->face(f);
+                  const auto found = times.find(face->boundary_id());
+                  if (found != times.end() && pass < found->second)
+                    for (const unsigned int v : face->vertex_indices())
+                      touches[face->vertex_index(v)] = true;
+                }
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int v : cell->vertex_indices())
+              if (touches[cell->vertex_index(v)])
+                cell->set_refine_flag();
+        triangulation.execute_coarsening_and_refinement();
+      }
+  }
+
+
+
+  template void
+  refine_mesh(const GeometryParameters &,
+              parallel::distributed::Triangulation<2> &);
+  template void
+  refine_mesh(const GeometryParameters &,
+              parallel::distributed::Triangulation<3> &);
+} // namespace Viscoplastic

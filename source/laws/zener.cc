@@ -69,7 +69,7 @@ namespace Viscoplastic
             SymmetricTensor<4, 3> B = E.tensor();
             if (!all_relaxes)
               B -= long_term(point).tensor();
-            // Eigenvectors take fifty times longer.
+            // Eigenvectors take twenty times longer.
             if (!factorise(B))
               modes = spectrum(B);
           }
@@ -339,10 +339,10 @@ namespace Viscoplastic
       "is the `Relaxation time' in s; E_inf is given by the `Long-term "
       "Young's modulus' in Pa (zero: all stress relaxes) and the `Long-term "
       "Poisson's ratio'. Bulk and shear modulus must not exceed those of E; "
-      "where one of them equals that of E, that part does not relax. With a "
-      "long-term Poisson's ratio near 1/2 choose mean dilatation. "
-      "Reference: C. Zener, Elasticity and Anelasticity of Metals, University "
-      "of Chicago Press 1948, chapter 5.";
+      "where one of them equals that of E, that part does not relax; only an "
+      "initial stress does there, too. With a long-term Poisson's ratio near "
+      "1/2 choose mean dilatation. Reference: C. Zener, Elasticity and "
+      "Anelasticity of Metals, University of Chicago Press 1948, chapter 5.";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Long-term Young's modulus",
                         "0.5",

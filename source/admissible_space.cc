@@ -5,6 +5,7 @@
 
 #include <viscoplastic_contact/admissible_space.h>
 
+#include <iomanip>
 #include <sstream>
 
 namespace Viscoplastic
@@ -211,9 +212,22 @@ namespace Viscoplastic
     FullMatrix<double> eigenvectors(n, n);
     matrix.compute_eigenvalues_symmetric(
       -1., 1e300, 0., eigenvalues, eigenvectors);
+    const auto is_free = [&](const unsigned int e) {
+      return eigenvalues[e] <=
+             1e-12 * std::max(eigenvalues.linfty_norm(), 1e-300);
+    };
+    const auto is_translation = [&](const unsigned int e) {
+      for (unsigned int a = dim; a < n; ++a)
+        if (std::abs(eigenvectors(a, e)) > 1e-8)
+          return false;
+      return true;
+    };
+    unsigned int n_translations = 0;
+    for (unsigned int e = 0; e < eigenvalues.size(); ++e)
+      n_translations += is_free(e) && is_translation(e);
     std::string free_motions;
     for (unsigned int e = 0; e < eigenvalues.size(); ++e)
-      if (eigenvalues[e] <= 1e-12 * std::max(eigenvalues.linfty_norm(), 1e-300))
+      if (is_free(e))
         {
           // Name the mode by its largest part.
           unsigned int largest = 0;
@@ -223,7 +237,19 @@ namespace Viscoplastic
               largest = a;
           const std::string xyz = "xyz";
           free_motions += free_motions.empty() ? "" : " and ";
-          if (largest < dim)
+          // A single translation may have any direction; of several, the
+          // axes are a basis.
+          if (n_translations == 1 && is_translation(e) &&
+              std::abs(eigenvectors(largest, e)) < 1. - 1e-8)
+            {
+              std::ostringstream direction;
+              direction << std::setprecision(3) << "translation along (";
+              const double sign = eigenvectors(largest, e) > 0. ? 1. : -1.;
+              for (unsigned int a = 0; a < dim; ++a)
+                direction << (a == 0 ? "" : ", ") << sign * eigenvectors(a, e);
+              free_motions += direction.str() + ')';
+            }
+          else if (largest < dim)
             free_motions += std::string("translation along ") + xyz[largest];
           else
             free_motions += std::string("rotation about ") +

@@ -99,6 +99,7 @@ namespace Viscoplastic
         const TimeStep step = scene.schedule.step(std::min(i, n_steps));
         d.loads.assemble(step.t);
         d.space.set_prescribed(step.t, u);
+        d.laws.check(step.t);
         if (d.face)
           {
             d.face->bounds(step.t);

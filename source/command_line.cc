@@ -206,7 +206,7 @@ namespace Viscoplastic
            "contact with friction on rigid foundations. A parameter file "
            "describes the scene.\n"
            "\n"
-           "Run a demo (half a minute; the results are for ParaView):\n"
+           "Run a demo (seconds; the results are for ParaView):\n"
            "    viscoplastic_contact " +
            demo +
            "\n"

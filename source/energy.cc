@@ -51,22 +51,29 @@ namespace Viscoplastic
                   0.5 * weight * (stiffness.strain(z) * z);
                 if (law == nullptr)
                   continue;
-                const auto    &old_z  = old_state.z[c * n + s];
-                const LawPoint point  = now.point(c, s);
-                const auto     stress = stiffness.stress(strain[s]) + z;
-                const auto old_stress = stiffness.stress(old_strain[s]) + old_z;
-                result.viscous_dissipation -=
-                  weight *
-                  ((z - old_z) *
-                   law->driving_strain(0.5 * (old_stress + stress),
-                                       0.5 * (old_strain[s] + strain[s]),
-                                       stiffness,
-                                       point));
+                const auto &old_z  = old_state.z[c * n + s];
+                const auto  stress = stiffness.stress(strain[s]) + z;
+                const auto  mean_stress =
+                  0.5 * (stiffness.stress(old_strain[s]) + old_z + stress);
+                SymmetricTensor<2, 3> driving_strain;
+                // Parameters may be expressions: only for laws that use them.
                 if (law->has_own_energy())
-                  result.irreversible_energy +=
-                    weight *
-                    (law->stored_energy(stress, strain[s], stiffness, point) -
-                     0.5 * (stiffness.strain(stress) * stress));
+                  {
+                    const LawPoint point = now.point(c, s);
+                    driving_strain =
+                      law->driving_strain(mean_stress,
+                                          0.5 * (old_strain[s] + strain[s]),
+                                          stiffness,
+                                          point);
+                    result.irreversible_energy +=
+                      weight *
+                      (law->stored_energy(stress, strain[s], stiffness, point) -
+                       0.5 * (stiffness.strain(stress) * stress));
+                  }
+                else
+                  driving_strain = stiffness.strain(mean_stress);
+                result.viscous_dissipation -=
+                  weight * ((z - old_z) * driving_strain);
               }
           }
         const double mises   = von_mises(mean);

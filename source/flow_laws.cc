@@ -3,6 +3,8 @@
 
 #include <viscoplastic_contact/flow_laws.h>
 
+#include <algorithm>
+
 namespace Viscoplastic
 {
   namespace
@@ -68,9 +70,29 @@ namespace Viscoplastic
             parameters.push_back(
               law ? law->point(position(sampling, c, s), 0.).parameters :
                     std::array<double, 6>());
-          if (law && (s == 0 || any_to_sample))
+          if (law && (s == 0 || law->depends_on_position()))
             law->check(sampling.moduli(c), start.point(c, s));
         }
+  }
+
+
+
+  template <int dim>
+  void
+  FlowLaws<dim>::check(const double t) const
+  {
+    if (std::none_of(materials.begin(),
+                     materials.end(),
+                     [](const Entry &entry) { return entry.varies_in_time; }))
+      return;
+    const AtTime now(*this, t); // evaluates what depends on t alone
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      {
+        const ViscoplasticLaw *law = now.law(c);
+        if (law && law->depends_on_time() && law->depends_on_position())
+          for (unsigned int s = 0; s < sampling.n_samples; ++s)
+            law->point(position(sampling, c, s), t);
+      }
   }
 
 

@@ -495,7 +495,8 @@ namespace Viscoplastic
   double
   KrylovSolver::energy_norm() const
   {
-    return std::sqrt(squared_norm);
+    // Of a translation it is rounding, of either sign.
+    return std::sqrt(std::max(0., squared_norm));
   }
 
 

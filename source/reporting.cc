@@ -103,6 +103,22 @@ namespace Viscoplastic
         size = std::max(size, pair.second.norm());
       }
 
+    // The contact tolerance bounds the error in the energy norm, in which
+    // nearly incompressible bodies hide large errors of reactions.
+    const double balance_defect = size > 0. ? balance.norm() / size : 0.;
+    if (!is_initial && !balance_is_doubtful &&
+        balance_defect >
+          std::max(1e-8, 1e3 * parameters.solver.contact_tolerance))
+      {
+        balance_is_doubtful = true;
+        std::ostringstream text;
+        text << "Warning: forces balance only to " << balance_defect
+             << " of the largest at t = " << time_step.t
+             << "; a smaller 'Solver/Contact tolerance' mends this unless "
+                "Poisson's ratio is next to 1/2.";
+        console.remark(text.str());
+      }
+
     if (is_initial)
       accounts.initial_energy = stored_energy;
     else
@@ -156,7 +172,7 @@ namespace Viscoplastic
         for (const auto &[id, force] : reaction_forces)
           row.add_vector("reaction_" + std::to_string(id), force, dim);
         row.add_vector("load", step.forces.load.resultant, dim);
-        row.add("force_balance_defect", size > 0. ? balance.norm() / size : 0.);
+        row.add("force_balance_defect", balance_defect);
         if (d.face)
           {
             row.add("max_utilisation", friction.max_utilisation);

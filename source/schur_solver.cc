@@ -148,7 +148,11 @@ namespace Viscoplastic
         position[dof] = unknowns.size();
         unknowns.push_back(dof);
       }
-    AssertThrow(!unknowns.empty(), ExcMessage("There are no unknowns."));
+    AssertThrow(!unknowns.empty(),
+                ExcMessage(
+                  "The boundary conditions prescribe the "
+                  "displacement at every node, and nothing is left to "
+                  "solve for; refine the mesh or release a boundary."));
 
     // The upper triangle by columns (= the lower one by rows) of the leading n
     // unknowns in their present order.
@@ -401,7 +405,8 @@ namespace Viscoplastic
   {
     Vector<double> c(face_change.size());
     face_factor.Tvmult(c, face_change);
-    return std::sqrt(squared_norm + c.norm_sqr());
+    // Of a translation it is rounding, of either sign.
+    return std::sqrt(std::max(0., squared_norm + c.norm_sqr()));
   }
 
 

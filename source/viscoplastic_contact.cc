@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/initial_state.h>
 #include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <limits>
@@ -286,12 +287,22 @@ namespace Viscoplastic
     }
     {
       TimerOutput::Scope phase(timer, "contact");
-      step.report = solve(old_state,
-                          old_forces,
-                          load,
-                          step.bounds,
-                          step.foundation_step,
-                          step.state);
+      try
+        {
+          step.report = solve(old_state,
+                              old_forces,
+                              load,
+                              step.bounds,
+                              step.foundation_step,
+                              step.state);
+        }
+      catch (const std::exception &exception)
+        {
+          std::ostringstream message;
+          message << "Step " << time_step.n << " (t = " << time_step.t
+                  << "): " << reason(exception);
+          AssertThrow(false, ExcMessage(message.str()));
+        }
     }
     TimerOutput::Scope phase(timer, "balance");
     step.forces =

@@ -15,9 +15,11 @@ variable VISCOPLASTIC_RESULTS:
 
     paraview --script=.../contrib/paraview/open_results.py
 
-Without a window, and for a state file that needs no script:
+Without a window, and for a state file that needs no script (Debian's ParaView
+cannot draw without a display; xvfb-run, package xvfb, lends it one):
 
-    pvbatch open_results.py RESULTS --screenshot FILE.png --state FILE.pvsm
+    xvfb-run pvbatch open_results.py RESULTS --screenshot FILE.png \\
+      --state FILE.pvsm
 """
 
 import argparse

@@ -2,6 +2,7 @@
 """The command line of contrib/plot."""
 
 import argparse
+import math
 import sys
 from pathlib import Path
 
@@ -54,6 +55,22 @@ PICTURES = ("overview", "fields", "contact", *OVER_TIME)
 STILL, MOVING = ("png", "pdf", "svg"), ("gif", "mp4")
 
 
+def finite(text):
+    """A number that is one, for argparse."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
+
+
+def positive(text):
+    """A positive whole number, for argparse."""
+    value = int(text)
+    if value <= 0:
+        raise ValueError
+    return value
+
+
 def names(text):
     return [name.strip() for name in text.split(",") if name.strip()]
 
@@ -95,7 +112,7 @@ def parse(arguments):
     time.add_argument(
         "--step", type=int, metavar="N", help="output number N (default: the last)"
     )
-    time.add_argument("--time", type=float, metavar="T", help="the output nearest to T")
+    time.add_argument("--time", type=finite, metavar="T", help="the output nearest to T")
     span = parser.add_argument_group("which times")
     span.add_argument(
         "--from",
@@ -143,7 +160,7 @@ def parse(arguments):
         help="elevation and azimuth in degrees, 3D (default: {:g},{:g})".format(*VIEW),
     )
     how.add_argument(
-        "--dpi", type=int, default=130, help="dots per inch (default: %(default)s)"
+        "--dpi", type=positive, default=130, help="dots per inch (default: %(default)s)"
     )
     options = parser.parse_intermixed_args(arguments)
     formats = options.format or []

@@ -12,7 +12,8 @@ namespace Viscoplastic
 {
   /**
    * Which law G each owned cell has, and what the parameters of the law are at
-   * each of its samples. Parameters that do not change are evaluated once.
+   * each of its samples. Parameters of laws that do not depend on time are
+   * evaluated once.
    */
   template <int dim>
   class FlowLaws
@@ -27,6 +28,10 @@ namespace Viscoplastic
     /// Whether any material has a law, and one with a cap on the stress.
     /// Known on all ranks.
     bool any, any_cap, any_own_energy;
+
+    /// Throws ExcMessage if a parameter is out of range somewhere at time t.
+    void
+    check(const double t) const;
 
     /// Evaluates time-dependent parameters at one time.
     class AtTime
@@ -71,7 +76,7 @@ namespace Viscoplastic
 
     std::vector<Entry> materials;
     /// Index into materials; empty if there is but one.
-    std::vector<unsigned char> material_of_cell;
+    std::vector<unsigned int> material_of_cell;
     /// By sample; empty unless parameters of some law depend on position but
     /// not on time.
     std::vector<std::array<double, 6>> parameters;

@@ -201,6 +201,8 @@ namespace Viscoplastic
     Vector<double> squared_estimate; // eta_K^2, only in adaptive scenes
     /// Whether the state is a solution on the present mesh.
     bool is_solved_on_mesh = false;
+    /// Whether the user has been told that forces do not balance well.
+    bool balance_is_doubtful = false;
 
     std::optional<Output<dim>>   output;
     std::unique_ptr<Statistics>  statistics; // on rank 0

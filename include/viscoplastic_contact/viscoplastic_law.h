@@ -202,7 +202,8 @@ namespace Viscoplastic
                    const Stiffness             &stiffness,
                    const LawPoint              &point) const;
 
-    /// Whether stored_energy() is other than 1/2 sigma : E^-1 sigma.
+    /// Whether stored_energy() is other than 1/2 sigma : E^-1 sigma, and so
+    /// driving_strain() other than E^-1 sigma.
     virtual bool
     has_own_energy() const
     {

@@ -88,7 +88,7 @@ namespace Viscoplastic
       std::string
       announcement() const override
       {
-        return "The power law is continued linearly beyond the von Mises "
+        return "continued linearly beyond the von Mises "
                "stress '" +
                parameters[cap].get_name() + "' = " + parameters[cap].get_text();
       }

@@ -2,6 +2,11 @@
 
 #include <viscoplastic_contact/viscoplastic_law.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <sstream>
 
 namespace Viscoplastic
@@ -11,6 +16,174 @@ namespace Viscoplastic
 
   namespace
   {
+    enum Parameter
+    {
+      youngs_modulus,
+      poissons_ratio,
+      relaxation_time
+    };
+
+    /// E_inf; not if Young's modulus is zero.
+    Stiffness
+    long_term(const LawPoint &point)
+    {
+      return Stiffness::isotropic(point.parameters[youngs_modulus],
+                                  point.parameters[poissons_ratio]);
+    }
+
+    /// E_inf eps.
+    SymmetricTensor<2, 3>
+    long_term_stress(const SymmetricTensor<2, 3> &strain, const LawPoint &point)
+    {
+      if (point.parameters[youngs_modulus] == 0)
+        return {};
+      return long_term(point).stress(strain);
+    }
+
+
+
+    /**
+     * B = E - E_inf. Where E_inf = E, rounding is what is left of B: equal
+     * moduli may come out of different formulas.
+     */
+    class SecondSpring
+    {
+    public:
+      SecondSpring(const Stiffness &E, const LawPoint &point)
+        : tolerance(1e-10 * (2 * E.shear_modulus() + 3 * E.bulk_modulus()))
+        , isotropic(E.is_isotropic())
+      {
+        const bool all_relaxes = point.parameters[youngs_modulus] == 0;
+        if (isotropic)
+          {
+            mu   = E.shear_modulus();
+            bulk = E.bulk_modulus();
+            if (!all_relaxes)
+              {
+                mu -= long_term(point).shear_modulus();
+                bulk -= long_term(point).bulk_modulus();
+              }
+          }
+        else
+          {
+            SymmetricTensor<4, 3> B = E.tensor();
+            if (!all_relaxes)
+              B -= long_term(point).tensor();
+            // Eigenvectors take fifty times longer.
+            if (!factorise(B))
+              modes = spectrum(B);
+          }
+      }
+
+      /// Of B; infinite if none is below the tolerance and it is not known.
+      double
+      smallest_eigenvalue() const
+      {
+        if (isotropic)
+          return std::min(2 * mu, 3 * bulk);
+        return modes ? modes->values[0] :
+                       std::numeric_limits<double>::infinity();
+      }
+
+      bool
+      relaxes_in_all_modes() const
+      {
+        return smallest_eigenvalue() > tolerance;
+      }
+
+      /// B^-1 q, without modes that do not relax.
+      SymmetricTensor<2, 3>
+      strain(const SymmetricTensor<2, 3> &q) const
+      {
+        SymmetricTensor<2, 3> result;
+        if (isotropic)
+          {
+            if (2 * mu > tolerance)
+              result += deviator(q) / (2 * mu);
+            if (3 * bulk > tolerance)
+              result += trace(q) / (9 * bulk) * unit_symmetric_tensor<3>();
+          }
+        else if (modes)
+          {
+            for (unsigned int m = 0; m < 6; ++m)
+              if (modes->values[m] > tolerance)
+                result +=
+                  (modes->modes[m] * q) / modes->values[m] * modes->modes[m];
+          }
+        else
+          {
+            std::array<double, 6> x;
+            for (unsigned int i = 0; i < 6; ++i)
+              {
+                x[i] = q.access_raw_entry(i);
+                for (unsigned int k = 0; k < i; ++k)
+                  x[i] -= factor[i][k] * x[k];
+                x[i] /= factor[i][i];
+              }
+            for (unsigned int i = 6; i-- > 0;)
+              {
+                for (unsigned int k = i + 1; k < 6; ++k)
+                  x[i] -= factor[k][i] * x[k];
+                x[i] /= factor[i][i];
+                // engineering shears
+                result.access_raw_entry(i) = i < 3 ? x[i] : x[i] / 2;
+              }
+          }
+        return result;
+      }
+
+      /// The part of a tensor in the modes that do not relax.
+      SymmetricTensor<2, 3>
+      without_spring(const SymmetricTensor<2, 3> &tensor) const
+      {
+        SymmetricTensor<2, 3> result;
+        if (isotropic)
+          {
+            if (!(2 * mu > tolerance))
+              result += deviator(tensor);
+            if (!(3 * bulk > tolerance))
+              result += trace(tensor) / 3 * unit_symmetric_tensor<3>();
+          }
+        else if (modes)
+          for (unsigned int m = 0; m < 6; ++m)
+            if (!(modes->values[m] > tolerance))
+              result += (modes->modes[m] * tensor) * modes->modes[m];
+        return result;
+      }
+
+      const double tolerance;
+
+    private:
+      /// Cholesky's, of the matrix of components, which takes engineering
+      /// shears. Whether all pivots are beyond the tolerance.
+      bool
+      factorise(const SymmetricTensor<4, 3> &B)
+      {
+        for (unsigned int i = 0; i < 6; ++i)
+          for (unsigned int j = 0; j <= i; ++j)
+            {
+              double entry = B.access_raw_entry(6 * i + j);
+              for (unsigned int k = 0; k < j; ++k)
+                entry -= factor[i][k] * factor[j][k];
+              if (j < i)
+                factor[i][j] = entry / factor[j][j];
+              else if (entry > tolerance)
+                factor[i][i] = std::sqrt(entry);
+              else
+                return false;
+            }
+        return true;
+      }
+
+      const bool isotropic;
+      double     mu, bulk;
+      // Of others: of the factor there is no need where a mode has no spring.
+      std::array<std::array<double, 6>, 6> factor;
+      std::optional<Spectrum>              modes;
+    };
+
+
+
     /**
      * G = -(1/theta) (sigma - E_inf eps): two springs in parallel, one of
      * stiffness E_inf and one of stiffness B = E - E_inf in series with a
@@ -19,8 +192,14 @@ namespace Viscoplastic
      *
      *     1/2 E_inf eps : eps + 1/2 B^-1 q : q.
      *
-     * A mode of E that does not relax, e.g. the volumetric one where
-     * K_inf = K, has no second spring: it is left out of B^-1.
+     * A mode that does not relax, e.g. the volumetric one where K_inf = K, has
+     * no second spring, and there q is but what is left of an initial stress.
+     * With the part q_N of q in these modes the energy has
+     *
+     *     q_N : eps + 1/2 E^-1 q_N : q_N
+     *
+     * in place of 1/2 B^-1 q_N : q_N, as in the other laws: all of it is
+     * 1/2 E^-1 sigma : sigma if no mode relaxes.
      */
     class Zener : public ViscoplasticLaw
     {
@@ -45,9 +224,10 @@ namespace Viscoplastic
       void
       check(const Stiffness &stiffness, const LawPoint &point) const override
       {
-        // Equal moduli may come out of different formulas.
-        const double tolerance = 1e-10 * spectrum(stiffness.tensor()).values[5];
-        const double smallest  = relaxing_modes(stiffness, point).values[0];
+        const SecondSpring spring(stiffness, point);
+        const double       smallest = spring.smallest_eigenvalue();
+        if (smallest >= -spring.tolerance)
+          return;
         std::ostringstream message;
         message << "'" << parameters[youngs_modulus].get_name()
                 << "' = " << point.parameters[youngs_modulus]
@@ -56,7 +236,7 @@ namespace Viscoplastic
                    "x = ("
                 << point.x << "): the smallest eigenvalue of E - E_inf is "
                 << smallest << "; it must be zero or positive.";
-        AssertThrow(smallest >= -tolerance, ExcMessage(message.str()));
+        AssertThrow(false, ExcMessage(message.str()));
       }
 
       SymmetricTensor<2, 3>
@@ -99,39 +279,21 @@ namespace Viscoplastic
         return false;
       }
 
-      /// B^-1 q, the strain of the second spring.
+      /// B^-1 q, the strain of the second spring, and of eps + E^-1 q_N the
+      /// part in the modes without one.
       SymmetricTensor<2, 3>
       driving_strain(const SymmetricTensor<2, 3> &stress,
                      const SymmetricTensor<2, 3> &strain,
                      const Stiffness             &stiffness,
                      const LawPoint              &point) const override
       {
+        const SecondSpring          spring(stiffness, point);
         const SymmetricTensor<2, 3> q =
           stress - long_term_stress(strain, point);
-        const double tolerance = 1e-10 * (2 * stiffness.shear_modulus() +
-                                          3 * stiffness.bulk_modulus());
-        SymmetricTensor<2, 3> result;
-        if (stiffness.is_isotropic())
-          {
-            // The general case takes a thousand times longer.
-            const bool   relaxes_fully = point.parameters[youngs_modulus] == 0;
-            const double mu =
-              stiffness.shear_modulus() -
-              (relaxes_fully ? 0. : long_term(point).shear_modulus());
-            const double bulk =
-              stiffness.bulk_modulus() -
-              (relaxes_fully ? 0. : long_term(point).bulk_modulus());
-            if (2 * mu > tolerance)
-              result += deviator(q) / (2 * mu);
-            if (3 * bulk > tolerance)
-              result += trace(q) / (9 * bulk) * unit_symmetric_tensor<3>();
-            return result;
-          }
-
-        const Spectrum B = relaxing_modes(stiffness, point);
-        for (unsigned int mode = 0; mode < 6; ++mode)
-          if (B.values[mode] > tolerance)
-            result += (B.modes[mode] * q) / B.values[mode] * B.modes[mode];
+        SymmetricTensor<2, 3> result = spring.strain(q);
+        if (!spring.relaxes_in_all_modes())
+          result += spring.without_spring(
+            strain + stiffness.strain(spring.without_spring(q)));
         return result;
       }
 
@@ -147,45 +309,16 @@ namespace Viscoplastic
                     const Stiffness             &stiffness,
                     const LawPoint              &point) const override
       {
+        const SecondSpring          spring(stiffness, point);
         const SymmetricTensor<2, 3> elastic = long_term_stress(strain, point);
-        return 0.5 * (elastic * strain +
-                      (stress - elastic) *
-                        driving_strain(stress, strain, stiffness, point));
-      }
-
-    private:
-      enum Parameter
-      {
-        youngs_modulus,
-        poissons_ratio,
-        relaxation_time
-      };
-
-      static Stiffness
-      long_term(const LawPoint &point)
-      {
-        return Stiffness::isotropic(point.parameters[youngs_modulus],
-                                    point.parameters[poissons_ratio]);
-      }
-
-      /// E_inf eps.
-      static SymmetricTensor<2, 3>
-      long_term_stress(const SymmetricTensor<2, 3> &strain,
-                       const LawPoint              &point)
-      {
-        if (point.parameters[youngs_modulus] == 0)
-          return {};
-        return long_term(point).stress(strain);
-      }
-
-      /// Of E - E_inf.
-      static Spectrum
-      relaxing_modes(const Stiffness &stiffness, const LawPoint &point)
-      {
-        SymmetricTensor<4, 3> B = stiffness.tensor();
-        if (point.parameters[youngs_modulus] > 0)
-          B -= long_term(point).tensor();
-        return spectrum(B);
+        const SymmetricTensor<2, 3> q       = stress - elastic;
+        double energy = 0.5 * (elastic * strain + q * spring.strain(q));
+        if (!spring.relaxes_in_all_modes())
+          {
+            const SymmetricTensor<2, 3> q_N = spring.without_spring(q);
+            energy += q_N * (strain + 0.5 * stiffness.strain(q_N));
+          }
+        return energy;
       }
     };
   } // namespace

@@ -42,7 +42,10 @@ class Opens(TestCase):
             return
         read, write = os.pipe()
         server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1920x1200x24"],
+            # Without -noreset it starts anew when its last client has gone, and
+            # refuses the next one meanwhile.
+            ["Xvfb", "-noreset", "-displayfd", str(write),
+             "-screen", "0", "1920x1200x24"],
             pass_fds=[write],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,

@@ -197,4 +197,69 @@ namespace
                 std::sqrt(fluctuation / squared),
                 1e-12);
   }
+
+
+
+  // Only laws with an energy of their own have their parameters evaluated for
+  // it: the run that ends at this time needs no viscosity any more.
+  TYPED_TEST(Energy, NeedsNoParametersOfMostLaws)
+  {
+    constexpr int dim        = TypeParam::value;
+    const auto    summary_of = [](const std::string &law) {
+      Body<dim> body(scene<dim>() + subsection("Material", law));
+      body.set_up();
+      State<dim> state = homogeneous(body, 0.1, some_stress(1.));
+      state.t          = 2.;
+      return summarise_stress(*body.laws, state, state);
+    };
+    EXPECT_NO_THROW(summary_of(
+      "set Law = maxwell\n" +
+      subsection("maxwell", "set Viscosity = if(t > 1, -x - 1, x + 1)")));
+    expect_refusal(
+      [&] {
+        summary_of(
+          "set Law = zener\n" +
+          subsection("zener", "set Relaxation time = if(t > 1, -x-1, x + 1)"));
+      },
+      "it must be positive");
+  }
+
+
+
+  TYPED_TEST(Energy, LawsAreCheckedAtAllSamples)
+  {
+    constexpr int dim  = TypeParam::value;
+    const auto    make = [](const std::string &law) {
+      // samples at 0.2, 0.8 or 0.1, 0.4, ...
+      auto body =
+        std::make_unique<Body<dim>>(scene<dim>() + subsection("Material", law),
+                                    /* at_quadrature_points = */ true);
+      body->set_up();
+      return body;
+    };
+    // At later times, and far from the first samples.
+    for (const std::string viscosity :
+         {"if(t > 1 && x > 1.6, -1, 1)", "if(t > 1, -1, 1)"})
+      {
+        const auto body =
+          make("set Law = maxwell\n" +
+               subsection("maxwell", "set Viscosity = " + viscosity));
+        EXPECT_NO_THROW(body->laws->check(1.));
+        expect_refusal([&] { body->laws->check(1.5); },
+                       "'Material/maxwell/Viscosity' is -1 at x = (");
+      }
+    // The modulus with another parameter that depends on time.
+    for (const std::string time : {"1", "1 + t"})
+      {
+        const std::string law = "set Relaxation time = " + time + "\n" +
+                                "set Long-term Poisson's ratio = 0.3\n"
+                                "set Long-term Young's modulus = ";
+        const auto make_zener = [&](const std::string &modulus) {
+          make("set Law = zener\n" + subsection("zener", law + modulus));
+        };
+        EXPECT_NO_THROW(make_zener("if(x > 1.6, 0.9, 0.5)"));
+        expect_refusal([&] { make_zener("if(x > 1.6, 1.1, 0.5)"); },
+                       "makes the body stiffer in the long term");
+      }
+  }
 } // namespace

@@ -167,8 +167,27 @@ class Refused(TestCase):
         )
         triangle = "3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 0 tri 1 2 3\n"
         self.refused(triangle, ".inp", "line 5: .* triangle", ranks=2)
+        # copies of itself, which double with each
+        loop = "*ELSET, ELSET=B\n1\n" + 8 * ("B" + 30 * ",B" + "\n")
+        self.refused(good[".inp"] + loop, ".inp", "the set 'B' contains itself")
         solid = (MESHES / "two_materials_3d_4.msh").read_text()
         self.refused(solid, ".msh", "hexahedra, and 'Dimension' is 2")
+
+    def test_generators_without_measure(self):
+        for generator, arguments in {
+            "hyper_cross": "-1, 0, 0, 0 : true",
+            "hyper_shell": "0, 0 : 0.5 : 1 : -8 : true",
+            "subdivided_hyper_cube": "100000 : 0 : 1 : true",
+        }.items():
+            with self.subTest(generator):
+                entries = {
+                    "Geometry/Generator": generator,
+                    "Geometry/Arguments": arguments,
+                }
+                result = run("slab", entries, check=False)
+                self.assertEqual(result.returncode, 1)
+                self.assertEqual(len(result.stderr.strip().splitlines()), 1)
+                self.assertIn(f"{arguments} asks for", result.stderr)
 
     def test_no_file(self):
         for name in "/nowhere/mesh.msh", str(MESHES):

@@ -506,6 +506,7 @@ TEST(MeshChecks, NumbersOfCellsOfGenerators)
           "0, 0 : 1 : 2 : 10000 : 0.1 : 2000 : true",
           "2e+07");
   refused("hyper_cross", "20000000, 0, 0, 0 : true", "2e+07");
+  refused("hyper_cross", "-1, 0, 0, 0 : true", "-1, 0, 0, 0");
   refused("subdivided_hyper_rectangle",
           "5000, 5000 : 0, 0 : 1, 1 : true",
           "2.5e+07");

@@ -507,14 +507,7 @@ namespace Viscoplastic
               datum[i] =
                 condition.foundation_displacement->value(node.position, t);
           }
-        // condition_direction_i . sum_j direction_{fixed j} a_j = datum_i,
-        // padded by the identity.
-        Tensor<2, dim> matrix = unit_symmetric_tensor<dim>();
-        for (unsigned int i = 0; i < m; ++i)
-          for (unsigned int j = 0; j < m; ++j)
-            matrix[i][j] = frame.condition_direction[i] *
-                           column(frame.directions, frame.fixed[j]);
-        const Tensor<1, dim> value = invert(matrix) * datum;
+        const Tensor<1, dim> value = invert(condition_matrix(frame)) * datum;
         for (unsigned int j = 0; j < m; ++j)
           in_frames.begin()[node.first_dof - first + frame.fixed[j]] = value[j];
       }

@@ -5,6 +5,7 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <viscoplastic_contact/elasticity.h>
+
 namespace Viscoplastic
 {
   template <int dim>

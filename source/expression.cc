@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/expression.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/spelling.h>
 
 #include <cmath>
 #include <iostream>
@@ -18,6 +19,23 @@ namespace Viscoplastic
     mentions(const std::string &text, const std::string &name)
     {
       return std::regex_search(text, std::regex("\\b" + name + "\\b"));
+    }
+
+
+
+    /// What muParser says in the lines that deal.II prints, `Message:  <...>'
+    /// and others; empty if there is no such line. (A regular expression would
+    /// need a stack as deep as the line is long.)
+    std::string
+    message_of_parser(const std::string &printed)
+    {
+      const std::size_t begin = printed.find("Message:");
+      const std::size_t open  = printed.find('<', begin);
+      const std::size_t close = printed.rfind('>', printed.find('\n', begin));
+      if (begin == std::string::npos || open == std::string::npos ||
+          close == std::string::npos || close < open)
+        return "";
+      return printed.substr(open + 1, close - open - 1);
     }
   } // namespace
 
@@ -48,15 +66,12 @@ namespace Viscoplastic
     catch (const std::exception &exception)
       {
         std::cerr.rdbuf(original);
-        const std::string output = printed.str();
-        std::smatch       found;
-        const std::string why =
-          std::regex_search(output, found, std::regex("Message:\\s*<(.*)>")) ?
-            found[1].str() :
-            reason(exception);
+        const std::string why = message_of_parser(printed.str());
         AssertThrow(false,
-                    ExcMessage("The expression '" + text + "' of '" + entry +
-                               "' cannot be parsed: " + why));
+                    ExcMessage(
+                      "The expression '" + excerpt(Utilities::trim(text)) +
+                      "' of '" + entry + "' cannot be parsed: " +
+                      excerpt(why.empty() ? reason(exception) : why, 200)));
       }
     return parser;
   }
@@ -78,7 +93,7 @@ namespace Viscoplastic
         numbers.clear(); // refused below
       }
     AssertThrow(numbers.size() == dim,
-                ExcMessage("'" + entry + "' = " + text + " needs " +
+                ExcMessage("'" + entry + "' = " + excerpt(text) + " needs " +
                            std::to_string(dim) + " numbers."));
     Point<dim> result;
     for (unsigned int d = 0; d < dim; ++d)
@@ -89,12 +104,12 @@ namespace Viscoplastic
 
 
   template <int dim>
-  Expression<dim>::Expression(const std::string &text_,
-                              const std::string &entry_,
-                              const std::string &variables_)
-    : text(Utilities::trim(text_))
-    , entry(entry_)
-    , variables(variables_)
+  Expression<dim>::Expression(const std::string &text,
+                              const std::string &entry,
+                              const std::string &variables)
+    : text(Utilities::trim(text))
+    , entry(entry)
+    , variables(variables)
     , time_dependent(mentions(text, "t"))
     , position_dependent(false)
     , constant(0.)
@@ -120,7 +135,7 @@ namespace Viscoplastic
     if (!std::isfinite(result))
       {
         std::ostringstream message;
-        message << "The expression '" << text << "' of '" << entry
+        message << "The expression '" << excerpt(text) << "' of '" << entry
                 << "' has the value " << result << " at "
                 << (variables == FunctionParser<dim>::default_variable_names() ?
                       "x" :
@@ -161,10 +176,10 @@ namespace Viscoplastic
   {
     const auto parts = Utilities::split_string_list(text, ';');
     AssertThrow(parts.size() == n_components,
-                ExcMessage("'" + entry + "' needs " +
-                           std::to_string(n_components) +
-                           " components separated by semicolons, but '" + text +
-                           "' has " + std::to_string(parts.size()) + "."));
+                ExcMessage(
+                  "'" + entry + "' needs " + std::to_string(n_components) +
+                  " components separated by semicolons, but '" + excerpt(text) +
+                  "' has " + std::to_string(parts.size()) + "."));
     for (const std::string &part : parts)
       components.emplace_back(part, entry);
   }
@@ -207,6 +222,22 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  std::optional<VectorExpression<dim>>
+  optional_vector(const std::string &text,
+                  const unsigned int n_components,
+                  const std::string &entry)
+  {
+    if (Utilities::trim(text).empty())
+      return {};
+    VectorExpression<dim> expression(text, n_components, entry);
+    if (expression.is_zero())
+      return {};
+    return expression;
+  }
+
+
+
   template std::unique_ptr<FunctionParser<2>>
   parse_expression<2>(const std::string &,
                       const std::string &,
@@ -223,4 +254,12 @@ namespace Viscoplastic
   template class Expression<3>;
   template class VectorExpression<2>;
   template class VectorExpression<3>;
+  template std::optional<VectorExpression<2>>
+  optional_vector<2>(const std::string &,
+                     const unsigned int,
+                     const std::string &);
+  template std::optional<VectorExpression<3>>
+  optional_vector<3>(const std::string &,
+                     const unsigned int,
+                     const std::string &);
 } // namespace Viscoplastic

@@ -7,8 +7,8 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Call visit(boundary id, local position, direction) for each prescribed
-    /// component of the owned nodes.
+    /// Call visit(frame, first component's local position) for each owned node
+    /// with prescribed components.
     template <int dim, typename Visitor>
     void
     for_each_prescribed(const AdmissibleSpace<dim> &space, const Visitor &visit)
@@ -16,14 +16,29 @@ namespace Viscoplastic
       for (const auto &node : space.boundary_nodes())
         {
           const NodalFrame<dim> &frame = space.frame(node.frame);
-          for (unsigned int i = 0; i < frame.n_fixed; ++i)
-            {
-              visit(frame.condition_boundary[i],
-                    space.owned.index_within_set(node.first_dof) +
-                      frame.fixed[i],
-                    column(frame.directions, frame.fixed[i]));
-            }
+          if (frame.n_fixed > 0)
+            visit(frame, space.owned.index_within_set(node.first_dof));
         }
+    }
+
+
+
+    /// What the constraints add in the prescribed components of the node whose
+    /// first component is at local position @p first; padded by zeros.
+    template <int dim>
+    Tensor<1, dim>
+    constraint_force(const Forces<dim>     &forces,
+                     const NodalFrame<dim> &frame,
+                     const std::size_t      first)
+    {
+      Tensor<1, dim> force;
+      for (unsigned int i = 0; i < frame.n_fixed; ++i)
+        {
+          const std::size_t dof = first + frame.fixed[i];
+          force[i] =
+            forces.internal.begin()[dof] - forces.load.values.begin()[dof];
+        }
+      return force;
     }
   } // namespace
 
@@ -62,14 +77,16 @@ namespace Viscoplastic
     for (const auto &pair : space.scene.boundary)
       if (pair.second.constrains())
         result[pair.first]; // the same entries on all ranks
-    for_each_prescribed(space,
-                        [&](const types::boundary_id id,
-                            const std::size_t        i,
-                            const Tensor<1, dim>    &direction) {
-                          result[id] += (forces.internal.begin()[i] -
-                                         forces.load.values.begin()[i]) *
-                                        direction;
-                        });
+    // A constraint pushes along the direction that it prescribes. These may be
+    // oblique to each other, and so parts, not projections.
+    for_each_prescribed(
+      space, [&](const NodalFrame<dim> &frame, const std::size_t first) {
+        const Tensor<1, dim> part = transpose(invert(condition_matrix(frame))) *
+                                    constraint_force(forces, frame, first);
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          result[frame.condition_boundary[i]] +=
+            part[i] * frame.condition_direction[i];
+      });
     for (auto &pair : result)
       pair.second = Utilities::MPI::sum(pair.second, space.communicator);
     return result;
@@ -90,18 +107,14 @@ namespace Viscoplastic
     double work =
       0.5 * (change * old_forces.load.values + change * forces.load.values);
     double reaction_work = 0.;
-    for_each_prescribed(space,
-                        [&](const types::boundary_id,
-                            const std::size_t i,
-                            const Tensor<1, dim> &) {
-                          const auto reaction = [i](const Forces<dim> &f) {
-                            return f.internal.begin()[i] -
-                                   f.load.values.begin()[i];
-                          };
-                          reaction_work +=
-                            0.5 * (reaction(old_forces) + reaction(forces)) *
-                            change.begin()[i];
-                        });
+    for_each_prescribed(
+      space, [&](const NodalFrame<dim> &frame, const std::size_t first) {
+        const Tensor<1, dim> mean =
+          0.5 * (constraint_force(old_forces, frame, first) +
+                 constraint_force(forces, frame, first));
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          reaction_work += mean[i] * change.begin()[first + frame.fixed[i]];
+      });
     return work + Utilities::MPI::sum(reaction_work, space.communicator);
   }
 

@@ -165,15 +165,11 @@ namespace Viscoplastic
       {
         frame.is_cartesian = true;
         frame.directions   = unit_symmetric_tensor<dim>();
-        bool along_axes    = true;
-        for (unsigned int i = 0; i < frame.n_fixed; ++i)
-          along_axes &= is_axis(frame.condition_direction[i]);
-        // Also where all components are fixed: reactions are booked by the
-        // condition, and so need its own component.
+        // Where all components are fixed, conditions may be oblique.
         for (unsigned int i = 0; i < frame.n_fixed; ++i)
           {
             frame.fixed[i] = i;
-            for (unsigned int d = 0; along_axes && d < dim; ++d)
+            for (unsigned int d = 0; frame.n_fixed < dim && d < dim; ++d)
               if (std::abs(frame.condition_direction[i][d]) == 1.)
                 frame.fixed[i] = d;
           }
@@ -232,8 +228,26 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  Tensor<2, dim>
+  condition_matrix(const NodalFrame<dim> &frame)
+  {
+    Tensor<2, dim> matrix = unit_symmetric_tensor<dim>();
+    for (unsigned int i = 0; i < frame.n_fixed; ++i)
+      for (unsigned int j = 0; j < frame.n_fixed; ++j)
+        matrix[i][j] = frame.condition_direction[i] *
+                       column(frame.directions, frame.fixed[j]);
+    return matrix;
+  }
+
+
+
   template NodalFrame<2>
   make_nodal_frame<2>(const std::vector<const BoundaryCondition<2> *> &);
   template NodalFrame<3>
   make_nodal_frame<3>(const std::vector<const BoundaryCondition<3> *> &);
+  template Tensor<2, 2>
+  condition_matrix<2>(const NodalFrame<2> &);
+  template Tensor<2, 3>
+  condition_matrix<3>(const NodalFrame<3> &);
 } // namespace Viscoplastic

@@ -269,9 +269,9 @@ namespace Viscoplastic
   void
   Parameters::declare()
   {
-    const auto in_subsection = [this](const std::string &name, auto &struct_) {
+    const auto in_subsection = [this](const std::string &name, auto &entries) {
       handler.enter_subsection(name);
-      struct_.declare(handler);
+      entries.declare(handler);
       handler.leave_subsection();
     };
     handler.add_parameter("Dimension",

@@ -10,193 +10,6 @@
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    std::string
-    entry(const types::boundary_id id, const std::string &name)
-    {
-      return "Boundary " + std::to_string(id) + "/" + name;
-    }
-
-
-
-    BoundaryRole
-    role_by_name(const types::boundary_id id, const std::string &name)
-    {
-      if (name == "clamped")
-        return BoundaryRole::clamped;
-      if (name == "displacement")
-        return BoundaryRole::displacement;
-      if (name == "traction")
-        return BoundaryRole::traction;
-      if (name == "free")
-        return BoundaryRole::free;
-      if (name == "symmetry")
-        return BoundaryRole::symmetry;
-      if (name == "contact")
-        return BoundaryRole::contact;
-      AssertThrow(false,
-                  ExcMessage("'" + entry(id, "Role") +
-                             "' is missing; it must be clamped, displacement, "
-                             "traction, free, symmetry or contact."));
-      return BoundaryRole::free;
-    }
-
-
-
-    FrictionLaw
-    friction_law_by_name(const types::boundary_id id, const std::string &name)
-    {
-      if (name == "none")
-        return FrictionLaw::none;
-      if (name == "tresca")
-        return FrictionLaw::tresca;
-      if (name == "coulomb")
-        return FrictionLaw::coulomb;
-      if (name == "glued")
-        return FrictionLaw::glued;
-      AssertThrow(false,
-                  ExcMessage("'" + entry(id, "Friction law") + "' = " + name +
-                             " is unknown; it must be none, tresca, coulomb or "
-                             "glued."));
-      return FrictionLaw::none;
-    }
-
-
-
-    template <int dim>
-    std::optional<VectorExpression<dim>>
-    optional_vector(const std::string &text,
-                    const unsigned int n_components,
-                    const std::string &entry)
-    {
-      if (Utilities::trim(text).empty())
-        return {};
-      VectorExpression<dim> expression(text, n_components, entry);
-      if (expression.is_zero())
-        return {};
-      return expression;
-    }
-  } // namespace
-
-
-
-  template <int dim>
-  BoundaryCondition<dim>::BoundaryCondition(
-    const types::boundary_id  id,
-    const BoundaryParameters &parameters)
-    : id(id)
-    , role(role_by_name(id, parameters.role))
-  {
-    if (role == BoundaryRole::displacement)
-      {
-        const auto parts =
-          Utilities::split_string_list(parameters.displacement, ';');
-        AssertThrow(parts.size() == dim,
-                    ExcMessage("'" + entry(id, "Displacement") + "' needs " +
-                               std::to_string(dim) +
-                               " components separated by semicolons, but '" +
-                               parameters.displacement + "' has " +
-                               std::to_string(parts.size()) + "."));
-        for (unsigned int d = 0; d < dim; ++d)
-          if (parts[d] != "free")
-            displacement[d].emplace(parts[d], entry(id, "Displacement"));
-      }
-    else if (role == BoundaryRole::traction)
-      traction =
-        optional_vector<dim>(parameters.traction, dim, entry(id, "Traction"));
-    else if (role == BoundaryRole::contact)
-      {
-        friction_law = friction_law_by_name(id, parameters.friction_law);
-        if (friction_law == FrictionLaw::coulomb)
-          {
-            friction_coefficient.emplace(parameters.friction_coefficient,
-                                         entry(id, "Friction coefficient"));
-            normal_stress.emplace(parameters.normal_stress,
-                                  entry(id, "Normal stress"));
-          }
-        else
-          {
-            Expression<dim> d(parameters.foundation_displacement,
-                              entry(id, "Foundation displacement"));
-            if (!d.is_zero())
-              foundation_displacement = std::move(d);
-          }
-        if (friction_law == FrictionLaw::tresca)
-          friction_bound.emplace(parameters.friction_bound,
-                                 entry(id, "Friction bound"));
-        if (has_friction() || is_glued())
-          foundation_motion =
-            optional_vector<dim>(parameters.foundation_motion,
-                                 dim,
-                                 entry(id, "Foundation motion"));
-        // Only its change counts.
-        if (foundation_motion && !foundation_motion->depends_on_time())
-          foundation_motion.reset();
-      }
-  }
-
-
-
-  template <int dim>
-  double
-  BoundaryCondition<dim>::bound(const Point<dim> &x, const double t) const
-  {
-    const bool   is_tresca = friction_law == FrictionLaw::tresca;
-    const double factor    = is_tresca ? friction_bound->value(x, t) :
-                                         friction_coefficient->value(x, t);
-    if (factor < 0.)
-      {
-        std::ostringstream message;
-        message << "'"
-                << entry(id,
-                         is_tresca ? "Friction bound" : "Friction coefficient")
-                << "' is " << factor << " at x = (" << x << "), t = " << t
-                << "; it must not be negative.";
-        AssertThrow(false, ExcMessage(message.str()));
-      }
-    return is_tresca ? factor : factor * std::abs(normal_stress->value(x, t));
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  BoundaryCondition<dim>::sliding(const Point<dim> &x, const double t) const
-  {
-    if (!foundation_motion)
-      return {};
-    const Tensor<1, dim> w =
-      foundation_motion->vector(x, t) - foundation_motion->vector(x, 0.);
-    return w - (w * normal) * normal;
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  BoundaryCondition<dim>::glued_displacement(const Point<dim> &x,
-                                             const double      t) const
-  {
-    Tensor<1, dim> u = sliding(x, t);
-    if (foundation_displacement)
-      u += foundation_displacement->value(x, t) * normal;
-    return u;
-  }
-
-
-
-  template <int dim>
-  bool
-  BoundaryCondition<dim>::bound_depends_on_time() const
-  {
-    return (friction_bound && friction_bound->depends_on_time()) ||
-           (friction_coefficient && friction_coefficient->depends_on_time()) ||
-           (normal_stress && normal_stress->depends_on_time());
-  }
-
-
-
   template <int dim>
   Scene<dim>::Scene(const Parameters &parameters)
     : parameters(parameters)
@@ -230,6 +43,7 @@ namespace Viscoplastic
   {
     warnings.clear();
     inspect_boundary_ids(boundary_ids(triangulation));
+    inspect_unused_entries();
     inspect_flatness(triangulation);
     inspect_junctions(triangulation);
     make_materials(material_ids(triangulation));
@@ -261,6 +75,25 @@ namespace Viscoplastic
                              "' has a role, but the mesh has no such boundary "
                              "id; it has the ids " +
                              list(ids) + "."));
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_unused_entries()
+  {
+    for (const auto &[id, condition] : boundary)
+      {
+        const BoundaryParameters &given = parameters.boundaries.at(id);
+        for (const std::string &name : condition.unused_entries(given))
+          warnings.push_back("'Boundary " + std::to_string(id) + "/" + name +
+                             "' is not used by the role " + given.role +
+                             (condition.role == BoundaryRole::contact ?
+                                " with the friction law " + given.friction_law :
+                                "") +
+                             ".");
+      }
   }
 
 
@@ -307,7 +140,7 @@ namespace Viscoplastic
             vertices[cell->face(f)->boundary_id()].insert(
               cell->face(f)->vertex_index(v));
     for (const auto &[id, condition] : boundary)
-      if (condition.role == BoundaryRole::clamped || condition.is_glued())
+      if (condition.prescribes_all())
         for (const auto &[other_id, other] : boundary)
           if (other.has_friction())
             for (const unsigned int v : vertices[id])
@@ -315,7 +148,10 @@ namespace Viscoplastic
                 {
                   warnings.push_back(
                     "Boundary " + std::to_string(id) + " (" +
-                    (condition.is_glued() ? "glued" : "clamped") +
+                    (condition.is_glued() ? "glued" :
+                     condition.role == BoundaryRole::clamped ?
+                                            "clamped" :
+                                            "prescribed displacement") +
                     ") touches boundary " + std::to_string(other_id) +
                     " (friction); the theory keeps the closures of Gamma_1 "
                     "and Gamma_3 apart, and stresses may be singular where "
@@ -488,8 +324,6 @@ namespace Viscoplastic
 
 
 
-  template struct BoundaryCondition<2>;
-  template struct BoundaryCondition<3>;
   template class Scene<2>;
   template class Scene<3>;
 } // namespace Viscoplastic

@@ -79,10 +79,9 @@ namespace Viscoplastic
 
 
   std::string
-  excerpt(const std::string &text)
+  excerpt(const std::string &text, const std::size_t longest)
   {
-    const std::size_t longest = 60;
-    std::string       result;
+    std::string result;
     for (const unsigned char c : text.substr(0, longest))
       result += std::iscntrl(c) != 0 ? '?' : static_cast<char>(c);
     return text.size() > longest ? result + "..." : result;

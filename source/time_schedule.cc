@@ -2,6 +2,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/spelling.h>
 #include <viscoplastic_contact/time_schedule.h>
 
 #include <cmath>
@@ -10,9 +11,17 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
+  namespace
+  {
+    /// More are a slip of the pen, and would not fit into the type of n.
+    constexpr double max_n_steps = 1e9;
+  } // namespace
+
+
+
   TimeSchedule::TimeSchedule(const std::string &text)
   {
-    double start = 0.;
+    double start = 0., n_all_steps = 0.;
     for (const std::string &phase : Utilities::split_string_list(text, ','))
       {
         const auto parts   = Utilities::split_string_list(phase, ':');
@@ -31,13 +40,18 @@ namespace Viscoplastic
             n_steps = 0; // refused below
           }
         AssertThrow(n_steps > 0,
-                    ExcMessage("'Time/Phases': '" + phase +
+                    ExcMessage("'Time/Phases': '" + excerpt(phase) +
                                "' is not of the form `end time: number of "
                                "steps' with a positive number of steps."));
         AssertThrow(std::isfinite(end) && end > start,
-                    ExcMessage("'Time/Phases': the end time of '" + phase +
+                    ExcMessage("'Time/Phases': the end time of '" +
+                               excerpt(phase) +
                                "' must be finite and lie after " +
                                std::to_string(start) + "."));
+        n_all_steps += n_steps;
+        AssertThrow(n_all_steps <= max_n_steps,
+                    ExcMessage("'Time/Phases' has more than 1e9 steps up to '" +
+                               excerpt(phase) + "'; take fewer."));
         phases.push_back({start, end, static_cast<unsigned int>(n_steps)});
         start = end;
       }
@@ -72,5 +86,21 @@ namespace Viscoplastic
                                p->start + (p->end - p->start) * j / p->n_steps;
     };
     return {n, time(i - 1), time(i), time(i) - time(i - 1)};
+  }
+
+
+
+  TimeStep
+  TimeSchedule::largest_step() const
+  {
+    unsigned int n       = 1;
+    TimeStep     largest = step(n);
+    for (const Phase &phase : phases)
+      {
+        if (const TimeStep first = step(n); first.k > largest.k)
+          largest = first;
+        n += phase.n_steps;
+      }
+    return largest;
   }
 } // namespace Viscoplastic

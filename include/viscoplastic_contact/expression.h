@@ -6,7 +6,9 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace Viscoplastic
 {
@@ -121,4 +123,13 @@ namespace Viscoplastic
   private:
     std::vector<Expression<dim>> components;
   };
+
+
+  /// A datum of a scene that may be missing: nothing if @p text is empty or
+  /// all components are identically zero.
+  template <int dim>
+  std::optional<VectorExpression<dim>>
+  optional_vector(const std::string &text,
+                  const unsigned int n_components,
+                  const std::string &entry);
 } // namespace Viscoplastic

@@ -43,9 +43,11 @@ namespace Viscoplastic
     /// The first n_fixed entries of `fixed` are prescribed components.
     std::array<unsigned int, dim> fixed;
     unsigned int                  n_fixed = 0;
-    /// The accepted conditions direction . u = datum, one a fixed component:
-    /// their directions, and whose datum it is (boundary id, and for given
-    /// components the component, otherwise numbers::invalid_unsigned_int).
+    /// The accepted conditions direction . u = datum, as many as components are
+    /// fixed (not one by one: they may be oblique to each other, see
+    /// condition_matrix()): their directions, and whose datum it is (boundary
+    /// id, and for given components the component, otherwise
+    /// numbers::invalid_unsigned_int).
     std::array<Tensor<1, dim>, dim>     condition_direction;
     std::array<types::boundary_id, dim> condition_boundary;
     std::array<unsigned int, dim>       condition_component;
@@ -64,6 +66,17 @@ namespace Viscoplastic
   NodalFrame<dim>
   make_nodal_frame(
     const std::vector<const BoundaryCondition<dim> *> &conditions);
+
+
+  /**
+   * M_ij = (direction of condition i) . (direction of fixed component j),
+   * padded by the identity: the fixed components a satisfy M a = data, and
+   * constraint forces r in the fixed components are made of M^-T r along the
+   * directions of the conditions.
+   */
+  template <int dim>
+  Tensor<2, dim>
+  condition_matrix(const NodalFrame<dim> &frame);
 
 
   /// Column @p j of a matrix: a direction of a frame.

@@ -3,6 +3,7 @@
 
 #include <deal.II/distributed/tria.h>
 
+#include <viscoplastic_contact/boundary_condition.h>
 #include <viscoplastic_contact/expression.h>
 #include <viscoplastic_contact/material.h>
 #include <viscoplastic_contact/parameter_file.h>
@@ -17,103 +18,6 @@
 
 namespace Viscoplastic
 {
-  enum class BoundaryRole
-  {
-    clamped,
-    displacement,
-    traction,
-    free,
-    symmetry,
-    contact
-  };
-
-  enum class FrictionLaw
-  {
-    none,
-    tresca,  // bilateral, (5.22)
-    coulomb, // given normal stress, (5.6)
-    glued    // no slip whatever the force: rho = infinity
-  };
-
-
-  /// What happens on one boundary id, with its data as functions of x and t.
-  template <int dim>
-  struct BoundaryCondition
-  {
-    BoundaryCondition(const types::boundary_id  id,
-                      const BoundaryParameters &parameters);
-
-    types::boundary_id id;
-    BoundaryRole       role;
-    FrictionLaw        friction_law = FrictionLaw::none;
-
-    /// Role displacement: the given components; empty ones are free.
-    std::array<std::optional<Expression<dim>>, dim> displacement;
-    /// F, role traction.
-    std::optional<VectorExpression<dim>> traction;
-    /// d of bilateral contact; absent where identically zero.
-    std::optional<Expression<dim>> foundation_displacement;
-    /// w, whose tangential part slip is relative to; absent at rest.
-    std::optional<VectorExpression<dim>> foundation_motion;
-    /// g of the law tresca.
-    std::optional<Expression<dim>> friction_bound;
-    /// mu and S of the law coulomb.
-    std::optional<Expression<dim>> friction_coefficient, normal_stress;
-    /// Outward unit normal of a symmetry or contact piece, which is flat.
-    Tensor<1, dim> normal;
-
-    /// Whether u_nu is prescribed here.
-    bool
-    is_bilateral() const
-    {
-      return role == BoundaryRole::symmetry ||
-             (role == BoundaryRole::contact &&
-              friction_law != FrictionLaw::coulomb);
-    }
-
-    bool
-    has_friction() const
-    {
-      return friction_law == FrictionLaw::tresca ||
-             friction_law == FrictionLaw::coulomb;
-    }
-
-    /// Whether all of u is prescribed here: glued_displacement().
-    bool
-    is_glued() const
-    {
-      return friction_law == FrictionLaw::glued;
-    }
-
-    /// The tangential part of w(x,t) - w(x,0); zero at rest.
-    Tensor<1, dim>
-    sliding(const Point<dim> &x, const double t) const;
-
-    /// d nu + sliding().
-    Tensor<1, dim>
-    glued_displacement(const Point<dim> &x, const double t) const;
-
-    /// Whether some displacement component is prescribed here.
-    bool
-    constrains() const
-    {
-      return role == BoundaryRole::clamped ||
-             role == BoundaryRole::displacement || is_bilateral();
-    }
-
-    /**
-     * The friction bound rho(x,t): g, or mu |S|. Throws ExcMessage where it is
-     * negative.
-     */
-    double
-    bound(const Point<dim> &x, const double t) const;
-
-    /// Whether bound() depends on time.
-    bool
-    bound_depends_on_time() const;
-  };
-
-
   /**
    * What is simulated: the body, its material, the roles of its boundary, the
    * loads and the time steps, as functions of x and t and free of any
@@ -192,6 +96,10 @@ namespace Viscoplastic
     void
     inspect_flatness(
       const parallel::distributed::Triangulation<dim> &triangulation);
+
+    /// Entries of boundaries without effect.
+    void
+    inspect_unused_entries();
 
     /// Pieces with prescribed displacement that touch Gamma_3.
     void

@@ -16,9 +16,9 @@ namespace Viscoplastic
                const std::vector<std::string> &candidates);
 
   /// A text from outside as part of a sentence: on one line, without control
-  /// characters, and shortened if it is long.
+  /// characters, and shortened to @p longest characters.
   std::string
-  excerpt(const std::string &text);
+  excerpt(const std::string &text, const std::size_t longest = 60);
 
   /// `a, b, c'; the first @p n_max of them if there are more.
   std::string

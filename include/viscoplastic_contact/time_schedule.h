@@ -20,7 +20,8 @@ namespace Viscoplastic
   class TimeSchedule
   {
   public:
-    /// @p phases as `end time: number of steps, ...'; throws ExcMessage.
+    /// @p phases as `end time: number of steps, ...', at most 1e9 steps;
+    /// throws ExcMessage.
     explicit TimeSchedule(const std::string &phases);
 
     unsigned int
@@ -29,6 +30,10 @@ namespace Viscoplastic
     /// 1 <= n <= n_steps().
     TimeStep
     step(const unsigned int n) const;
+
+    /// The first step of the phase with the longest ones.
+    TimeStep
+    largest_step() const;
 
     double
     end_time() const

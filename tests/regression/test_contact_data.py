@@ -383,8 +383,18 @@ class Junctions(TestCase):
         self.assertEqual(len(set(lines)), 1, result.stdout)
         self.assertRegex(lines[0], r"Boundary 0 \(clamped\) touches boundary 2")
 
+    def test_prescribed_displacement_counts_if_it_is_whole(self):
+        warning = ("Warning: Boundary 0 (prescribed displacement) touches "
+                   "boundary 2 (friction)")
+        for displacement, is_whole in ("0; 0", True), ("0; free", False):
+            result = run("conveyor_2d", {"Boundary 0/Role": "displacement",
+                                         "Boundary 0/Displacement": displacement,
+                                         "Time/Phases": "0.1: 1"})
+            self.assertEqual(warning in result.stdout, is_whole, result.stdout)
+
     def test_no_warning_where_they_are_apart(self):
         result = run("conveyor_2d", {"Boundary 3/Role": "clamped",
+                                     "Boundary 3/Displacement": "",
                                      "Time/Phases": "0.1: 1"})
         self.assertNotIn("Warning", result.stdout)
 

@@ -107,6 +107,89 @@ class Corners(TestCase):
         result = run("corner_tresca_150_2d", overrides)
         self.check_displacement(result, (0, 0), ((0.01, 0), (0, 0.01)))
 
+    # The corners of corner_tresca_150_2d that the free sides join: the lower
+    # one 1-2, and the upper one 2-3.
+    FREE_SIDES = {
+        1: ((1, 0), (0.25, 1.25)),
+        3: ((0.25, 1.25), (-np.sqrt(3) / 2, 0.5)),
+    }
+
+    def test_each_side_has_the_reaction_of_its_own_direction(self):
+        """Uniform dilatation as above, one side a symmetry plane. Both press
+        along their normals only, also in the corner, where the force has two
+        parts that are oblique to each other."""
+        pressure = 2 * (0.3 / 1.3 / 0.4 + 1 / 2.6) * 0.01
+        overrides = {
+            "Geometry/Global refinements": 0,
+            "Boundary 2/Role": "symmetry",
+            "Boundary 2/Friction bound": 0,
+            "Boundary 2/Friction law": "none",
+            "Boundary 2/Foundation displacement": 0,
+            "Boundary 0/Friction law": "none",
+            "Boundary 0/Friction bound": 0,
+            "Boundary 0/Foundation displacement": 0,
+        }
+        for side, (a, b) in self.FREE_SIDES.items():
+            x, y = np.subtract(b, a) / np.linalg.norm(np.subtract(b, a))
+            overrides[f"Boundary {side}/Traction"] = (
+                f"{pressure * y:.17g}*t; {-pressure * x:.17g}*t"
+            )
+        result = run("corner_tresca_150_2d", overrides)
+        force = pressure * result["t"]
+        self.assertNotIn("Warning", result.stdout)
+        for side, normal in (2, (0, -1)), (0, (-0.5, -np.sqrt(3) / 2)):
+            self.assertClose(
+                result.vector(f"reaction_{side}"),
+                np.outer(force, normal),
+                absolute=1e-11,
+                what=f"reaction {side}",
+            )
+
+    def test_reactions_at_an_oblique_edge_3d(self):
+        """The prism over this quadrilateral, turned: two oblique conditions
+        along its edge, three at its corner."""
+        pressure = 0.01 / (1 - 2 * 0.3)
+        matrix = rotation(50, (1, -2, 2))
+        corners = [(0, 0), (1, 0), (-np.sqrt(3) / 2, 0.5), (0.25, 1.25)]
+        normals = {
+            0: (-0.5, -np.sqrt(3) / 2, 0),
+            2: (0, -1, 0),
+            4: (0, 0, -1),
+            5: (0, 0, 1),
+        }
+        for side, (a, b) in self.FREE_SIDES.items():
+            x, y = np.subtract(b, a) / np.linalg.norm(np.subtract(b, a))
+            normals[side] = (y, -x, 0)
+        normals = {side: matrix @ normal for side, normal in normals.items()}
+        overrides = {
+            "Dimension": 3,
+            "Geometry/Generator": "general_cell",
+            "Geometry/Arguments": " ; ".join(
+                f"{x:.17g}, {y:.17g}, {z}" for z in (0, 1) for x, y in corners
+            ) + " : true",
+            "Geometry/Global refinements": 1,
+            "Geometry/Rotation angle": 50,
+            "Geometry/Rotation axis": "1, -2, 2",
+            "Time/Phases": "1: 2",
+        }
+        for side in 1, 3, 5:
+            overrides[f"Boundary {side}/Role"] = "traction"
+            overrides[f"Boundary {side}/Traction"] = "; ".join(
+                f"{pressure * c:.17g}*t" for c in normals[side]
+            )
+        for side in 0, 2, 4:
+            overrides[f"Boundary {side}/Role"] = "symmetry"
+        result = run("prism", overrides, text="# a prism\n")
+        a, b, c, d = (np.array(corner) for corner in corners)
+        base = 0.5 * abs(np.cross(d - a, c - b))
+        for side, area in (0, 1), (2, 1), (4, base):
+            self.assertClose(
+                result.vector(f"reaction_{side}"),
+                np.outer(pressure * area * result["t"], normals[side]),
+                absolute=1e-10,
+                what=f"reaction {side}",
+            )
+
     def check_edge(self, result, matrix):
         gradient = np.zeros((3, 3))
         gradient[2, :2] = 0.06, 0.08

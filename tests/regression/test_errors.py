@@ -211,6 +211,41 @@ class Refused(TestCase):
     def test_wrong_number_of_components(self):
         self.refused("Traction", **{"Boundary 0/Traction": "1; 2; 3"})
 
+    def test_nonsense_in_entries_that_the_role_does_not_use(self):
+        for entry, value, name in (
+            ("Boundary 1/Traction", "1; 2; 3", "needs 2 components"),
+            ("Boundary 1/Displacement", "0", "needs 2 components"),
+            ("Boundary 1/Friction bound", "-5*", "cannot be parsed"),
+            ("Boundary 1/Foundation motion", "garbage(", "needs 2 components"),
+            ("Boundary 2/Normal stress", "q", "cannot be parsed"),
+        ):
+            with self.subTest(entry=entry):
+                self.refused(f"'{entry}'.*{name}", **{entry: value})
+
+    def test_entries_that_the_role_does_not_use_are_named(self):
+        """Variants of a scene keep what they do not need; the user is told."""
+        leftovers = {
+            "Boundary 1/Role": "free",
+            "Boundary 1/Traction": "1; 1",
+            "Boundary 1/Friction law": "tresca",
+            "Boundary 2/Normal stress": -1,
+            "Time/Phases": "0.1: 1",
+        }
+        result = run("slab", {**SMALL, **leftovers})
+        bare = run("slab", {**SMALL, "Time/Phases": "0.1: 1",
+                            "Boundary 1/Role": "free",
+                            "Boundary 1/Displacement": ""})
+        self.assertNotIn("is not used", bare.stdout)
+        for column in "strain_energy", "max_displacement":
+            self.assertClose(result[column], bare[column], what=column)
+        for sentence in (
+            "Warning: 'Boundary 1/Traction' is not used by the role free.",
+            "Warning: 'Boundary 1/Friction law' is not used by the role free.",
+            "Warning: 'Boundary 2/Normal stress' is not used by the role "
+            "contact with the friction law tresca.",
+        ):
+            self.assertIn(sentence, result.stdout)
+
     def test_curved_contact_piece(self):
         self.refused(
             "flat|curved|plane",
@@ -343,6 +378,22 @@ class Refused(TestCase):
 
     def test_expression_with_an_unknown_symbol(self):
         self.refused("Body force", **{"Loads/Body force": "q*t; 0"})
+
+    def test_long_expressions_are_not_repeated(self):
+        for text in "q*" + "1 + " * 75000 + "t; 0", "q" * 300000 + "; 0", "1;" * 9999:
+            result = self.refused("Body force", **{"Loads/Body force": text})
+            self.assertLess(len(result.stderr), 500)
+
+    def test_too_many_steps(self):
+        """More than the type of their number holds: 5032704 after wrapping."""
+        self.refused(
+            "'Time/Phases' has more than 1e9 steps",
+            **{"Time/Phases": "1: 2000000000, 2: 2000000000, 3: 300000000"},
+        )
+        self.refused(
+            r"'Time/Phases' has more than 1e9 steps up to '2: 1'",
+            **{"Time/Phases": "1: 1000000000, 2: 1"},
+        )
 
     def test_exhausted_contact_iterations(self):
         """Not converged is an error, never a result."""

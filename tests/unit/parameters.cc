@@ -68,6 +68,25 @@ namespace
     for (const std::string text : {"inf: 2", "nan: 2"})
       EXPECT_NE(message_of([&] { TimeSchedule schedule(text); }), "");
     expect_refusal([] { TimeSchedule schedule(""); }, "'Time/Phases'");
+    expect_refusal([] { TimeSchedule schedule("1: 1000000000, 2: 1"); },
+                   "'Time/Phases' has more than 1e9 steps up to '2: 1'");
+  }
+
+
+
+  TEST(TimeSchedule, LargestStep)
+  {
+    const TimeStep in_the_middle =
+      TimeSchedule("1: 4, 1.5: 1, 3: 6").largest_step();
+    EXPECT_EQ(in_the_middle.n, 5u);
+    EXPECT_EQ(in_the_middle.t, 1.5);
+    EXPECT_EQ(in_the_middle.k, 0.5);
+    // Of equal ones the first; and without walking through all steps.
+    EXPECT_EQ(TimeSchedule("2: 1, 4: 1, 5: 2").largest_step().n, 1u);
+    const TimeStep last =
+      TimeSchedule("1: 999999998, 2: 1, 4: 1").largest_step();
+    EXPECT_EQ(last.n, 1000000000u);
+    EXPECT_EQ(last.k, 2.);
   }
 
 

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/boundary_condition.h>
+#include <viscoplastic_contact/spelling.h>
+
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::string
+    entry(const types::boundary_id id, const std::string &name)
+    {
+      return "Boundary " + std::to_string(id) + "/" + name;
+    }
+
+
+
+    BoundaryRole
+    role_by_name(const types::boundary_id id, const std::string &name)
+    {
+      if (name == "clamped")
+        return BoundaryRole::clamped;
+      if (name == "displacement")
+        return BoundaryRole::displacement;
+      if (name == "traction")
+        return BoundaryRole::traction;
+      if (name == "free")
+        return BoundaryRole::free;
+      if (name == "symmetry")
+        return BoundaryRole::symmetry;
+      if (name == "contact")
+        return BoundaryRole::contact;
+      AssertThrow(false,
+                  ExcMessage("'" + entry(id, "Role") +
+                             "' is missing; it must be clamped, displacement, "
+                             "traction, free, symmetry or contact."));
+      return BoundaryRole::free;
+    }
+
+
+
+    FrictionLaw
+    friction_law_by_name(const types::boundary_id id, const std::string &name)
+    {
+      if (name == "none")
+        return FrictionLaw::none;
+      if (name == "tresca")
+        return FrictionLaw::tresca;
+      if (name == "coulomb")
+        return FrictionLaw::coulomb;
+      if (name == "glued")
+        return FrictionLaw::glued;
+      AssertThrow(false,
+                  ExcMessage("'" + entry(id, "Friction law") + "' = " + name +
+                             " is unknown; it must be none, tresca, coulomb or "
+                             "glued."));
+      return FrictionLaw::none;
+    }
+
+
+
+    template <int dim>
+    std::array<std::optional<Expression<dim>>, dim>
+    given_components(const std::string &text, const std::string &entry)
+    {
+      const auto parts = Utilities::split_string_list(text, ';');
+      AssertThrow(parts.size() == dim,
+                  ExcMessage("'" + entry + "' needs " + std::to_string(dim) +
+                             " components separated by semicolons, but '" +
+                             excerpt(text) + "' has " +
+                             std::to_string(parts.size()) + "."));
+      std::array<std::optional<Expression<dim>>, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (parts[d] != "free")
+          result[d].emplace(parts[d], entry);
+      return result;
+    }
+
+
+
+    /// Whether the entry @p name means something for the role and the friction
+    /// law.
+    template <int dim>
+    bool
+    uses(const BoundaryCondition<dim> &condition, const std::string &name)
+    {
+      const bool is_contact = condition.role == BoundaryRole::contact;
+      if (name == "Displacement")
+        return condition.role == BoundaryRole::displacement;
+      if (name == "Traction")
+        return condition.role == BoundaryRole::traction;
+      if (name == "Friction bound")
+        return condition.friction_law == FrictionLaw::tresca;
+      if (name == "Friction coefficient" || name == "Normal stress")
+        return condition.friction_law == FrictionLaw::coulomb;
+      if (name == "Foundation displacement")
+        return is_contact && condition.is_bilateral();
+      if (name == "Foundation motion")
+        return condition.has_friction() || condition.is_glued();
+      Assert(name == "Friction law", ExcInternalError());
+      return is_contact;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  BoundaryCondition<dim>::BoundaryCondition(
+    const types::boundary_id  id,
+    const BoundaryParameters &parameters)
+    : id(id)
+    , role(role_by_name(id, parameters.role))
+  {
+    if (role == BoundaryRole::contact)
+      friction_law = friction_law_by_name(id, parameters.friction_law);
+
+    // What is not used is parsed all the same: nonsense should not wait for
+    // the day when the role changes.
+    const auto is_given = [](const std::string &text) {
+      return !Utilities::trim(text).empty();
+    };
+    const auto scalar = [&](const std::string &name, const std::string &text) {
+      std::optional<Expression<dim>> result;
+      if (uses(*this, name) || is_given(text))
+        result.emplace(text, entry(id, name));
+      if (!uses(*this, name))
+        result.reset();
+      return result;
+    };
+    const auto vector = [&](const std::string &name, const std::string &text) {
+      auto result = optional_vector<dim>(text, dim, entry(id, name));
+      if (!uses(*this, name))
+        result.reset();
+      return result;
+    };
+
+    const bool has_displacement = uses(*this, "Displacement");
+    if (has_displacement || is_given(parameters.displacement))
+      {
+        auto components = given_components<dim>(parameters.displacement,
+                                                entry(id, "Displacement"));
+        if (has_displacement)
+          displacement = std::move(components);
+      }
+    traction       = vector("Traction", parameters.traction);
+    friction_bound = scalar("Friction bound", parameters.friction_bound);
+    friction_coefficient =
+      scalar("Friction coefficient", parameters.friction_coefficient);
+    normal_stress = scalar("Normal stress", parameters.normal_stress);
+    foundation_displacement =
+      scalar("Foundation displacement", parameters.foundation_displacement);
+    if (foundation_displacement && foundation_displacement->is_zero())
+      foundation_displacement.reset();
+    foundation_motion =
+      vector("Foundation motion", parameters.foundation_motion);
+    // Only its change counts.
+    if (foundation_motion && !foundation_motion->depends_on_time())
+      foundation_motion.reset();
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  BoundaryCondition<dim>::unused_entries(
+    const BoundaryParameters &parameters) const
+  {
+    const BoundaryParameters defaults;
+    std::vector<std::string> names;
+    const auto               compare = [&](const std::string &name,
+                             const std::string &text,
+                             const std::string &default_text) {
+      const std::string given = Utilities::trim(text);
+      if (!given.empty() && given != default_text && !uses(*this, name))
+        names.push_back(name);
+    };
+    compare("Displacement", parameters.displacement, defaults.displacement);
+    compare("Traction", parameters.traction, defaults.traction);
+    compare("Friction law", parameters.friction_law, defaults.friction_law);
+    compare("Friction bound",
+            parameters.friction_bound,
+            defaults.friction_bound);
+    compare("Friction coefficient",
+            parameters.friction_coefficient,
+            defaults.friction_coefficient);
+    compare("Normal stress", parameters.normal_stress, defaults.normal_stress);
+    compare("Foundation displacement",
+            parameters.foundation_displacement,
+            defaults.foundation_displacement);
+    compare("Foundation motion",
+            parameters.foundation_motion,
+            defaults.foundation_motion);
+    return names;
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::bound(const Point<dim> &x, const double t) const
+  {
+    const bool   is_tresca = friction_law == FrictionLaw::tresca;
+    const double factor    = is_tresca ? friction_bound->value(x, t) :
+                                         friction_coefficient->value(x, t);
+    if (factor < 0.)
+      {
+        std::ostringstream message;
+        message << "'"
+                << entry(id,
+                         is_tresca ? "Friction bound" : "Friction coefficient")
+                << "' is " << factor << " at x = (" << x << "), t = " << t
+                << "; it must not be negative.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+    return is_tresca ? factor : factor * std::abs(normal_stress->value(x, t));
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::sliding(const Point<dim> &x, const double t) const
+  {
+    if (!foundation_motion)
+      return {};
+    const Tensor<1, dim> w =
+      foundation_motion->vector(x, t) - foundation_motion->vector(x, 0.);
+    return w - (w * normal) * normal;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::glued_displacement(const Point<dim> &x,
+                                             const double      t) const
+  {
+    Tensor<1, dim> u = sliding(x, t);
+    if (foundation_displacement)
+      u += foundation_displacement->value(x, t) * normal;
+    return u;
+  }
+
+
+
+  template <int dim>
+  bool
+  BoundaryCondition<dim>::bound_depends_on_time() const
+  {
+    return (friction_bound && friction_bound->depends_on_time()) ||
+           (friction_coefficient && friction_coefficient->depends_on_time()) ||
+           (normal_stress && normal_stress->depends_on_time());
+  }
+
+
+
+  template struct BoundaryCondition<2>;
+  template struct BoundaryCondition<3>;
+} // namespace Viscoplastic

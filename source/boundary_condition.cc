@@ -54,9 +54,9 @@ namespace Viscoplastic
       if (name == "glued")
         return FrictionLaw::glued;
       AssertThrow(false,
-                  ExcMessage("'" + entry(id, "Friction law") + "' = " + name +
-                             " is unknown; it must be none, tresca, coulomb or "
-                             "glued."));
+                  ExcMessage("'" + entry(id, "Friction law") +
+                             "' is missing; it must be none, tresca, coulomb "
+                             "or glued."));
       return FrictionLaw::none;
     }
 
@@ -124,7 +124,11 @@ namespace Viscoplastic
     };
     const auto scalar = [&](const std::string &name, const std::string &text) {
       std::optional<Expression<dim>> result;
-      if (uses(*this, name) || is_given(text))
+      AssertThrow(is_given(text) || !uses(*this, name),
+                  ExcMessage("'" + entry(id, name) +
+                             "' is missing; the friction law " +
+                             parameters.friction_law + " needs it."));
+      if (is_given(text))
         result.emplace(text, entry(id, name));
       if (!uses(*this, name))
         result.reset();
@@ -145,6 +149,10 @@ namespace Viscoplastic
         if (has_displacement)
           displacement = std::move(components);
       }
+    AssertThrow(role != BoundaryRole::traction || is_given(parameters.traction),
+                ExcMessage("'" + entry(id, "Traction") +
+                           "' is missing; a boundary without load has the "
+                           "role free."));
     traction       = vector("Traction", parameters.traction);
     friction_bound = scalar("Friction bound", parameters.friction_bound);
     friction_coefficient =

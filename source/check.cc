@@ -50,10 +50,7 @@ namespace Viscoplastic
     if (rate == 0.)
       return;
     out << "Stability limit 2/r of the initial state: " << 2. / rate << '\n';
-    TimeStep largest = scene.schedule.step(1);
-    for (unsigned int n = 2; n <= scene.schedule.n_steps(); ++n)
-      if (scene.schedule.step(n).k > largest.k)
-        largest = scene.schedule.step(n);
+    const TimeStep largest = scene.schedule.largest_step();
     if (largest.k * rate > 2. * (1. + 1e-10))
       {
         std::ostringstream message;

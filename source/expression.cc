@@ -37,6 +37,37 @@ namespace Viscoplastic
         return "";
       return printed.substr(open + 1, close - open - 1);
     }
+
+
+
+    /// What muParser takes, but nobody means: the last of a list `0,5' as its
+    /// value, an assignment `x = 1' for a comparison.
+    void
+    refuse_slips(const std::string &text, const std::string &entry)
+    {
+      const auto refuse = [&](const std::string &why) {
+        AssertThrow(false,
+                    ExcMessage("The expression '" +
+                               excerpt(Utilities::trim(text)) + "' of '" +
+                               entry + "' " + why));
+      };
+      int depth = 0;
+      for (std::size_t i = 0; i < text.size(); ++i)
+        {
+          const char c    = text[i];
+          const char last = i > 0 ? text[i - 1] : ' ';
+          const char next = i + 1 < text.size() ? text[i + 1] : ' ';
+          depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+          if (c == ',' && depth == 0)
+            refuse("has a comma outside of parentheses; numbers have a "
+                   "decimal point.");
+          if (c == ';')
+            refuse("has more than one component, but one is needed.");
+          if (c == '=' && next != '=' && last != '=' && last != '!' &&
+              last != '<' && last != '>')
+            refuse("has a single '='; comparisons are written '=='.");
+        }
+    }
   } // namespace
 
 
@@ -49,6 +80,7 @@ namespace Viscoplastic
   {
     AssertThrow(!Utilities::trim(text).empty(),
                 ExcMessage("The expression of '" + entry + "' is empty."));
+    refuse_slips(text, entry);
     auto parser = std::make_unique<FunctionParser<dim>>(1);
     // deal.II prints what muParser says to std::cerr; the user gets it in our
     // sentence instead.
@@ -92,9 +124,15 @@ namespace Viscoplastic
       {
         numbers.clear(); // refused below
       }
+    for (const double number : numbers)
+      if (!std::isfinite(number))
+        {
+          numbers.clear();
+          break;
+        }
     AssertThrow(numbers.size() == dim,
                 ExcMessage("'" + entry + "' = " + excerpt(text) + " needs " +
-                           std::to_string(dim) + " numbers."));
+                           std::to_string(dim) + " finite numbers."));
     Point<dim> result;
     for (unsigned int d = 0; d < dim; ++d)
       result[d] = numbers[d];

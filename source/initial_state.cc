@@ -230,8 +230,10 @@ namespace Viscoplastic
           virtual_work(space, 4, [&](const Point<dim> &x) {
             return initial_stress(space.scene, x);
           });
-        restrict(internal);
+        // Where all displacements are prescribed, reactions balance it and
+        // nothing but rounding is left of it.
         size = std::max(size, internal.l2_norm());
+        restrict(internal);
         residual -= internal;
       }
 

@@ -232,6 +232,9 @@ namespace Viscoplastic
       {
         std::vector<std::string> values =
           Utilities::split_string_list(found, '|');
+        // A default that stands for nothing is no choice.
+        values.erase(std::remove(values.begin(), values.end(), "not given"),
+                     values.end());
         return "one of " + enumeration(values, 50);
       }
     if (inside("[Integer range ", " (inclusive)]", found))

@@ -187,7 +187,7 @@ namespace Viscoplastic
       "friction bound (5.22); `coulomb' has a given normal stress and the "
       "bound mu |S| (5.6); `none' is bilateral contact without friction; "
       "`glued' holds the body fast to the foundation.",
-      Patterns::Selection("none|tresca|coulomb|glued"));
+      Patterns::Selection("not given|none|tresca|coulomb|glued"));
     prm.add_parameter("Friction bound",
                       friction_bound,
                       "g(x,t) >= 0 of the law tresca. Unit: stress.");

@@ -74,10 +74,10 @@ namespace Viscoplastic
   {
     std::string role = "not given";
     std::string displacement, traction;
-    std::string friction_law            = "none";
-    std::string friction_bound          = "0";
-    std::string friction_coefficient    = "0";
-    std::string normal_stress           = "0";
+    std::string friction_law = "not given";
+    std::string friction_bound;
+    std::string friction_coefficient;
+    std::string normal_stress;
     std::string foundation_displacement = "0";
     std::string foundation_motion;
 

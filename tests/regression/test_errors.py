@@ -255,6 +255,7 @@ class Refused(TestCase):
                 "Geometry/Arguments": "0, 0 : 0.5 : 1 : 12 : true",
                 "Boundary 0/Role": "contact",
                 "Boundary 0/Friction law": "tresca",
+                "Boundary 0/Friction bound": 0.1,
                 "Boundary 1/Role": "clamped",
             },
             scene="ring",
@@ -368,6 +369,64 @@ class Refused(TestCase):
 
     def test_phases_that_go_back(self):
         self.refused("Phases", **{"Time/Phases": "1: 4, 0.5: 4"})
+
+    def test_decimal_comma(self):
+        """muParser would take the last number."""
+        self.refused(
+            r"Friction bound' has a comma outside of parentheses",
+            **{"Boundary 2/Friction bound": "0,08"},
+        )
+
+    def test_assignment_for_a_comparison(self):
+        self.refused(
+            r"Friction bound' has a single '='",
+            **{"Boundary 2/Friction bound": "if(x=1, 0.1, 0.2)"},
+        )
+
+    def test_comparisons_are_no_assignments(self):
+        run("slab", {**SMALL, "Time/Phases": "0.1: 1",
+                     "Boundary 2/Friction bound":
+                         "if(x >= 1 && x != 2 || x == 0, 0.08, max(0.08, 0.08))"})
+
+    def test_components_for_a_number(self):
+        self.refused(
+            "more than one component", **{"Boundary 2/Friction bound": "0.1; 0.2"}
+        )
+
+    def test_contact_without_friction_law(self):
+        """Also frictionless contact has to be asked for."""
+        self.refused(
+            "'Boundary 2/Friction law' is missing; it must be none, tresca",
+            **{"Boundary 2/Friction law": "not given"},
+        )
+
+    def test_friction_law_without_its_data(self):
+        self.refused(
+            "'Boundary 2/Friction bound' is missing; the friction law tresca",
+            **{"Boundary 2/Friction bound": ""},
+        )
+        self.refused(
+            "'Boundary 2/(Friction coefficient|Normal stress)' is missing",
+            **{"Boundary 2/Friction law": "coulomb"},
+        )
+
+    def test_traction_without_value(self):
+        self.refused(
+            "'Boundary 0/Traction' is missing", **{"Boundary 0/Traction": ""}
+        )
+
+    def test_point_that_is_none(self):
+        self.refused("Points.*2 finite numbers", **{"Output/Points": "nan, 0"})
+
+    def test_free_translation_along_an_oblique_direction(self):
+        self.refused(
+            r"translation along \(0\.866, 0\.5\)",
+            **{
+                "Geometry/Rotation angle": 30,
+                "Boundary 0/Role": "free",
+                "Boundary 3/Role": "symmetry",
+            },
+        )
 
     def test_expression_without_value(self):
         self.refused("Traction", **{"Boundary 0/Traction": "sqrt(-1 - t); 0"})

@@ -29,7 +29,7 @@ namespace
     EXPECT_EQ(parameters->material.law, "elastic");
     EXPECT_EQ(parameters->boundaries.size(), 2u);
     EXPECT_EQ(parameters->boundaries.at(7).role, "clamped");
-    EXPECT_EQ(parameters->boundaries.at(2).friction_law, "none");
+    EXPECT_EQ(parameters->boundaries.at(2).friction_law, "not given");
     EXPECT_EQ(parameters->solver.linear_solver, "automatic");
     EXPECT_FALSE(parameters->initial_state.equilibrate);
   }

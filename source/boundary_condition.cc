@@ -176,31 +176,23 @@ namespace Viscoplastic
   BoundaryCondition<dim>::unused_entries(
     const BoundaryParameters &parameters) const
   {
-    const BoundaryParameters defaults;
     std::vector<std::string> names;
     const auto               compare = [&](const std::string &name,
                              const std::string &text,
-                             const std::string &default_text) {
+                             const std::string &nothing) {
       const std::string given = Utilities::trim(text);
-      if (!given.empty() && given != default_text && !uses(*this, name))
+      if (!given.empty() && given != nothing && given != "not given" &&
+          !uses(*this, name))
         names.push_back(name);
     };
-    compare("Displacement", parameters.displacement, defaults.displacement);
-    compare("Traction", parameters.traction, defaults.traction);
-    compare("Friction law", parameters.friction_law, defaults.friction_law);
-    compare("Friction bound",
-            parameters.friction_bound,
-            defaults.friction_bound);
-    compare("Friction coefficient",
-            parameters.friction_coefficient,
-            defaults.friction_coefficient);
-    compare("Normal stress", parameters.normal_stress, defaults.normal_stress);
-    compare("Foundation displacement",
-            parameters.foundation_displacement,
-            defaults.foundation_displacement);
-    compare("Foundation motion",
-            parameters.foundation_motion,
-            defaults.foundation_motion);
+    compare("Displacement", parameters.displacement, "");
+    compare("Traction", parameters.traction, "");
+    compare("Friction law", parameters.friction_law, "none");
+    compare("Friction bound", parameters.friction_bound, "0");
+    compare("Friction coefficient", parameters.friction_coefficient, "0");
+    compare("Normal stress", parameters.normal_stress, "0");
+    compare("Foundation displacement", parameters.foundation_displacement, "0");
+    compare("Foundation motion", parameters.foundation_motion, "");
     return names;
   }
 

@@ -986,7 +986,7 @@ namespace
                 3 * 0.4 * 3 * 3 * 4,
                 1e-13);
     EXPECT_EQ(body.law->announcement(),
-              "The power law is continued linearly beyond the von Mises "
+              "continued linearly beyond the von Mises "
               "stress 'Material/norton/Stress cap' = 2");
     expect_refusal([] { make_law("norton"); },
                    "'Material/norton/Stress cap' is not given; beyond this von "

@@ -228,6 +228,9 @@ namespace
 
   TYPED_TEST(Energy, LawsAreCheckedAtAllSamples)
   {
+    // The program ends all ranks when one of them refuses; a test cannot.
+    if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      GTEST_SKIP() << "what is wrong on one rank only is refused there";
     constexpr int dim  = TypeParam::value;
     const auto    make = [](const std::string &law) {
       // In the last column of cells at x = 1.61 and 1.89.

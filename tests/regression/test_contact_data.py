@@ -138,6 +138,41 @@ class Relativity(TestCase):
             force @ velocity, -0.5 * np.linalg.norm(force)
         )
 
+    def test_plate_under_hanging_nodes(self):
+        """Cells refined at the face: it has hanging nodes, on 1, 2, 3 ranks."""
+        mesh = {
+            "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 1, 1, 0.5 : true",
+            "Geometry/Boundary ids": "if(z < 1e-6 && x < 0.5, 7, id)",
+            "Geometry/Boundary refinements": "7: 1",
+            "Boundary 7/Role": "contact",
+            "Boundary 7/Friction law": "tresca",
+            "Boundary 7/Friction bound": "0.05*(1 + x)",
+            "Boundary 7/Foundation motion":
+                "0.2*(1 - cos(pi*t)); 0.2*sin(pi*t); 0",
+            "Time/Phases": "1.5: 6",
+        }
+        moving = run("conveyor_3d", mesh)
+        self.check_identities(moving)
+        self.assertGreater(moving["slip_area"].max(), 0)
+        resting = run(
+            "conveyor_3d",
+            {
+                **mesh,
+                "Boundary 4/Foundation motion": "",
+                "Boundary 7/Foundation motion": "",
+                "Boundary 5/Displacement":
+                    "-0.2*(1 - cos(pi*t)); -0.2*sin(pi*t); 0",
+            },
+        )
+        others = [resting] + [run("conveyor_3d", mesh, ranks=n) for n in (2, 3)]
+        for other in others:
+            for name in ("stored_energy", "slip_area", "friction_dissipation",
+                         "friction_force_x", "friction_force_y"):
+                scale = np.abs(moving[name]).max()
+                self.assertClose(
+                    other[name], moving[name], absolute=1e-6 * scale, what=name
+                )
+
     def test_oblique_face(self):
         """Turned by 30 degrees, the motion with it; its normal part, here a
         large one, does not count."""

@@ -89,7 +89,7 @@ namespace Viscoplastic
         friction_force = d.face->resultant(step.state.friction);
       }
     const double tension_area =
-      d.tension.any() ? d.tension.tension_area(step.state) : 0.;
+      d.tension ? d.tension->tension_area(step.state) : 0.;
     const auto reaction_forces = reactions(d.space, step.forces);
 
     // Forces on the body: loads, reactions, minus the multipliers.
@@ -153,7 +153,7 @@ namespace Viscoplastic
         row.add("dofs", dof_handler.n_dofs());
         if (scene.has_viscosity())
           row.add("step_limit", step.step_limit);
-        if (d.tension.any())
+        if (d.tension)
           row.add("tension_area", tension_area);
         if (d.laws.any_cap)
           row.add("capped_volume", step.capped_volume);
@@ -288,8 +288,8 @@ namespace Viscoplastic
       }
 
     const double tension =
-      discretisation->tension.any() ?
-        summary.tension_area.value / discretisation->tension.area() :
+      discretisation->tension ?
+        summary.tension_area.value / discretisation->tension->area() :
         0.;
     if (tension > 0.01)
       {

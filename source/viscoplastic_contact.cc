@@ -48,10 +48,16 @@ namespace Viscoplastic
                mean_dilatation)
     , laws(sampling)
     , loads(space)
-    , tension(sampling)
     , n_solves(scene.is_adaptive() ? scene.parameters.refinement.every_n_steps :
                                      scene.schedule.n_steps())
   {
+    for (const auto &pair : scene.boundary)
+      if (pair.second.role == BoundaryRole::contact &&
+          pair.second.is_bilateral() && !pair.second.is_glued())
+        {
+          tension = std::make_unique<ContactTension<dim>>(sampling);
+          break;
+        }
     if (scene.has_friction())
       face = std::make_unique<ContactFace<dim>>(space);
   }

@@ -18,13 +18,6 @@ namespace Viscoplastic
     /// Collective.
     explicit ContactTension(const StressSampling<dim> &sampling);
 
-    /// Whether there is bilateral contact; known on all ranks.
-    bool
-    any() const
-    {
-      return total_area > 0.;
-    }
-
     /// Area of the pieces with bilateral contact.
     double
     area() const

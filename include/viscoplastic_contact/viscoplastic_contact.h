@@ -73,7 +73,8 @@ namespace Viscoplastic
       StressSampling<dim>  sampling;
       FlowLaws<dim>        laws;
       Loads<dim>           loads;
-      ContactTension<dim>  tension;
+      /// Null without bilateral contact.
+      std::unique_ptr<ContactTension<dim>> tension;
       /// Null without friction.
       std::unique_ptr<ContactFace<dim>> face;
 

@@ -326,4 +326,31 @@ namespace Viscoplastic
                       "points by semicolons, whose displacement goes into "
                       "statistics.csv. Unit: length.");
   }
+
+
+
+  void
+  CheckpointParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Every n steps",
+                      every_n_steps,
+                      "Steps between checkpoints, from which --restart goes on "
+                      "after an interruption; 0 for none.",
+                      Patterns::Integer(0));
+    prm.add_parameter("Wall time interval",
+                      wall_time_interval,
+                      "Time between checkpoints by the clock on the wall; they "
+                      "are written at the end of a step. 0 for none. Unit: "
+                      "seconds.",
+                      Patterns::Double(0.));
+    prm.add_parameter("Directory",
+                      directory,
+                      "Where checkpoints go; empty for `checkpoint' in the "
+                      "directory of the results.");
+    prm.add_parameter("Keep",
+                      keep,
+                      "How many of the last checkpoints are kept. The older "
+                      "ones are for the case that the last one is damaged.",
+                      Patterns::Integer(1));
+  }
 } // namespace Viscoplastic

@@ -207,7 +207,7 @@ namespace Viscoplastic
             row.add(std::string("wall_") + name, now - last_seconds[name]);
             last_seconds[name] = now;
           }
-        row.add("wall_total", run_timer.wall_time());
+        row.add("wall_total", earlier_seconds + run_timer.wall_time());
         row.end_row();
       }
 

@@ -55,6 +55,11 @@ namespace Viscoplastic
     SolverParameters                           solver;
     RefinementParameters                       refinement;
     OutputParameters                           output;
+    CheckpointParameters                       checkpoint;
+
+    /// The value of every entry, by `Section/Subsection/Entry'.
+    std::map<std::string, std::string>
+    values() const;
 
     /// The same with every entry, for law parameters and for the record.
     mutable ParameterHandler handler;

@@ -120,6 +120,17 @@ namespace Viscoplastic
     check() const;
   };
 
+  struct CheckpointParameters
+  {
+    unsigned int every_n_steps      = 0;
+    double       wall_time_interval = 0.;
+    std::string  directory;
+    unsigned int keep = 2;
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
   struct OutputParameters
   {
     std::string  directory;

@@ -295,6 +295,23 @@ namespace Viscoplastic
 
 
   void
+  CheckpointStore::make_directory() const
+  {
+    const std::string failure =
+      common_failure(attempt([&]() {
+                       if (rank == 0)
+                         fs::create_directories(directory);
+                     }),
+                     communicator);
+    AssertThrow(failure.empty(),
+                ExcMessage("The directory '" + directory +
+                           "' for checkpoints cannot be written; change "
+                           "'Checkpoint/Directory' or its permissions."));
+  }
+
+
+
+  void
   CheckpointStore::write(CheckpointManifest                        manifest,
                          const std::map<std::string, std::string> &files,
                          const unsigned int                        n_kept) const

@@ -71,6 +71,21 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  ViscoplasticContact<dim>::begin_checkpoints()
+  {
+    const CheckpointStore       store  = checkpoints();
+    const CheckpointParameters &wanted = parameters.checkpoint;
+    if (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.)
+      store.make_directory();
+    if (store.remove_all() > 0)
+      console.remark("Note: the checkpoints of an earlier run in '" +
+                     store.directory + "' have been removed.");
+  }
+
+
+
+  template <int dim>
   template <typename Archive>
   void
   ViscoplasticContact<dim>::exchange(Archive &archive)

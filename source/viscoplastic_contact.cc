@@ -154,10 +154,7 @@ namespace Viscoplastic
     set_initial_state();
     check_steps();
     output.emplace(scene, communicator);
-    // Checkpoints of an earlier run go with its results.
-    if (checkpoints().remove_all() > 0)
-      console.remark("Note: the checkpoints of an earlier run in '" +
-                     checkpoints().directory + "' have been removed.");
+    begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       statistics =
         std::make_unique<Statistics>(output->directory() + "statistics.csv");

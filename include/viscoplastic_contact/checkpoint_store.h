@@ -55,6 +55,10 @@ namespace Viscoplastic
     std::string
     path(const unsigned int n) const;
 
+    /// Make the directory, so that a place that cannot be had shows at once.
+    void
+    make_directory() const;
+
     /**
      * Write the files that each rank gives, by name, and remove all but the
      * newest @p n_kept checkpoints. The manifest's files are filled in.

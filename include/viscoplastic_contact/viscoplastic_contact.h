@@ -179,6 +179,10 @@ namespace Viscoplastic
     CheckpointStore
     checkpoints() const;
 
+    /// Remove those of an earlier run, which go with its results.
+    void
+    begin_checkpoints();
+
     /// The checkpoint to go on from, if the run is to go on and there is one.
     std::optional<CheckpointManifest>
     find_checkpoint(const CommandLine::Restart restart);

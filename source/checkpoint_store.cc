@@ -190,7 +190,8 @@ namespace Viscoplastic
              << '\n';
       for (const auto &[path, value] : manifest.parameters)
         text << "set " << path << " = " << value << '\n';
-      text << "checksum " << checksum(text.str()) << '\n';
+      const std::uint32_t sum = checksum(text.str());
+      text << "checksum " << sum << '\n';
       return text.str();
     }
 
@@ -419,8 +420,8 @@ namespace Viscoplastic
           return manifest;
         if (failure.back() == '.')
           failure.pop_back();
-        remarks.push_back("Warning: the checkpoint '" + path(n) +
-                          "' cannot be used: " + failure + ".");
+        remarks.push_back("the checkpoint '" + path(n) +
+                          "' cannot be used: " + failure);
       }
     return {};
   }

@@ -200,12 +200,12 @@ namespace Viscoplastic
     std::vector<std::string> remarks;
     auto                     found = checkpoints().newest(remarks);
     for (const std::string &remark : remarks)
-      console.remark(remark);
+      console.remark("Warning: " + remark + '.');
     const std::string directory = checkpoints().directory;
     AssertThrow(found || remarks.empty(),
                 ExcMessage("None of the " + std::to_string(remarks.size()) +
-                           " checkpoints in '" + directory +
-                           "' can be used; the newest one: " + remarks[0]));
+                           " checkpoint(s) in '" + directory +
+                           "' can be used: " + remarks[0] + '.'));
     AssertThrow(found || restart == Restart::automatic,
                 ExcMessage("There is no checkpoint in '" + directory +
                            "'; begin without --restart, or name the place in "

@@ -3,6 +3,7 @@
 #include <deal.II/grid/cell_id.h>
 
 #include <viscoplastic_contact/checkpoint.h>
+#include <viscoplastic_contact/spelling.h>
 
 #include <algorithm>
 #include <array>
@@ -439,7 +440,7 @@ namespace Viscoplastic
   {
     ParameterChanges changes;
     const auto       quoted = [](const std::string &value) {
-      return value.empty() ? "empty" : value;
+      return value.empty() ? "empty" : excerpt(value);
     };
     for (const auto &[path, value] : new_values)
       {
@@ -453,7 +454,7 @@ namespace Viscoplastic
       }
     for (const auto &[path, value] : old_values)
       if (new_values.count(path) == 0)
-        changes.forbidden.push_back("'" + path + "' is gone (was " +
+        changes.forbidden.push_back("'" + excerpt(path) + "' is gone (was " +
                                     quoted(value) + ")");
     return changes;
   }

@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/checkpoint_store.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/spelling.h>
 
 #include <boost/crc.hpp>
 #include <fcntl.h>
@@ -132,14 +133,15 @@ namespace Viscoplastic
     {
       std::error_code error;
       const auto      size = fs::file_size(directory + file.name, error);
-      AssertThrow(!error, ExcMessage("the file " + file.name + " is missing"));
+      AssertThrow(!error,
+                  ExcMessage("the file " + excerpt(file.name) + " is missing"));
       AssertThrow(size == file.size,
-                  ExcMessage("the file " + file.name + " has " +
+                  ExcMessage("the file " + excerpt(file.name) + " has " +
                              std::to_string(size) + " bytes instead of " +
                              std::to_string(file.size)));
       std::string bytes = read_file(directory + file.name);
       AssertThrow(bytes.size() == file.size && checksum(bytes) == file.checksum,
-                  ExcMessage("the file " + file.name +
+                  ExcMessage("the file " + excerpt(file.name) +
                              " does not have its checksum"));
       return bytes;
     }

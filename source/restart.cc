@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/checkpoint.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/spelling.h>
 #include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
@@ -25,17 +26,6 @@ namespace Viscoplastic
     fields_file(const unsigned int rank)
     {
       return "fields_" + Utilities::int_to_string(rank, 5) + ".bin";
-    }
-
-
-
-    std::string
-    enumerated(const std::vector<std::string> &items)
-    {
-      std::string text;
-      for (const std::string &item : items)
-        text += (text.empty() ? "" : ", ") + item;
-      return text;
     }
 
 
@@ -228,7 +218,7 @@ namespace Viscoplastic
       compare_parameters(checkpoint.parameters, parameters.values());
     AssertThrow(checkpoint.dimension == dim && changes.forbidden.empty(),
                 ExcMessage(name + "' cannot go on with other unknowns: " +
-                           enumerated(changes.forbidden) +
+                           enumeration(changes.forbidden) +
                            "; undo that, or begin without --restart."));
     BinaryReader        archive(store.read(checkpoint, run_file));
     CoarseMesh          coarse_mesh;
@@ -319,10 +309,11 @@ namespace Viscoplastic
       VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
     if (checkpoint.version != version)
       console.remark("Note: the checkpoint is from version " +
-                     checkpoint.version + ", this is " + version + ".");
+                     excerpt(checkpoint.version) + ", this is " + version +
+                     ".");
     if (!changes.allowed.empty())
       console.remark("Note: changed since the checkpoint: " +
-                     enumerated(changes.allowed) + ".");
+                     enumeration(changes.allowed) + ".");
 
     first_set_up_seconds =
       timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];

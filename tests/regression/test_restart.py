@@ -88,6 +88,7 @@ class Job:
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
+            errors="replace",
             **arguments,
         )
 
@@ -183,6 +184,15 @@ class Identical(RestartCase):
 
     def test_slab_two_ranks(self):
         self.check("slab", SLAB, (7,), ranks=2)
+
+    def test_pad_with_multigrid(self):
+        """In 3D the hierarchy knows the springs of slipping points, too."""
+        overrides = {
+            "Geometry/Arguments": "6, 6, 6 : 0, 0, 0 : 1, 1, 1 : true",
+            "Time/Phases": "1.5: 10",
+            "Solver/Linear solver": "multigrid",
+        }
+        self.check("pad", overrides, (4, 8))
 
     def test_adaptive_slab(self):
         overrides = {"Time/Phases": "1: 8, 2: 8", "Output/Fields every": 3}
@@ -302,7 +312,7 @@ class Killed(RestartCase):
                         job.results, reference.results, f"kill {i}, {instant} s"
                     )
                     self.assertEqual(len(job.steps()), 2)
-        self.assertGreater(n_restarted, N_KILLS // 3)
+        self.assertGreater(n_restarted, 0)
 
     def test_inside_of_writes(self):
         """Killed when a checkpoint is there in part."""
@@ -329,20 +339,22 @@ class Killed(RestartCase):
         self.assertGreater(n_parts, 0)
 
     def test_again_and_again(self):
-        """The same run, killed after a while each time until it is through."""
+        """The same run, killed each time soon after it has got further."""
         chance = random.Random(20003)
         with Job("slab_adaptive", self.OVERRIDES) as reference:
-            begin = time.time()
             reference.run()
-            duration = time.time() - begin
             with Job("slab_adaptive", self.OVERRIDES) as job:
-                n_kills = 0
-                while n_kills < 20 and self.kill(
-                    job.start("--restart=auto"), chance.uniform(0.3, 0.7) * duration
-                ):
-                    n_kills += 1
-                job.run("--restart=auto")
-                self.assertGreater(n_kills, 0)
+                n_kills, newest = 0, 0
+                while newest < 15:
+                    process = job.start("--restart=auto")
+                    wait_for(
+                        lambda: max(job.steps(), default=0) > newest
+                        or process.poll() is not None
+                    )
+                    n_kills += self.kill(process, chance.uniform(0, 0.1))
+                    newest = max(job.steps())
+                job.run("--restart")
+                self.assertGreater(n_kills, 2)
                 self.assertIdentical(job.results, reference.results)
 
 
@@ -567,7 +579,7 @@ class Damaged(RestartCase):
         """Mutations that have the right checksum: the program may take wrong
         numbers for true, but it must not crash or hang on them."""
         chance = random.Random(20005)
-        names = "run.bin", "mesh_00000.bin", "fields_00000.bin"
+        names = "manifest.txt", "run.bin", "mesh_00000.bin", "fields_00000.bin"
         refused = 0
         for i in range(2 * N_MUTATIONS):
             with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
@@ -598,16 +610,19 @@ class Damaged(RestartCase):
 
 
 def forge(step):
-    """Give the manifest of a checkpoint the checksums that its files have."""
+    """Give the manifest of a checkpoint the checksums that it should have."""
     manifest = step / "manifest.txt"
-    lines = manifest.read_text().splitlines()[:-1]
+    lines = manifest.read_bytes().split(b"\n")
+    lines = [line for line in lines if line and not line.startswith(b"checksum")]
     for i, line in enumerate(lines):
-        if line.startswith("file "):
-            name = line.split()[1]
-            content = (step / name).read_bytes()
-            lines[i] = f"file {name} {len(content)} {zlib.crc32(content)}"
-    text = "\n".join(lines) + "\n"
-    manifest.write_text(text + f"checksum {zlib.crc32(text.encode())}\n")
+        words = line.split()
+        file = step / words[1].decode(errors="replace") if len(words) > 1 else step
+        if words[:1] == [b"file"] and file.is_file():
+            content = file.read_bytes()
+            sizes = f" {len(content)} {zlib.crc32(content)}"
+            lines[i] = b"file " + words[1] + sizes.encode()
+    text = b"\n".join(lines) + b"\n"
+    manifest.write_bytes(text + f"checksum {zlib.crc32(text)}\n".encode())
 
 
 class Machine(RestartCase):

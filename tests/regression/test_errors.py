@@ -305,6 +305,7 @@ class Refused(TestCase):
             **{
                 "Boundary 3/Role": "free",
                 "Boundary 2/Friction law": "coulomb",
+                "Boundary 2/Friction coefficient": 0.3,
                 "Boundary 2/Normal stress": "-t",
             },
         )

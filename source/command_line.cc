@@ -40,7 +40,7 @@ namespace Viscoplastic
   {
     using Task = CommandLine::Task;
     const std::vector<std::string> flags{
-      "--help", "--version", "--describe", "--check", "--quiet"};
+      "--help", "--version", "--describe", "--check", "--quiet", "--restart"};
     const std::vector<std::string> with_value{"--set", "--log"};
     const auto contains = [](const std::vector<std::string> &list,
                              const std::string              &item) {
@@ -122,6 +122,9 @@ namespace Viscoplastic
           }
         if (option == "--quiet")
           result.quiet = true;
+        else if (option == "--restart")
+          result.restart = value == "auto" ? CommandLine::Restart::automatic :
+                                             CommandLine::Restart::yes;
         else
           {
             AssertThrow(task_option.empty() || task_option == option,
@@ -134,14 +137,18 @@ namespace Viscoplastic
                           value == "markdown"   ? Task::describe_as_markdown :
                                                   Task::describe;
           }
-        AssertThrow(
-          equals == std::string::npos ||
-            (option == "--describe" && (value == "markdown" || value == "prm")),
-          ExcMessage("The option " + option +
-                     (option == "--describe" ?
-                        " can have the values prm and markdown, not '" :
-                        " has no value, such as '") +
-                     excerpt(value) + "'."));
+        AssertThrow(equals == std::string::npos ||
+                      (option == "--describe" &&
+                       (value == "markdown" || value == "prm")) ||
+                      (option == "--restart" && value == "auto"),
+                    ExcMessage(
+                      "The option " + option +
+                      (option == "--describe" ?
+                         " can have the values prm and markdown, not '" :
+                       option == "--restart" ?
+                         " can have the value auto, not '" :
+                         " has no value, such as '") +
+                      excerpt(value) + "'."));
       }
 
     const bool reads_scene =
@@ -149,6 +156,10 @@ namespace Viscoplastic
     AssertThrow(!reads_scene || !result.files.empty(),
                 ExcMessage("There is no parameter file among the arguments; "
                            "write viscoplastic_contact [options] scene.prm."));
+    AssertThrow(result.task == Task::run ||
+                  result.restart == CommandLine::Restart::no,
+                ExcMessage("The options " + task_option +
+                           " and --restart exclude each other."));
     AssertThrow(reads_scene ||
                   (result.files.empty() && result.overrides.empty()),
                 ExcMessage("The option " + task_option +
@@ -177,6 +188,10 @@ namespace Viscoplastic
            "entry, its\n"
            "                               meaning, unit, default and allowed "
            "values\n"
+           "  --restart                    go on from the last checkpoint of "
+           "this scene\n"
+           "  --restart=auto               the same, or begin where there is "
+           "none\n"
            "  --quiet                      print nothing but errors\n"
            "  --log FILE                   write the messages to FILE, too\n"
            "  --version                    print version and libraries\n"
@@ -187,7 +202,9 @@ namespace Viscoplastic
            "the working\n"
            "directory. Exit codes: 0 every step was solved to its tolerance, "
            "1 something\n"
-           "was wrong (one sentence says what), 2 wrong arguments.\n"
+           "was wrong (one sentence says what), 2 wrong arguments, 3 ended by "
+           "SIGTERM or\n"
+           "SIGINT after a checkpoint.\n"
            "\n"
            "In parallel: mpirun -n 4 viscoplastic_contact scene.prm\n"
            "\n"

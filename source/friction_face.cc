@@ -25,6 +25,17 @@ namespace Viscoplastic
 
 
 
+  bool
+  FaceTruncation::has_springs() const
+  {
+    for (const Tensor<2, 3> &block : spring)
+      if (block.norm() > 0.)
+        return true;
+    return false;
+  }
+
+
+
   void
   FaceTruncation::project(const FrictionFace &face, Vector<double> &x) const
   {

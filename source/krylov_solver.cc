@@ -179,6 +179,33 @@ namespace Viscoplastic
 
 
 
+  std::optional<BulkSolver::Memory>
+  KrylovSolver::memory() const
+  {
+    if (!amg)
+      return {};
+    return Memory{built_for, best_rate, lost_iterations, is_fresh};
+  }
+
+
+
+  void
+  KrylovSolver::recall(const Memory &memory)
+  {
+    AssertThrow(memory.built_for.projector.size() == face.n_nodes() &&
+                  memory.built_for.spring.size() == face.n_nodes(),
+                ExcMessage("The memory of the linear solver belongs to another "
+                           "contact face."));
+    truncation  = memory.built_for;
+    has_springs = truncation.has_springs();
+    build_preconditioner();
+    best_rate       = memory.best_rate;
+    lost_iterations = memory.lost_iterations;
+    is_fresh        = memory.is_fresh;
+  }
+
+
+
   void
   KrylovSolver::restrict_to_unknowns(DistributedVector &v) const
   {
@@ -425,9 +452,7 @@ namespace Viscoplastic
                                const bool            may_rebuild)
   {
     truncation  = truncation_;
-    has_springs = false;
-    for (const auto &spring : truncation.spring)
-      has_springs |= spring.norm() > 0.;
+    has_springs = truncation.has_springs();
 
     // What ML costs in iterations of this solver: a set-up takes 1.2 (2D) to
     // 2.2 (3D) solves of about 15.

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/parameter_description.h>
+#include <viscoplastic_contact/signals.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <chrono>
@@ -14,20 +15,23 @@ namespace
 {
   using namespace Viscoplastic;
 
+  /// The sentence of a run that a signal has ended; empty for others.
   template <int dim>
-  void
-  run(const Parameters &parameters, const bool only_check, Console &console)
+  std::string
+  run(const Parameters  &parameters,
+      const CommandLine &command_line,
+      Console           &console)
   {
     ViscoplasticContact<dim> problem(parameters, console);
-    if (only_check)
-      problem.check();
-    else
-      problem.run();
+    if (command_line.task == CommandLine::Task::run)
+      return problem.run(command_line.restart);
+    problem.check();
+    return "";
   }
 
 
 
-  void
+  std::string
   run(const CommandLine &command_line, const bool has_terminal)
   {
     Console console(MPI_COMM_WORLD,
@@ -37,11 +41,9 @@ namespace
     try
       {
         const Parameters parameters(command_line.files, command_line.overrides);
-        const bool only_check = command_line.task == CommandLine::Task::check;
-        if (parameters.dimension == 2)
-          run<2>(parameters, only_check, console);
-        else
-          run<3>(parameters, only_check, console);
+        return parameters.dimension == 2 ?
+                 run<2>(parameters, command_line, console) :
+                 run<3>(parameters, command_line, console);
       }
     catch (const std::exception &exception)
       {
@@ -90,6 +92,8 @@ main(int argc, char *argv[])
   const bool is_parallel =
     dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1;
 
+  ignore_file_size_signal();
+
   const auto complain = [](const std::exception &exception) {
     std::cerr << "viscoplastic_contact: " << reason(exception) << std::endl;
   };
@@ -111,8 +115,12 @@ main(int argc, char *argv[])
       const std::string text = text_of(command_line.task);
       if (text.empty())
         {
-          run(command_line, has_terminal);
-          return 0;
+          const std::string interruption = run(command_line, has_terminal);
+          if (interruption.empty())
+            return 0;
+          if (rank == 0)
+            std::cerr << "viscoplastic_contact: " << interruption << std::endl;
+          return 3;
         }
       // A batch script that forgets the scene must not go on.
       const bool is_guide = command_line.task == CommandLine::Task::guide;

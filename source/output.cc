@@ -103,18 +103,23 @@ namespace Viscoplastic
 
 
 
+  std::string
+  results_directory(const Parameters &parameters)
+  {
+    std::string path = parameters.output.directory;
+    if (path.empty())
+      path = "output/" + std::filesystem::path(parameters.file).stem().string();
+    return path.back() == '/' ? path : path + '/';
+  }
+
+
+
   template <int dim>
   Output<dim>::Output(const Scene<dim> &scene, const MPI_Comm communicator)
     : scene(scene)
     , communicator(communicator)
-    , path(scene.parameters.output.directory)
+    , path(results_directory(scene.parameters))
   {
-    if (path.empty())
-      path = "output/" +
-             std::filesystem::path(scene.parameters.file).stem().string();
-    if (path.back() != '/')
-      path += '/';
-
     // Rank 0 writes; all learn whether that worked.
     std::string failure;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
@@ -135,6 +140,54 @@ namespace Viscoplastic
       }
     failure = Utilities::MPI::broadcast(communicator, failure);
     AssertThrow(failure.empty(), ExcMessage(failure));
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::resume(const std::vector<double> &earlier)
+  {
+    times = earlier;
+    std::vector<std::string> names{"solution"};
+    if (scene.has_contact())
+      names.emplace_back("contact");
+    for (const std::string &name : names)
+      {
+        write_pvd(name);
+        remove_later(name);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::remove_later(const std::string &name) const
+  {
+    if (Utilities::MPI::this_mpi_process(communicator) != 0)
+      return;
+    namespace fs                = std::filesystem;
+    const std::string     begin = name + '_';
+    std::vector<fs::path> later;
+    std::error_code       error;
+    for (const auto &entry : fs::directory_iterator(path, error))
+      {
+        const std::string file = entry.path().filename().string();
+        const std::size_t dot  = file.find('.');
+        if (file.compare(0, begin.size(), begin) != 0 ||
+            (entry.path().extension() != ".vtu" &&
+             entry.path().extension() != ".pvtu") ||
+            dot <= begin.size() || dot > begin.size() + 9)
+          continue;
+        const std::string digits =
+          file.substr(begin.size(), dot - begin.size());
+        if (digits.find_first_not_of("0123456789") == std::string::npos &&
+            std::stoul(digits) >= times.size())
+          later.push_back(entry.path());
+      }
+    for (const fs::path &file : later)
+      fs::remove(file, error);
   }
 
 

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <sstream>
 
@@ -288,12 +289,16 @@ namespace Viscoplastic
       in_subsection("Material " + std::to_string(id), numbered);
     in_subsection("Loads", loads);
     in_subsection("Initial state", initial_state);
+    in_subsection("Exact solution", exact_solution);
     for (auto &[id, boundary] : boundaries)
       in_subsection("Boundary " + std::to_string(id), boundary);
     in_subsection("Time", time);
     in_subsection("Solver", solver);
+    in_subsection("Error control", error_control);
     in_subsection("Mesh refinement", refinement);
     in_subsection("Output", output);
+    in_subsection("Checkpoint", checkpoint);
+    in_subsection("Study", study);
   }
 
 
@@ -442,6 +447,24 @@ namespace Viscoplastic
     if (!geometry.file.empty())
       locate_mesh_file(*mesh_file);
     refinement.check();
+  }
+
+
+
+  std::map<std::string, std::string>
+  Parameters::values() const
+  {
+    std::map<std::string, std::string>                           result;
+    const std::function<void(const Tree &, const std::string &)> collect =
+      [&](const Tree &node, const std::string &path) {
+        for (const auto &[name, below] : node)
+          if (is_entry(below))
+            result[path + name] = below.get<std::string>("value");
+          else
+            collect(below, path + name + '/');
+      };
+    collect(declared_entries(handler), "");
+    return result;
   }
 
 

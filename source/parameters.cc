@@ -160,6 +160,30 @@ namespace Viscoplastic
 
 
   void
+  ExactSolutionParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Displacement",
+                      displacement,
+                      "u(x,t), components separated by semicolons, if it is "
+                      "known: the run reports its errors. Unit: length.");
+    prm.add_parameter("Stress",
+                      stress,
+                      "sigma(x,t): xx; yy; zz; xy in 2D, xx; yy; zz; xy; xz; "
+                      "yz in 3D. Unit: stress.");
+    prm.add_parameter(
+      "Data",
+      data,
+      "`scene': u and sigma solve the problem of the scene. `solution': a "
+      "manufactured solution; body force, tractions, normal stresses, "
+      "prescribed displacements and initial data follow from u and sigma, "
+      "which also add the source sigma' - E eps(u') - G to G. Materials, "
+      "friction bounds and coefficients remain those of the scene.",
+      Patterns::Selection("scene|solution"));
+  }
+
+
+
+  void
   BoundaryParameters::declare(ParameterHandler &prm)
   {
     prm.add_parameter(
@@ -221,6 +245,12 @@ namespace Viscoplastic
                       "Phases of equal time steps as `end time: number of "
                       "steps', separated by commas, starting at t = 0; a "
                       "phase begins where the one before it ends. Unit: time.");
+    prm.add_parameter("Scheme",
+                      scheme,
+                      "How z' = G is integrated. `forward Euler': G at the "
+                      "beginning of the step, the scheme of the paper, stable "
+                      "for steps up to 2/r with the relaxation rate r.",
+                      Patterns::Selection("forward Euler"));
   }
 
 
@@ -239,12 +269,81 @@ namespace Viscoplastic
       "Contact tolerance",
       contact_tolerance,
       "Bound on the algebraic error of each step in the energy norm, relative "
-      "to the solution, at which the active set iteration stops.",
-      Patterns::Double(1e-14, 0.1));
+      "to the solution, at which the active set and linear iterations stop. "
+      "0: `Error control/Algebraic fraction' of the estimated discretisation "
+      "error.",
+      Patterns::Double(0., 0.1));
     prm.add_parameter("Maximal contact iterations",
                       maximal_iterations,
                       "The run ends with an error when a step needs more.",
                       Patterns::Integer(1));
+  }
+
+
+
+  void
+  ErrorControlParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Error bar",
+                      error_bar,
+                      "Estimate the error of every step in the energy norm: "
+                      "of the mesh, of the time steps, of the iterations and "
+                      "of the initial data.");
+    prm.add_parameter("Algebraic fraction",
+                      algebraic_fraction,
+                      "Where `Solver/Contact tolerance' is 0: the iterations "
+                      "of a step stop when the bound on their error is this "
+                      "fraction of the estimated discretisation error.",
+                      Patterns::Double(1e-6, 0.5));
+    prm.add_parameter("Two-level comparison",
+                      two_level_comparison,
+                      "Run the scene also with twice the mesh width and twice "
+                      "the time steps, and give each quantity of interest "
+                      "with the uncertainty that follows.");
+  }
+
+
+
+  void
+  StudyParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Levels",
+                      levels,
+                      "Runs of each ladder. Each level halves what the ladder "
+                      "refines.",
+                      Patterns::Integer(2, 12));
+    prm.add_parameter("Ladders",
+                      ladders,
+                      "What is refined: the mesh alone, the time steps alone, "
+                      "or both.",
+                      Patterns::List(Patterns::Selection("space|time|both"),
+                                     1,
+                                     3));
+    prm.add_parameter("Strategies",
+                      strategies,
+                      "Uniform refinement, or adaptive refinement by the "
+                      "residual estimator with as many cells.",
+                      Patterns::List(Patterns::Selection("uniform|adaptive"),
+                                     1,
+                                     2));
+    prm.add_parameter("Time schemes",
+                      time_schemes,
+                      "Values of `Time/Scheme' to compare, separated by "
+                      "commas; that of the scene if empty.");
+    prm.add_parameter("Stress histories",
+                      stress_histories,
+                      "Values of `Material/Stress history' to compare, "
+                      "separated by commas; that of the scene if empty.");
+    prm.add_parameter("Target errors",
+                      target_errors,
+                      "Relative errors for which the price list names the "
+                      "cheapest run.",
+                      Patterns::List(Patterns::Double(1e-12, 1.), 1));
+    prm.add_parameter("Budget",
+                      budget,
+                      "The study begins no run that is not expected to end "
+                      "within this time. Unit: seconds.",
+                      Patterns::Double(1.));
   }
 
 
@@ -325,5 +424,32 @@ namespace Viscoplastic
                       "Points of the body, coordinates separated by commas and "
                       "points by semicolons, whose displacement goes into "
                       "statistics.csv. Unit: length.");
+  }
+
+
+
+  void
+  CheckpointParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Every n steps",
+                      every_n_steps,
+                      "Steps between checkpoints, from which --restart goes on "
+                      "after an interruption; 0 for none.",
+                      Patterns::Integer(0));
+    prm.add_parameter("Wall time interval",
+                      wall_time_interval,
+                      "Time between checkpoints by the clock on the wall; they "
+                      "are written at the end of a step. 0 for none. Unit: "
+                      "seconds.",
+                      Patterns::Double(0.));
+    prm.add_parameter("Directory",
+                      directory,
+                      "Where checkpoints go; empty for `checkpoint' in the "
+                      "directory of the results.");
+    prm.add_parameter("Keep",
+                      keep,
+                      "How many of the last checkpoints are kept. The older "
+                      "ones are for the case that the last one is damaged.",
+                      Patterns::Integer(1));
   }
 } // namespace Viscoplastic

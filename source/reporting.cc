@@ -108,7 +108,7 @@ namespace Viscoplastic
     const double balance_defect = size > 0. ? balance.norm() / size : 0.;
     if (!is_initial && !balance_is_doubtful &&
         balance_defect >
-          std::max(1e-8, 1e3 * parameters.solver.contact_tolerance))
+          std::max(1e-8, 1e3 * parameters.solver.strict_tolerance()))
       {
         balance_is_doubtful = true;
         std::ostringstream text;
@@ -207,7 +207,7 @@ namespace Viscoplastic
             row.add(std::string("wall_") + name, now - last_seconds[name]);
             last_seconds[name] = now;
           }
-        row.add("wall_total", run_timer.wall_time());
+        row.add("wall_total", earlier_seconds + run_timer.wall_time());
         row.end_row();
       }
 

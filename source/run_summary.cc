@@ -104,7 +104,8 @@ namespace Viscoplastic
       {"estimate", "adaptivity: error estimate"},
       {"adaptation", "adaptivity: new meshes with their set-up"},
       {"balance", "energies, reactions, statistics.csv"},
-      {"output", "fields for ParaView"}};
+      {"output", "fields for ParaView"},
+      {"checkpoint", "checkpoints"}};
     std::map<std::string, double> remaining(seconds);
     double                        rest = total;
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 
+#include <viscoplastic_contact/checkpoint_store.h>
 #include <viscoplastic_contact/statistics.h>
 
+#include <filesystem>
 #include <iomanip>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -14,6 +17,45 @@ namespace Viscoplastic
     , file(file_name)
   {
     AssertThrow(file, ExcMessage("The file '" + name + "' cannot be written."));
+  }
+
+
+
+  Statistics::Statistics(const std::string &file_name,
+                         const unsigned int last_step)
+    : name(file_name)
+  {
+    std::ifstream  old_file(name, std::ios::binary);
+    std::string    line;
+    std::uintmax_t size     = 0;
+    const auto     get_line = [&]() {
+      // A line without its end is unfinished.
+      if (!std::getline(old_file, line) || old_file.eof())
+        return false;
+      size += line.size() + 1;
+      return true;
+    };
+    unsigned int n_rows = 0;
+    if (get_line())
+      {
+        std::istringstream header(line);
+        std::string        column;
+        while (std::getline(header, column, ','))
+          columns.push_back(column);
+        while (n_rows <= last_step && get_line() &&
+               line.compare(0, line.find(','), std::to_string(n_rows)) == 0)
+          ++n_rows;
+      }
+    AssertThrow(n_rows == last_step + 1,
+                ExcMessage("The rows up to step " + std::to_string(last_step) +
+                           ", with which the run would go on, are not in '" +
+                           name + "'."));
+    old_file.close();
+    std::error_code error;
+    std::filesystem::resize_file(name, size, error);
+    file.open(name, std::ios::app);
+    AssertThrow(!error && file,
+                ExcMessage("The file '" + name + "' cannot be written."));
   }
 
 
@@ -38,17 +80,29 @@ namespace Viscoplastic
           }
         file << '\n';
       }
-    AssertDimension(columns.size(), row.size());
+    bool same = columns.size() == row.size();
+    for (unsigned int i = 0; same && i < row.size(); ++i)
+      same = columns[i] == row[i].first;
+    AssertThrow(same,
+                ExcMessage("The columns of '" + name +
+                           "' are not those of this run, which cannot go on "
+                           "with it."));
     file << std::setprecision(12);
     for (unsigned int i = 0; i < row.size(); ++i)
-      {
-        Assert(columns[i] == row[i].first, ExcInternalError());
-        file << (i == 0 ? "" : ",") << row[i].second;
-      }
+      file << (i == 0 ? "" : ",") << row[i].second;
     file << std::endl;
     AssertThrow(file,
                 ExcMessage("Writing to '" + name +
                            "' failed; is the disk full?"));
     row.clear();
+  }
+
+
+
+  void
+  Statistics::synchronise()
+  {
+    // The stream has no buffer left: end_row() flushes.
+    Viscoplastic::synchronise(name);
   }
 } // namespace Viscoplastic

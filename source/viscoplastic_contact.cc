@@ -93,10 +93,15 @@ namespace Viscoplastic
     , console(console)
     , out(console.stream(), Utilities::MPI::this_mpi_process(communicator) == 0)
     , scene(parameters)
-    , triangulation(communicator)
+    // Always rebuilt from its coarse cells: then the order of cells, and with
+    // it the rounding of sums, does not depend on the history of the mesh.
+    , triangulation(communicator,
+                    Triangulation<dim>::none,
+                    parallel::distributed::Triangulation<
+                      dim>::mesh_reconstruction_after_repartitioning)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
-    , contact_solver(parameters.solver.contact_tolerance,
+    , contact_solver(parameters.solver.strict_tolerance(),
                      parameters.solver.maximal_iterations)
     , progress(console, scene.schedule.n_steps())
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
@@ -105,14 +110,57 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
-  ViscoplasticContact<dim>::run()
+  std::string
+  ViscoplasticContact<dim>::run(const CommandLine::Restart restart)
   {
     make_mesh();
+    if (const auto checkpoint = find_checkpoint(restart))
+      {
+        resume(*checkpoint);
+        if (state.n == scene.schedule.n_steps())
+          {
+            out << "This is the last step: there is nothing left to do."
+                << std::endl;
+            return "";
+          }
+      }
+    else
+      begin();
+
+    const SignalRequests signals;
+    const unsigned int   every_n_steps = parameters.refinement.every_n_steps;
+    while (state.n < scene.schedule.n_steps())
+      {
+        const TimeStep time_step = scene.schedule.step(state.n + 1);
+        if (scene.is_adaptive() && state.n > 0 && state.n % every_n_steps == 0)
+          adapt_mesh();
+        Step step = advance(state, forces, time_step);
+        if (scene.is_adaptive())
+          estimate(step.state);
+        record(state, step, time_step);
+        state  = std::move(step.state);
+        forces = std::move(step.forces);
+        if (output->is_due(time_step))
+          write_fields();
+        const std::string interruption = keep_checkpoints(signals);
+        if (!interruption.empty())
+          return interruption;
+      }
+    close();
+    return "";
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::begin()
+  {
     set_up();
     set_initial_state();
     check_steps();
     output.emplace(scene, communicator);
+    begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       statistics =
         std::make_unique<Statistics>(output->directory() + "statistics.csv");
@@ -125,23 +173,6 @@ namespace Viscoplastic
                  {}};
     record(state, initial, {0, 0., 0., 0.});
     write_fields();
-
-    for (unsigned int n = 1; n <= scene.schedule.n_steps(); ++n)
-      {
-        const TimeStep time_step = scene.schedule.step(n);
-        Step           step      = advance(state, forces, time_step);
-        if (scene.is_adaptive())
-          estimate(step.state);
-        record(state, step, time_step);
-        state  = std::move(step.state);
-        forces = std::move(step.forces);
-        if (output->is_due(time_step))
-          write_fields();
-        if (scene.is_adaptive() && n < scene.schedule.n_steps() &&
-            n % parameters.refinement.every_n_steps == 0)
-          adapt_mesh();
-      }
-    close();
   }
 
 
@@ -409,7 +440,7 @@ namespace Viscoplastic
               }
           }
         report.linear_iterations =
-          d.solver->solve(right_side, u, parameters.solver.contact_tolerance);
+          d.solver->solve(right_side, u, parameters.solver.strict_tolerance());
       }
 
     new_state.u        = space.ghosted_vector();

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/face_matrix.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace Viscoplastic
@@ -25,6 +26,28 @@ namespace Viscoplastic
   {
   public:
     virtual ~BulkSolver() = default;
+
+    /// What a solver knows from earlier solves and uses in later ones, beyond
+    /// the matrix: how a preconditioner was built, and how it is doing.
+    struct Memory
+    {
+      /// For which truncation.
+      FaceTruncation built_for;
+      double         best_rate = 0., lost_iterations = 0.;
+      bool           is_fresh = false;
+    };
+
+    /// Nothing if all solves are alike.
+    virtual std::optional<Memory>
+    memory() const
+    {
+      return {};
+    }
+
+    /// Go on like the solver that had this memory, on the same mesh.
+    virtual void
+    recall(const Memory &)
+    {}
 
     /// For the user: "direct (CHOLMOD)".
     virtual std::string

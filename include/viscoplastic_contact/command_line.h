@@ -25,6 +25,15 @@ namespace Viscoplastic
     /// `Section/Entry=value', in their order.
     std::vector<std::string> overrides;
     bool                     quiet = false;
+    /// Whether to go on from a checkpoint: not at all, from one that must be
+    /// there, or from one if there is any.
+    enum class Restart
+    {
+      no,
+      yes,
+      automatic
+    };
+    Restart restart = Restart::no;
     /// Name of the log file; empty for none.
     std::string log;
   };

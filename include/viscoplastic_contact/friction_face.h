@@ -123,6 +123,9 @@ namespace Viscoplastic
       return projector == other.projector;
     }
 
+    bool
+    has_springs() const;
+
     /// x := projector x, node by node.
     void
     project(const FrictionFace &face, Vector<double> &x) const;

@@ -38,6 +38,12 @@ namespace Viscoplastic
     std::string
     name() const override;
 
+    std::optional<Memory>
+    memory() const override;
+
+    void
+    recall(const Memory &memory) override;
+
     unsigned int
     solve(const DistributedVector &load,
           DistributedVector       &u,

@@ -11,6 +11,12 @@
 
 namespace Viscoplastic
 {
+  /// `Output/Directory', or what it is by default; ends with a slash.
+  std::string
+  results_directory(const Parameters &parameters);
+
+
+
   /**
    * Results in one directory: fields of the body (solution.pvd) and of Gamma_3
    * (contact.pvd) as VTU series, and what is needed to reproduce the run
@@ -25,6 +31,17 @@ namespace Viscoplastic
      * ExcMessage if the directory cannot be written.
      */
     Output(const Scene<dim> &scene, const MPI_Comm communicator);
+
+    /// Go on after the outputs at the times @p earlier: the series list these
+    /// and no later ones. On all ranks.
+    void
+    resume(const std::vector<double> &earlier);
+
+    const std::vector<double> &
+    output_times() const
+    {
+      return times;
+    }
 
     const std::string &
     directory() const
@@ -57,6 +74,9 @@ namespace Viscoplastic
                   const ContactFace<dim>     *face);
     void
     write_pvd(const std::string &name) const;
+    /// Remove pieces of outputs that do not count, on rank 0.
+    void
+    remove_later(const std::string &name) const;
 
     const Scene<dim>   &scene;
     const MPI_Comm      communicator;

@@ -50,11 +50,19 @@ namespace Viscoplastic
     std::map<unsigned int, MaterialParameters> materials;
     LoadParameters                             loads;
     InitialStateParameters                     initial_state;
+    ExactSolutionParameters                    exact_solution;
     std::map<unsigned int, BoundaryParameters> boundaries;
     TimeParameters                             time;
     SolverParameters                           solver;
+    ErrorControlParameters                     error_control;
     RefinementParameters                       refinement;
     OutputParameters                           output;
+    CheckpointParameters                       checkpoint;
+    StudyParameters                            study;
+
+    /// The value of every entry, by `Section/Subsection/Entry'.
+    std::map<std::string, std::string>
+    values() const;
 
     /// The same with every entry, for law parameters and for the record.
     mutable ParameterHandler handler;

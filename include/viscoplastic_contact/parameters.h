@@ -70,6 +70,16 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
+  /// A known solution: to measure errors, or to make up a problem from.
+  struct ExactSolutionParameters
+  {
+    std::string displacement, stress;
+    std::string data = "scene";
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
   struct BoundaryParameters
   {
     std::string role = "not given";
@@ -88,6 +98,7 @@ namespace Viscoplastic
   struct TimeParameters
   {
     std::string phases = "1: 10";
+    std::string scheme = "forward Euler";
 
     void
     declare(ParameterHandler &prm);
@@ -95,9 +106,42 @@ namespace Viscoplastic
 
   struct SolverParameters
   {
-    std::string  linear_solver      = "automatic";
-    double       contact_tolerance  = 1e-8;
+    std::string linear_solver = "automatic";
+    /// 0: coupled to the estimated discretisation error.
+    double       contact_tolerance  = 0.;
     unsigned int maximal_iterations = 200;
+
+    /// Where there is no estimate to be coupled to.
+    double
+    strict_tolerance() const
+    {
+      return contact_tolerance > 0. ? contact_tolerance : 1e-8;
+    }
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
+  struct ErrorControlParameters
+  {
+    bool   error_bar            = true;
+    double algebraic_fraction   = 0.05;
+    bool   two_level_comparison = false;
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
+  /// Of the ladders of runs of the study mode.
+  struct StudyParameters
+  {
+    unsigned int levels     = 4;
+    std::string  ladders    = "space, time, both";
+    std::string  strategies = "uniform";
+    std::string  time_schemes;
+    std::string  stress_histories;
+    std::string  target_errors = "0.1, 0.03, 0.01, 0.003";
+    double       budget        = 3600.;
 
     void
     declare(ParameterHandler &prm);
@@ -118,6 +162,17 @@ namespace Viscoplastic
 
     void
     check() const;
+  };
+
+  struct CheckpointParameters
+  {
+    unsigned int every_n_steps      = 0;
+    double       wall_time_interval = 0.;
+    std::string  directory;
+    unsigned int keep = 2;
+
+    void
+    declare(ParameterHandler &prm);
   };
 
   struct OutputParameters

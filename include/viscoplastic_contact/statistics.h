@@ -19,6 +19,13 @@ namespace Viscoplastic
     /// Throws ExcMessage if @p file cannot be written.
     explicit Statistics(const std::string &file);
 
+    /**
+     * Go on after the row of step @p last_step of a file, whose first column
+     * counts steps from 0; drops the rows after it. Throws ExcMessage if a row
+     * up to it is missing, before anything changes.
+     */
+    Statistics(const std::string &file, const unsigned int last_step);
+
     /// Append a value to the present row; integers print as such.
     void
     add(const std::string &column, const double value);
@@ -34,9 +41,14 @@ namespace Viscoplastic
         add(column + "_" + "xyz"[d], value[d]);
     }
 
-    /// Write the row. Throws ExcMessage if that fails, e.g. on a full disk.
+    /// Write the row. Throws ExcMessage if that fails, e.g. on a full disk, or
+    /// if the columns are not those of the rows before.
     void
     end_row();
+
+    /// Put all rows to disk. Throws ExcMessage.
+    void
+    synchronise();
 
   private:
     std::string                                 name;

@@ -7,6 +7,8 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 
+#include <viscoplastic_contact/checkpoint_store.h>
+#include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/console.h>
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/contact_solver.h>
@@ -18,6 +20,7 @@
 #include <viscoplastic_contact/point_probe.h>
 #include <viscoplastic_contact/progress.h>
 #include <viscoplastic_contact/run_summary.h>
+#include <viscoplastic_contact/signals.h>
 #include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
 
@@ -32,7 +35,8 @@ namespace Viscoplastic
    * the order in which its collaborators work:
    *
    *     state at t_{n-1} -> rate of z -> load -> contact solver
-   *                      -> statistics, output -> mesh adaptation
+   *                      -> statistics, output, checkpoint
+   *                      -> mesh adaptation, before the next step
    *
    * Displacements are FE_Q(1). Stresses and z are FE_DGQ(0), or live at the
    * quadrature points: tensors for each owned cell (see StressSampling), whose
@@ -45,8 +49,10 @@ namespace Viscoplastic
     /// Throws ExcMessage with a sentence for the user, as run() does.
     ViscoplasticContact(const Parameters &parameters, Console &console);
 
-    void
-    run();
+    /// Returns a sentence if a signal has ended the run early, after a
+    /// checkpoint.
+    std::string
+    run(const CommandLine::Restart restart = CommandLine::Restart::no);
 
     /**
      * Everything that can be known without solving: validates the scene with
@@ -114,6 +120,10 @@ namespace Viscoplastic
       unsigned int contact_iterations = 0, linear_iterations = 0;
     };
 
+    /// From the start: everything up to the initial state.
+    void
+    begin();
+
     void
     make_mesh();
 
@@ -163,6 +173,37 @@ namespace Viscoplastic
     /// 1/2 int E^-1 sigma : sigma.
     double
     stored_energy(const State<dim> &of, const Forces<dim> &its_forces) const;
+
+    // Checkpoints: source/restart.cc.
+
+    /// Where the scene keeps its checkpoints.
+    CheckpointStore
+    checkpoints() const;
+
+    /// Remove those of an earlier run, which go with its results.
+    void
+    begin_checkpoints();
+
+    /// The checkpoint to go on from, if the run is to go on and there is one.
+    std::optional<CheckpointManifest>
+    find_checkpoint(const CommandLine::Restart restart);
+
+    /// From a checkpoint: what begin() does, and all steps up to there.
+    void
+    resume(const CheckpointManifest &checkpoint);
+
+    /// Write a checkpoint at the end of a step if it is time for it, or a
+    /// signal has asked for it. Returns a sentence if the run is to end.
+    std::string
+    keep_checkpoints(const SignalRequests &signals);
+
+    void
+    write_checkpoint();
+
+    /// Write to, or read from, an archive what is the same on all ranks.
+    template <typename Archive>
+    void
+    exchange(Archive &archive);
 
     // Reporting: source/reporting.cc.
 
@@ -215,5 +256,8 @@ namespace Viscoplastic
     std::map<std::string, double> last_seconds;
     double                        first_set_up_seconds = 0.;
     Timer                         run_timer;
+    /// Wall time of the run before its last restart, and at its last
+    /// checkpoint.
+    double earlier_seconds = 0., last_checkpoint = 0.;
   };
 } // namespace Viscoplastic

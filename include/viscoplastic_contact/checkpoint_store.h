@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// What a checkpoint says of itself.
+  struct CheckpointManifest
+  {
+    /// Number and time of the step at whose end it was written.
+    unsigned int n         = 0;
+    double       t         = 0.;
+    unsigned int dimension = 0, n_ranks = 0;
+    /// Of the program that wrote it.
+    std::string version;
+    /// Every parameter of the run, by `Section/Entry'.
+    std::map<std::string, std::string> parameters;
+
+    struct File
+    {
+      std::string   name;
+      std::uint64_t size     = 0;
+      std::uint32_t checksum = 0;
+    };
+    std::vector<File> files;
+  };
+
+
+
+  /**
+   * The checkpoints of a run: a directory with a subdirectory `step_000012' for
+   * each of the last ones, which holds any number of files and a manifest with
+   * their sizes and checksums.
+   *
+   * A checkpoint comes into being as a whole: it is written into a directory of
+   * another name, put to disk (fsync), and renamed. Whatever ends the program
+   * at whatever instant, the checkpoints before it are untouched. Member
+   * functions are collective; errors are ExcMessage on all ranks.
+   */
+  class CheckpointStore
+  {
+  public:
+    CheckpointStore(const std::string &directory, const MPI_Comm communicator);
+
+    const std::string directory; // ends with a slash
+
+    /// The name under which a checkpoint of step @p n is kept.
+    std::string
+    path(const unsigned int n) const;
+
+    /// Make the directory, so that a place that cannot be had shows at once.
+    void
+    make_directory() const;
+
+    /**
+     * Write the files that each rank gives, by name, and remove all but the
+     * newest @p n_kept checkpoints. The manifest's files are filled in.
+     */
+    void
+    write(CheckpointManifest                        manifest,
+          const std::map<std::string, std::string> &files_of_this_rank,
+          const unsigned int                        n_kept) const;
+
+    /**
+     * The newest checkpoint whose files are all there and have their checksums,
+     * if any; @p remarks takes a sentence for each that has been passed over.
+     */
+    std::optional<CheckpointManifest>
+    newest(std::vector<std::string> &remarks) const;
+
+    /// The contents of a file of a checkpoint, checked again. Not collective.
+    std::string
+    read(const CheckpointManifest &manifest, const std::string &name) const;
+
+    /// Remove checkpoints after step @p n, and what has been left of unfinished
+    /// ones. Returns how many checkpoints went.
+    unsigned int
+    remove_after(const unsigned int n) const;
+
+    /// Remove all checkpoints.
+    unsigned int
+    remove_all() const;
+
+  private:
+    /// Steps that have a checkpoint, valid or not, in ascending order. On rank
+    /// 0 only.
+    std::vector<unsigned int>
+    steps() const;
+
+    unsigned int
+    remove_if(const bool all, const unsigned int after) const;
+
+    const MPI_Comm     communicator;
+    const unsigned int rank, n_ranks;
+  };
+
+
+
+  /// Put a file to disk, with what other streams have written into it. Throws
+  /// ExcMessage.
+  void
+  synchronise(const std::string &file);
+} // namespace Viscoplastic

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <mpi.h>
+
+namespace Viscoplastic
+{
+  /**
+   * While an object of this class lives, SIGUSR1 asks for a checkpoint, and
+   * SIGTERM and SIGINT ask the run to end after one. A second SIGTERM or SIGINT
+   * ends the process at once. There must not be two objects at a time.
+   */
+  class SignalRequests
+  {
+  public:
+    SignalRequests();
+    ~SignalRequests();
+
+    SignalRequests(const SignalRequests &) = delete;
+    SignalRequests &
+    operator=(const SignalRequests &) = delete;
+
+    struct Request
+    {
+      bool checkpoint = false;
+      /// Null unless the run is to end: "SIGTERM" or "SIGINT".
+      const char *stop = nullptr;
+    };
+
+    /**
+     * What has been asked of any rank since the last call, the same on all of
+     * them; @p checkpoint adds a wish of this rank. Collective.
+     */
+    Request
+    agree(const MPI_Comm communicator, const bool checkpoint) const;
+  };
+
+
+
+  /// A write beyond the limit on file sizes (`ulimit -f') shall fail like one
+  /// on a full disk, not end the process.
+  void
+  ignore_file_size_signal();
+} // namespace Viscoplastic

@@ -1,0 +1,807 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs that are interrupted and go on give the results of runs that are not.
+
+On the same number of ranks that is meant bit by bit: every number of
+statistics.csv but the wall times, and every VTU file but the date in it.
+
+RESTART_KILLS sets how many instants the kill test tries, and
+RESTART_MUTATIONS how many damaged checkpoints; both are small by default.
+"""
+
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from harness import (
+    DEFECTS,
+    EFFORT,
+    EXECUTABLE,
+    MPIRUN,
+    Run,
+    TestCase,
+    as_prm,
+    main,
+    scene_file,
+)
+
+N_KILLS = int(os.environ.get("RESTART_KILLS", 6))
+N_MUTATIONS = int(os.environ.get("RESTART_MUTATIONS", 12))
+
+SLAB = {
+    "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
+    "Time/Phases": "1: 8, 2: 8",
+    "Output/Fields every": 3,
+}
+EVERY_STEP = {"Checkpoint/Every n steps": 1, "Checkpoint/Keep": 1000}
+
+
+class Job:
+    """A scene in a directory of its own, to be run several times."""
+
+    def __init__(self, scene, overrides=None, copy_of=None):
+        self.work = Path(tempfile.mkdtemp(prefix=f"restart_{scene}_"))
+        self.results = self.work / "results"
+        self.checkpoints = self.results / "checkpoint"
+        self.scene = scene
+        self.overrides = dict(overrides or {})
+        if copy_of is not None:
+            shutil.copytree(copy_of.results, self.results)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.work, ignore_errors=True)
+
+    def command(self, *options, ranks=1, **overrides):
+        file = self.work / f"{self.scene}.prm"
+        file.write_text(scene_file(self.scene).read_text())
+        variant = self.work / "overrides.prm"
+        variant.write_text(
+            as_prm(
+                {
+                    "Output/Directory": self.results,
+                    **self.overrides,
+                    **{k.replace("__", "/"): v for k, v in overrides.items()},
+                }
+            )
+        )
+        command = [EXECUTABLE, *options, str(file), str(variant)]
+        return command if ranks == 1 else MPIRUN + ["-n", str(ranks)] + command
+
+    def start(self, *options, ranks=1, overrides=None, **arguments):
+        return subprocess.Popen(
+            self.command(*options, ranks=ranks, **(overrides or {})),
+            cwd=self.work,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
+            **arguments,
+        )
+
+    def run(self, *options, code=0, **arguments):
+        process = self.start(*options, **arguments)
+        process.stdout, process.stderr = process.communicate()
+        if code is not None and process.returncode != code:
+            raise AssertionError(
+                f"{self.scene} {options}: exit code {process.returncode}, not "
+                f"{code}:\n{process.stdout[-1000:]}\n{process.stderr[-3000:]}"
+            )
+        return Run(self.results, process)
+
+    def steps(self):
+        return sorted(
+            int(path.name[5:])
+            for path in self.checkpoints.glob("step_*")
+            if path.name[5:].isdigit()
+        )
+
+    def step(self, n):
+        return self.checkpoints / f"step_{n:06}"
+
+    def forget_after(self, n):
+        """As if the run had been killed before the next checkpoint."""
+        for later in self.steps():
+            if later > n:
+                shutil.rmtree(self.step(later))
+
+
+def without_wall_times(file):
+    rows = [line.split(",") for line in file.read_text().splitlines()]
+    keep = [i for i, name in enumerate(rows[0]) if not name.startswith("wall_")]
+    return [[row[i] for i in keep] for row in rows]
+
+
+def without_comments(file):
+    """deal.II writes the date into a comment."""
+    return re.sub(rb"<!--.*?-->", b"", file.read_bytes(), flags=re.DOTALL)
+
+
+def series(directory):
+    return sorted(
+        path.name
+        for path in directory.iterdir()
+        if path.suffix in (".vtu", ".pvtu", ".pvd")
+    )
+
+
+class RestartCase(TestCase):
+    def assertIdentical(self, directory, reference, what=""):
+        self.assertEqual(
+            without_wall_times(directory / "statistics.csv"),
+            without_wall_times(reference / "statistics.csv"),
+            f"{what}: statistics.csv",
+        )
+        self.assertEqual(series(directory), series(reference), what)
+        for name in series(reference):
+            self.assertEqual(
+                without_comments(directory / name),
+                without_comments(reference / name),
+                f"{what}: {name}",
+            )
+
+    def assertOneSentence(self, message, *names):
+        for name in names:
+            self.assertRegex(message, f"(?is){name}")
+        lines = [line for line in message.splitlines() if line.strip()]
+        self.assertEqual(len(lines), 1, f"not one sentence: {message}")
+        self.assertNotIn("Stacktrace", message)
+
+
+class Identical(RestartCase):
+    """From a checkpoint in the middle to the end, on the same ranks."""
+
+    def check(self, scene, overrides, after, ranks=1):
+        with Job(scene, {**overrides, **EVERY_STEP}) as reference:
+            reference.run(ranks=ranks)
+            for n in after:
+                with Job(scene, reference.overrides, reference) as job:
+                    job.forget_after(n)
+                    job.run("--restart", ranks=ranks)
+                    self.assertIdentical(
+                        job.results, reference.results, f"{scene} after {n}"
+                    )
+
+    def test_slab(self):
+        self.check("slab", SLAB, (1, 7, 12))
+
+    def test_slab_with_multigrid(self):
+        """The hierarchy is that of an earlier stick set, and must be again."""
+        self.check("slab", {**SLAB, "Solver/Linear solver": "multigrid"}, (1, 7, 12))
+
+    def test_slab_two_ranks(self):
+        self.check("slab", SLAB, (7,), ranks=2)
+
+    def test_pad_with_multigrid(self):
+        """In 3D the hierarchy knows the springs of slipping points, too."""
+        overrides = {
+            "Geometry/Arguments": "6, 6, 6 : 0, 0, 0 : 1, 1, 1 : true",
+            "Time/Phases": "1.5: 10",
+            "Solver/Linear solver": "multigrid",
+        }
+        self.check("pad", overrides, (4, 8))
+
+    def test_adaptive_slab(self):
+        overrides = {"Time/Phases": "1: 8, 2: 8", "Output/Fields every": 3}
+        self.check("slab_adaptive", overrides, (1, 6, 11))
+
+    def test_adaptive_slab_two_ranks(self):
+        overrides = {"Time/Phases": "1: 8, 2: 8", "Output/Fields every": 3}
+        self.check("slab_adaptive", overrides, (6, 11), ranks=2)
+
+    def test_adaptive_pad(self):
+        overrides = {"Time/Phases": "1.5: 8", "Mesh refinement/Cell budget": 500}
+        self.check("pad_adaptive", overrides, (1, 4))
+
+    def test_adaptive_pad_two_ranks(self):
+        overrides = {"Time/Phases": "1.5: 8", "Mesh refinement/Cell budget": 500}
+        self.check("pad_adaptive", overrides, (4,), ranks=2)
+
+    def test_moving_foundation(self):
+        self.check("conveyor_2d", {"Time/Phases": "1: 5, 2: 5"}, (3, 7))
+
+    def test_moving_foundation_adaptive(self):
+        overrides = {
+            "Time/Phases": "1: 5, 2: 5",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Maximal level": 2,
+        }
+        self.check("conveyor_2d", overrides, (4,))
+
+    def test_history_at_quadrature_points(self):
+        """With an initial displacement: u0 is part of the state, too."""
+        overrides = {"Time/Phases": "2.6: 10", "Output/Fields every": 4}
+        self.check("cantilever_creep", overrides, (1, 5))
+
+    def test_history_at_quadrature_points_adaptive(self):
+        overrides = {
+            "Time/Phases": "2.6: 10",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Maximal level": 2,
+        }
+        self.check("cantilever_creep", overrides, (5,), ranks=2)
+
+    def test_elastic_body_that_rests(self):
+        """A step without change is not solved; the restart knows that."""
+        self.check("elastic_frictionless", {}, (2,))
+
+
+class OtherRanks(RestartCase):
+    AGREE = 1e-7
+
+    def compare(self, scene, overrides, after, ranks):
+        overrides = {**overrides, **EVERY_STEP, "Solver/Contact tolerance": 1e-10}
+        with Job(scene, overrides) as reference:
+            expected = reference.run(ranks=ranks[0])
+            for n in ranks[1:]:
+                with Job(scene, overrides, reference) as job:
+                    job.forget_after(after)
+                    result = job.run("--restart", ranks=n)
+                    self.assertRegex(result.stdout, "Note: the checkpoint is from")
+                    for name, column in expected.statistics.items():
+                        if name in EFFORT | DEFECTS or name.startswith("wall_"):
+                            continue
+                        scale = abs(column[np.isfinite(column)]).max()
+                        if name[-2:] in ("_x", "_y", "_z"):
+                            scale = abs(expected.vector(name[:-2])).max()
+                        self.assertClose(
+                            result[name],
+                            column,
+                            absolute=self.AGREE * scale + 1e-14,
+                            what=f"{scene}, {n} ranks, {name}",
+                        )
+
+    def test_slab(self):
+        self.compare("slab", SLAB, 6, (1, 2, 3))
+
+    def test_adaptive_slab(self):
+        self.compare("slab_adaptive", {"Time/Phases": "1: 8, 2: 8"}, 7, (2, 1, 3))
+
+    def test_adaptive_pad(self):
+        overrides = {"Time/Phases": "1.5: 8", "Mesh refinement/Cell budget": 500}
+        self.compare("pad_adaptive", overrides, 4, (1, 2, 3))
+
+    def test_history_at_quadrature_points(self):
+        self.compare("cantilever_creep", {"Time/Phases": "2.6: 10"}, 5, (3, 1, 2))
+
+
+class Killed(RestartCase):
+    """kill -9 at random instants, also inside writes."""
+
+    OVERRIDES = {
+        "Time/Phases": "1: 8, 2: 8",
+        "Output/Fields every": 1,
+        "Checkpoint/Every n steps": 1,
+    }
+
+    def kill(self, process, instant):
+        try:
+            process.wait(instant)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+        process.communicate()
+        return process.returncode == -signal.SIGKILL
+
+    def test_random_instants(self):
+        chance = random.Random(20001)
+        n_restarted = 0
+        with Job("slab_adaptive", self.OVERRIDES) as reference:
+            begin = time.time()
+            reference.run()
+            duration = time.time() - begin
+            for i in range(N_KILLS):
+                with Job("slab_adaptive", self.OVERRIDES) as job:
+                    instant = chance.uniform(0.1, 1) * duration
+                    self.kill(job.start(), instant)
+                    n_restarted += job.steps() != []
+                    job.run("--restart=auto")
+                    self.assertIdentical(
+                        job.results, reference.results, f"kill {i}, {instant} s"
+                    )
+                    self.assertEqual(len(job.steps()), 2)
+        self.assertGreater(n_restarted, 0)
+
+    def test_inside_of_writes(self):
+        """Killed when a checkpoint is there in part."""
+        chance = random.Random(20002)
+        n_parts = 0
+        with Job("slab_adaptive", self.OVERRIDES) as reference:
+            reference.run()
+            for i in range(N_KILLS):
+                with Job("slab_adaptive", self.OVERRIDES) as job:
+                    process = job.start()
+                    wanted = chance.randrange(2, 14)
+                    part = job.checkpoints / f"step_{wanted:06}.unfinished"
+                    while process.poll() is None and not part.exists():
+                        pass
+                    time.sleep(chance.uniform(0, 0.002))
+                    process.send_signal(signal.SIGKILL)
+                    process.communicate()
+                    n_parts += any(job.checkpoints.glob("*.unfinished"))
+                    job.run("--restart")
+                    self.assertIdentical(
+                        job.results, reference.results, f"kill {i} in step {wanted}"
+                    )
+                    self.assertEqual(list(job.checkpoints.glob("*.unfinished")), [])
+        self.assertGreater(n_parts, 0)
+
+    def test_again_and_again(self):
+        """The same run, killed each time soon after it has got further."""
+        chance = random.Random(20003)
+        with Job("slab_adaptive", self.OVERRIDES) as reference:
+            reference.run()
+            with Job("slab_adaptive", self.OVERRIDES) as job:
+                n_kills, newest = 0, 0
+                while newest < 15:
+                    process = job.start("--restart=auto")
+                    wait_for(
+                        lambda: max(job.steps(), default=0) > newest
+                        or process.poll() is not None
+                    )
+                    n_kills += self.kill(process, chance.uniform(0, 0.1))
+                    newest = max(job.steps())
+                job.run("--restart")
+                self.assertGreater(n_kills, 2)
+                self.assertIdentical(job.results, reference.results)
+
+
+def wait_for(condition, seconds=60):
+    end = time.time() + seconds
+    while not condition():
+        if time.time() > end:
+            raise AssertionError("nothing happened")
+        time.sleep(0.01)
+
+
+def children(pid):
+    tasks = Path(f"/proc/{pid}/task/{pid}/children")
+    return [int(child) for child in tasks.read_text().split()]
+
+
+class Signals(RestartCase):
+    OVERRIDES = {
+        "Geometry/Arguments": "48, 24 : 0, 0 : 2, 1 : true",
+        "Time/Phases": "1: 60, 2: 60",
+        "Output/Fields every": 10,
+    }
+
+    def n_rows(self, job):
+        file = job.results / "statistics.csv"
+        return file.read_text().count("\n") if file.exists() else 0
+
+    def check(self, number, ranks):
+        with Job("slab", self.OVERRIDES) as reference:
+            reference.run(ranks=ranks)
+            self.assertFalse(reference.checkpoints.exists(), "nobody asked")
+            with Job("slab", self.OVERRIDES) as job:
+                process = job.start(ranks=ranks)
+                wait_for(lambda: self.n_rows(job) > 3 or process.poll() is not None)
+                # one rank alone is told
+                pid = process.pid if ranks == 1 else children(process.pid)[-1]
+                os.kill(pid, number)
+                _, message = process.communicate()
+                if number == signal.SIGUSR1:
+                    self.assertEqual(process.returncode, 0, message)
+                    self.assertEqual(len(job.steps()), 1)
+                else:
+                    self.assertEqual(process.returncode, 3, message)
+                    sentence = next(
+                        line for line in message.splitlines() if "--restart" in line
+                    )
+                    self.assertIn(signal.Signals(number).name, sentence)
+                    rows = self.n_rows(job)
+                    self.assertLess(rows, 121)
+                    self.assertEqual(job.steps(), [rows - 2])
+                result = job.run("--restart", ranks=ranks)
+                self.assertIn("Restart after step", result.stdout)
+                self.assertIdentical(job.results, reference.results)
+
+    def test_sigusr1(self):
+        self.check(signal.SIGUSR1, 1)
+
+    def test_sigterm(self):
+        self.check(signal.SIGTERM, 1)
+
+    def test_sigint(self):
+        self.check(signal.SIGINT, 1)
+
+    def test_sigterm_two_ranks(self):
+        self.check(signal.SIGTERM, 2)
+
+    def test_sigusr1_two_ranks(self):
+        self.check(signal.SIGUSR1, 2)
+
+    def test_mpirun_forwards_sigusr1(self):
+        with Job("slab", self.OVERRIDES) as job:
+            process = job.start(ranks=2)
+            wait_for(lambda: self.n_rows(job) > 3)
+            process.send_signal(signal.SIGUSR1)
+            _, message = process.communicate()
+            self.assertEqual(process.returncode, 0, message)
+            self.assertEqual(len(job.steps()), 1)
+
+
+class Triggers(RestartCase):
+    def test_every_n_steps_and_keep(self):
+        with Job("slab", {**SLAB, "Checkpoint/Every n steps": 5}) as job:
+            job.run()
+            # of 5, 10, 15 and the last
+            self.assertEqual(job.steps(), [15, 16])
+
+    def test_wall_time(self):
+        with Job("slab", {**SLAB, "Checkpoint/Wall time interval": 1e-6}) as job:
+            job.run()
+            self.assertEqual(job.steps(), [15, 16])
+
+    def test_no_traces_without_checkpoints(self):
+        with Job("slab", SLAB) as job:
+            job.run()
+            self.assertFalse(job.checkpoints.exists())
+
+    def test_other_directory(self):
+        with Job("slab", {**SLAB, **EVERY_STEP}) as reference, Job(
+            "slab", {**SLAB, **EVERY_STEP}
+        ) as job:
+            reference.run()
+            elsewhere = job.work / "safe" / "place"
+            job.overrides["Checkpoint/Directory"] = elsewhere
+            job.run()
+            self.assertFalse(job.checkpoints.exists())
+            job.checkpoints = elsewhere
+            job.forget_after(4)
+            job.run("--restart")
+            self.assertIdentical(job.results, reference.results)
+
+
+class Damaged(RestartCase):
+    """Checkpoints that are not what was written."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.reference = Job("slab_adaptive", {**SLAB, **EVERY_STEP})
+        cls.reference.run()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.reference.__exit__()
+
+    def falls_back(self, damage):
+        with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+            job.forget_after(9)
+            damage(job.step(9))
+            result = job.run("--restart")
+            self.assertRegex(result.stdout, "Warning: the checkpoint.*step_000009")
+            self.assertRegex(result.stdout, "Restart after step 8 ")
+            self.assertIdentical(job.results, self.reference.results)
+
+    def test_truncated(self):
+        def damage(step):
+            file = step / "fields_00000.bin"
+            os.truncate(file, file.stat().st_size // 2)
+
+        self.falls_back(damage)
+
+    def test_garbled(self):
+        def damage(step):
+            file = step / "run.bin"
+            content = bytearray(file.read_bytes())
+            content[len(content) // 2] ^= 1
+            file.write_bytes(content)
+
+        self.falls_back(damage)
+
+    def test_file_missing(self):
+        self.falls_back(lambda step: (step / "mesh_00000.bin").unlink())
+
+    def test_manifest_missing(self):
+        self.falls_back(lambda step: (step / "manifest.txt").unlink())
+
+    def test_manifest_garbled(self):
+        def damage(step):
+            file = step / "manifest.txt"
+            file.write_text(file.read_text().replace("step 9", "step 8"))
+
+        self.falls_back(damage)
+
+    def test_other_format(self):
+        def damage(step):
+            file = step / "manifest.txt"
+            file.write_text(file.read_text().replace("checkpoint 1", "checkpoint 2"))
+
+        self.falls_back(damage)
+
+    def test_no_valid_one(self):
+        with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+            job.forget_after(1)
+            (job.step(1) / "run.bin").write_bytes(b"")
+            before = (job.results / "statistics.csv").read_text()
+            for option in "--restart", "--restart=auto":
+                result = job.run(option, code=1)
+                self.assertOneSentence(result.stderr, "checkpoint", "step_000001")
+            self.assertEqual((job.results / "statistics.csv").read_text(), before)
+
+    def mutate(self, chance, file):
+        content = bytearray(file.read_bytes())
+        for _ in range(chance.randrange(1, 4)):
+            kind = chance.randrange(4)
+            at = chance.randrange(len(content)) if content else 0
+            if kind == 0 and content:
+                content[at] = chance.randrange(256)
+            elif kind == 1:
+                del content[at:]
+            elif kind == 2:
+                content[at:at] = chance.randbytes(chance.randrange(1, 30))
+            else:
+                content[at : at + 8] = chance.choice(
+                    [b"\xff" * 8, b"\x00" * 8, b"\xff\xff\xff\xff\x00\x00\x00\x00"]
+                )
+        file.write_bytes(content)
+
+    def refuses_or_is_right(self, job, what):
+        result = job.run("--restart", code=None)
+        self.assertIn(result.returncode, (0, 1), f"{what}: {result.stderr}")
+        if result.returncode == 1:
+            self.assertOneSentence(result.stderr)
+        return result
+
+    def test_mutations_are_noticed(self):
+        chance = random.Random(20004)
+        names = "manifest.txt", "run.bin", "mesh_00000.bin", "fields_00000.bin"
+        for i in range(N_MUTATIONS):
+            with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+                job.forget_after(14)
+                for n in job.steps()[:-2]:
+                    shutil.rmtree(job.step(n))
+                name = chance.choice(names)
+                before = (job.step(14) / name).read_bytes()
+                self.mutate(chance, job.step(14) / name)
+                if (job.step(14) / name).read_bytes() == before:
+                    continue
+                result = self.refuses_or_is_right(job, f"mutation {i} of {name}")
+                self.assertEqual(result.returncode, 0)
+                self.assertIn("Restart after step 13 ", result.stdout)
+                self.assertIdentical(job.results, self.reference.results)
+
+    def test_forgeries_do_no_harm(self):
+        """Mutations that have the right checksum: the program may take wrong
+        numbers for true, but it must not crash or hang on them."""
+        chance = random.Random(20005)
+        names = "manifest.txt", "run.bin", "mesh_00000.bin", "fields_00000.bin"
+        refused = 0
+        for i in range(2 * N_MUTATIONS):
+            with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+                job.forget_after(14)
+                name = chance.choice(names)
+                self.mutate(chance, job.step(14) / name)
+                forge(job.step(14))
+                result = self.refuses_or_is_right(job, f"forgery {i} of {name}")
+                refused += result.returncode
+        self.assertGreater(refused, N_MUTATIONS // 2)
+
+    def test_statistics_that_lack_rows(self):
+        with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+            file = job.results / "statistics.csv"
+            file.write_text("\n".join(file.read_text().splitlines()[:5]))
+            result = job.run("--restart", code=1)
+            self.assertOneSentence(result.stderr, "statistics.csv", "step 16")
+
+    def test_half_a_row(self):
+        """The rest of a write that a kill has cut short."""
+        with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+            job.forget_after(7)
+            file = job.results / "statistics.csv"
+            lines = file.read_text().splitlines()
+            file.write_text("\n".join(lines[:9] + [lines[9][:20]]))
+            job.run("--restart")
+            self.assertIdentical(job.results, self.reference.results)
+
+
+def forge(step):
+    """Give the manifest of a checkpoint the checksums that it should have."""
+    manifest = step / "manifest.txt"
+    lines = manifest.read_bytes().split(b"\n")
+    lines = [line for line in lines if line and not line.startswith(b"checksum")]
+    for i, line in enumerate(lines):
+        words = line.split()
+        file = step / words[1].decode(errors="replace") if len(words) > 1 else step
+        if words[:1] == [b"file"] and file.is_file():
+            content = file.read_bytes()
+            sizes = f" {len(content)} {zlib.crc32(content)}"
+            lines[i] = b"file " + words[1] + sizes.encode()
+    text = b"\n".join(lines) + b"\n"
+    manifest.write_bytes(text + f"checksum {zlib.crc32(text)}\n".encode())
+
+
+class Machine(RestartCase):
+    """A limit on the size of files, imposed on the running process, stands for
+    a disk that is full."""
+
+    OVERRIDES = {
+        "Geometry/Arguments": "48, 24 : 0, 0 : 2, 1 : true",
+        "Time/Phases": "1: 60, 2: 60",
+        "Output/Fields every": 0,
+    }
+
+    def fill_disk(self, job, limit):
+        """Run until the third checkpoint, then with that limit."""
+        process = job.start()
+        wait_for(lambda: len(job.steps()) > 2 or process.poll() is not None)
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (limit, limit))
+        _, message = process.communicate()
+        self.assertEqual(process.returncode, 1, message)
+        return message
+
+    def test_checkpoint_fails(self):
+        """The one before it stays and is good."""
+        overrides = {**self.OVERRIDES, **EVERY_STEP}
+        with Job("slab", overrides) as reference:
+            reference.run()
+            limit = (reference.step(6) / "fields_00000.bin").stat().st_size - 1000
+            for name in "parameters.prm", "statistics.csv":
+                self.assertGreater(limit, (reference.results / name).stat().st_size)
+            with Job("slab", overrides) as job:
+                message = self.fill_disk(job, limit)
+                n = len(job.steps())
+                self.assertOneSentence(message, f"checkpoint of step {n + 1}", "large")
+                self.assertEqual(job.steps(), list(range(1, n + 1)))
+                self.assertEqual(list(job.checkpoints.glob("*.unfinished")), [])
+                result = job.run("--restart")
+                self.assertIn(f"Restart after step {n} ", result.stdout)
+                self.assertIdentical(job.results, reference.results)
+
+    def test_statistics_fail(self):
+        overrides = {
+            **SLAB,
+            "Time/Phases": "1: 200, 2: 200",
+            "Output/Fields every": 0,
+            "Checkpoint/Every n steps": 10,
+            "Checkpoint/Keep": 1000,
+        }
+        with Job("slab", overrides) as reference:
+            reference.run()
+            limit = (reference.results / "statistics.csv").stat().st_size // 2
+            for file in (
+                reference.step(10) / "fields_00000.bin",
+                reference.results / "parameters.prm",
+            ):
+                self.assertGreater(limit, file.stat().st_size)
+            with Job("slab", overrides) as job:
+                message = self.fill_disk(job, limit)
+                self.assertOneSentence(message, "statistics.csv", "disk")
+                result = job.run("--restart")
+                self.assertIn("Restart after step", result.stdout)
+                self.assertIdentical(job.results, reference.results)
+
+    def test_unwritable_directory(self):
+        """Found before the first step."""
+        with tempfile.NamedTemporaryFile() as file:
+            with Job("slab", SLAB) as job:
+                job.overrides["Checkpoint/Every n steps"] = 5
+                job.overrides["Checkpoint/Directory"] = f"{file.name}/checkpoints"
+                result = job.run(code=1)
+                self.assertOneSentence(result.stderr, Path(file.name).name)
+                self.assertFalse((job.results / "statistics.csv").exists())
+
+
+class Changes(RestartCase):
+    """Other parameters after the restart."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.reference = Job("slab_adaptive", {**SLAB, **EVERY_STEP})
+        cls.reference.run()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.reference.__exit__()
+
+    def restart(self, code, **overrides):
+        with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+            job.forget_after(9)
+            return job.run("--restart", code=code, overrides=overrides)
+
+    def refused(self, path, value, *names):
+        result = self.restart(1, **{path: value})
+        self.assertOneSentence(result.stderr, *(names or (path, "was")))
+
+    def test_longer_run(self):
+        """Ended, and then carried on: as if it had been one run."""
+        overrides = {**self.reference.overrides, "Time/Phases": "1: 8"}
+        with Job("slab_adaptive", overrides) as job:
+            job.run()
+            job.overrides["Time/Phases"] = "1: 8, 2: 8"
+            # the last state of the short run was an output, step 8 is none
+            # of the long one
+            job.overrides["Output/Fields every"] = 4
+            result = job.run("--restart")
+            self.assertRegex(result.stdout, "Note: changed.*Time/Phases.*was 1: 8")
+            self.assertEqual(
+                without_wall_times(job.results / "statistics.csv"),
+                without_wall_times(self.reference.results / "statistics.csv"),
+            )
+
+    def test_run_that_is_complete(self):
+        with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+            result = job.run("--restart")
+            self.assertIn("nothing left to do", result.stdout)
+            self.assertIdentical(job.results, self.reference.results)
+
+    def test_tolerance_and_output(self):
+        with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+            job.forget_after(9)
+            job.overrides = {
+                **job.overrides,
+                "Solver/Contact tolerance": 1e-9,
+                "Output/Fields every": 2,
+            }
+            result = job.run("--restart")
+            self.assertRegex(result.stdout, "changed.*Fields every.*Contact tolerance")
+
+    def test_geometry(self):
+        self.refused("Geometry/Global refinements", 1)
+
+    def test_role(self):
+        self.refused("Boundary 1/Role", "clamped")
+
+    def test_law(self):
+        self.refused("Material/Law", "elastic")
+
+    def test_history(self):
+        self.refused("Material/Stress history", "quadrature points")
+
+    def test_strategy(self):
+        self.refused("Mesh refinement/Strategy", "none")
+
+    def test_another_boundary(self):
+        self.refused("Boundary 7/Role", "free", "Boundary 7")
+
+    def test_points(self):
+        self.refused("Output/Points", "0, 0; 2, 0")
+
+    def test_past_steps(self):
+        self.refused("Time/Phases", "1: 10, 2: 8", "Time/Phases")
+
+    def test_fewer_steps(self):
+        self.refused("Time/Phases", "1: 8", "Time/Phases")
+
+
+class Begin(RestartCase):
+    def test_restart_without_a_checkpoint(self):
+        with Job("slab", SLAB) as job:
+            result = job.run("--restart", code=1)
+            self.assertOneSentence(result.stderr, "no checkpoint", "results")
+            self.assertFalse(job.results.exists(), "something was written")
+
+    def test_auto_without_a_checkpoint(self):
+        with Job("slab", SLAB) as job:
+            self.assertEqual(len(job.run("--restart=auto")["t"]), 17)
+
+    def test_afresh_removes_old_checkpoints(self):
+        with Job("slab", {**SLAB, **EVERY_STEP}) as job:
+            job.run()
+            job.overrides["Checkpoint/Every n steps"] = 0
+            result = job.run()
+            self.assertRegex(result.stdout, "Note: the checkpoints.*removed")
+            self.assertEqual(job.steps(), [])
+
+    def test_restart_and_check(self):
+        with Job("slab", SLAB) as job:
+            result = job.run("--restart", "--check", code=2)
+            self.assertOneSentence(result.stderr, "--check", "--restart")
+
+
+if __name__ == "__main__":
+    main()

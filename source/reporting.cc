@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
 #include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
@@ -13,6 +14,26 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    void
+    add_errors(const SolutionErrors &errors, Statistics &row)
+    {
+      const auto add = [&row](const std::string   &prefix,
+                              const SolutionNorms &norms) {
+        row.add(prefix + "energy", norms.energy);
+        row.add(prefix + "h1", norms.h1);
+        row.add(prefix + "stress", norms.stress);
+        row.add(prefix + "multiplier", norms.multiplier);
+      };
+      add("error_", errors.error);
+      row.add("error_memory", errors.memory);
+      add("exact_", errors.exact);
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   ViscoplasticContact<dim>::announce() const
@@ -142,6 +163,18 @@ namespace Viscoplastic
                               total_estimate(squared_estimate, communicator) :
                               0.;
     phase.stop();
+    SolutionErrors errors;
+    if (scene.exact_solution)
+      {
+        TimerOutput::Scope errors_phase(timer, "errors");
+        DistributedVector  density;
+        if (d.face)
+          density = d.face->density(step.state.friction);
+        errors =
+          solution_errors(d.sampling, step.state, d.face ? &density : nullptr);
+        summary.largest_error.update(errors.error);
+        summary.largest_exact.update(errors.exact);
+      }
 
     if (statistics)
       {
@@ -199,16 +232,18 @@ namespace Viscoplastic
           row.add("estimator", estimate);
         if (error_bar)
           {
-            const ErrorLedger &errors = step.errors;
-            row.add("energy_norm", errors.energy_norm);
-            row.add("estimate_space", errors.space);
-            row.add("estimate_time", errors.time);
-            row.add("estimate_algebraic", errors.algebraic);
-            row.add("estimate_initial", errors.initial);
-            row.add("estimate_total", errors.total());
-            row.add("time_indicator", errors.time_indicator);
-            row.add("velocity_variation", errors.velocity_variation);
+            const ErrorLedger &ledger = step.errors;
+            row.add("energy_norm", ledger.energy_norm);
+            row.add("estimate_space", ledger.space);
+            row.add("estimate_time", ledger.time);
+            row.add("estimate_algebraic", ledger.algebraic);
+            row.add("estimate_initial", ledger.initial);
+            row.add("estimate_total", ledger.total());
+            row.add("time_indicator", ledger.time_indicator);
+            row.add("velocity_variation", ledger.velocity_variation);
           }
+        if (scene.exact_solution)
+          add_errors(errors, row);
 
         const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
         for (const char *name :

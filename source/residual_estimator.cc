@@ -96,35 +96,6 @@ namespace Viscoplastic
 
 
 
-    /// Whether F or S of a boundary depend on time.
-    template <int dim>
-    bool
-    data_vary(const BoundaryCondition<dim> &condition)
-    {
-      return (condition.traction && condition.traction->depends_on_time()) ||
-             (condition.normal_stress &&
-              condition.normal_stress->depends_on_time());
-    }
-
-
-
-    /// F, or S nu.
-    template <int dim>
-    Tensor<1, dim>
-    given_traction(const BoundaryCondition<dim> &condition,
-                   const Point<dim>             &x,
-                   const double                  t)
-    {
-      if (condition.role == BoundaryRole::traction && condition.traction)
-        return condition.traction->vector(x, t);
-      if (condition.role == BoundaryRole::contact &&
-          condition.friction_law == FrictionLaw::coulomb)
-        return condition.normal_stress->value(x, t) * condition.normal;
-      return {};
-    }
-
-
-
     /// What the data contradict in @p traction = sigma nu: zero in the
     /// directions in which u is prescribed.
     template <int dim>
@@ -140,9 +111,10 @@ namespace Viscoplastic
           case BoundaryRole::clamped:
             break;
           case BoundaryRole::displacement:
+            residual = traction - given;
             for (unsigned int d = 0; d < dim; ++d)
-              if (!condition.displacement[d])
-                residual[d] = traction[d];
+              if (condition.displacement[d])
+                residual[d] = 0.;
             break;
           case BoundaryRole::traction:
           case BoundaryRole::free:
@@ -357,21 +329,21 @@ namespace Viscoplastic
                 space.scene.boundary.at(cell->face(f)->boundary_id());
               if (condition.prescribes_all())
                 continue;
-              BoundaryFace face{number_of(cell),
+              BoundaryFace     face{number_of(cell),
                                 f,
                                 &condition,
                                 cell->face(f)->diameter(),
                                 {},
                                 {},
                                 {}};
+              const FaceShape &shape = shapes[cells[face.cell].shape].faces[f];
               for (unsigned int q = 0; q < n_face_points; ++q)
                 {
-                  const Point<dim> x =
-                    cell->vertex(0) +
-                    shapes[cells[face.cell].shape].faces[f].positions[q];
-                  face.positions[q] = x;
-                  if (!data_vary(condition))
-                    face.data[q] = given_traction(condition, x, 0.);
+                  const Point<dim> x = cell->vertex(0) + shape.positions[q];
+                  face.positions[q]  = x;
+                  if (condition.carries_load() &&
+                      !condition.load_depends_on_time())
+                    face.data[q] = condition.load(x, shape.normals[q], 0.);
                   if (condition.has_friction() &&
                       !condition.bound_depends_on_time())
                     face.bounds[q] = condition.bound(x, 0.);
@@ -591,7 +563,8 @@ namespace Viscoplastic
     const LocalCell              &cell      = cells[face.cell];
     const FaceShape              &shape = shapes[cell.shape].faces[face.face];
     const bool                    friction = condition.has_friction(),
-               varies                      = data_vary(condition),
+               varies =
+                 condition.carries_load() && condition.load_depends_on_time(),
                bounds_vary = friction && condition.bound_depends_on_time();
     Assert(!friction || multiplier_density != nullptr,
            ExcMessage("A scene with friction has multipliers."));
@@ -615,7 +588,7 @@ namespace Viscoplastic
               square += excess * excess * shape.weights[q];
           }
         const Tensor<1, dim> given =
-          varies ? given_traction(condition, face.positions[q], t) :
+          varies ? condition.load(face.positions[q], shape.normals[q], t) :
                    face.data[q];
         square +=
           contradiction(condition, tractions[q], given, density).norm_square() *

@@ -126,29 +126,44 @@ namespace Viscoplastic
                   " at t = " + number(slip_area.t));
     if (capped_volume.value > 0.)
       print_row(out, "volume beyond the cap", with_time(capped_volume));
-    if (!errors)
-      return;
 
-    const auto part = [&](const std::string &name, const double value) {
-      const double       size = errors->largest_energy_norm;
-      std::ostringstream text;
-      text << std::setprecision(2) << std::left << std::setw(9) << value
-           << std::right;
-      if (size > 0.)
-        text << std::setw(8) << 100. * value / size << " %";
-      print_row(out, name, text.str());
-    };
-    out << "Estimated error in the energy norm, largest at t = "
-        << number(errors->t)
-        << " (without what the mesh\nhas done to the memory z of earlier "
-           "steps), and relative to the solution:\n";
-    part("mesh", errors->largest.space);
-    if (viscous_dissipation)
-      part("time steps", errors->largest.time);
-    part("iterations", errors->largest.algebraic);
-    if (errors->largest.initial > 0.)
-      part("initial data", errors->largest.initial);
-    part("sum", errors->largest.total());
+    const auto error =
+      [&](const std::string &name, const double value, const double norm) {
+        if (norm > 0.)
+          print_row(out,
+                    "error of " + name,
+                    number(value) + " (" + number(100. * value / norm) +
+                      " % of the exact solution)");
+      };
+    error("u in energy", largest_error.energy, largest_exact.energy);
+    error("u in H1", largest_error.h1, largest_exact.h1);
+    error("stress in L2", largest_error.stress, largest_exact.stress);
+    error("multiplier in L2",
+          largest_error.multiplier,
+          largest_exact.multiplier);
+    if (errors)
+      {
+        const auto part = [&](const std::string &name, const double value) {
+          const double       size = errors->largest_energy_norm;
+          std::ostringstream text;
+          text << std::setprecision(2) << std::left << std::setw(9) << value
+               << std::right;
+          if (size > 0.)
+            text << std::setw(8) << 100. * value / size << " %";
+          print_row(out, name, text.str());
+        };
+        out << "Estimated error in the energy norm, largest at t = "
+            << number(errors->t)
+            << " (without what the mesh\nhas done to the memory z of earlier "
+               "steps), and relative to the solution:\n";
+        part("mesh", errors->largest.space);
+        if (viscous_dissipation)
+          part("time steps", errors->largest.time);
+        part("iterations", errors->largest.algebraic);
+        if (errors->largest.initial > 0.)
+          part("initial data", errors->largest.initial);
+        part("sum", errors->largest.total());
+      }
   }
 
 

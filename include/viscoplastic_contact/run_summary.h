@@ -5,6 +5,7 @@
 #include <deal.II/base/types.h>
 
 #include <viscoplastic_contact/error_ledger.h>
+#include <viscoplastic_contact/solution_norms.h>
 
 #include <map>
 #include <optional>
@@ -60,6 +61,8 @@ namespace Viscoplastic
     Largest displacement, von_mises, slip_area, capped_volume, tension_area;
     /// Of all friction points.
     double friction_area = 0.;
+    /// Against an exact solution; zero without one.
+    SolutionNorms largest_error, largest_exact;
 
     /// @p coarser: of a run with twice the mesh width and twice the time steps,
     /// or null. The difference is the uncertainty of each quantity, by first

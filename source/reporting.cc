@@ -4,12 +4,14 @@
 #include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
 #include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/reference_fields.h>
 #include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -163,18 +165,9 @@ namespace Viscoplastic
                               total_estimate(squared_estimate, communicator) :
                               0.;
     phase.stop();
-    SolutionErrors errors;
-    if (scene.exact_solution)
-      {
-        TimerOutput::Scope errors_phase(timer, "errors");
-        DistributedVector  density;
-        if (d.face)
-          density = d.face->density(step.state.friction);
-        errors =
-          solution_errors(d.sampling, step.state, d.face ? &density : nullptr);
-        summary.largest_error.update(errors.error);
-        summary.largest_exact.update(errors.exact);
-      }
+    const SolutionErrors errors = measure_errors(step.state);
+    summary.largest_error.update(errors.error);
+    summary.largest_exact.update(errors.exact);
 
     if (statistics)
       {
@@ -230,7 +223,7 @@ namespace Viscoplastic
           row.add_vector("point" + std::to_string(i), point_values[i], dim);
         if (scene.is_adaptive())
           row.add("estimator", estimate);
-        if (scene.exact_solution)
+        if (measures_errors())
           add_errors(errors, row);
 
         const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
@@ -295,6 +288,74 @@ namespace Viscoplastic
       first_set_up_seconds =
         timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
     progress.report(progress_of_step, elapsed);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_references() const
+  {
+    const std::string &directory =
+      parameters.exact_solution.reference_directory;
+    if (directory.empty())
+      return;
+    AssertThrow(!scene.exact_solution,
+                ExcMessage("'Exact solution/Reference directory' and 'Exact "
+                           "solution/Displacement' are both given; errors "
+                           "can be measured against one of them."));
+    for (unsigned int i = 1; i <= scene.schedule.n_phases(); ++i)
+      read_samples<dim>(samples_file(directory, i), communicator);
+  }
+
+
+
+  template <int dim>
+  SolutionErrors
+  ViscoplasticContact<dim>::measure_errors(const State<dim> &of)
+  {
+    const unsigned int phase = scene.schedule.phase_ending_with(of.n);
+    const std::string &reference =
+      parameters.exact_solution.reference_directory;
+    SolutionErrors result;
+    result.error.fill(std::numeric_limits<double>::quiet_NaN());
+    result.exact      = result.error;
+    result.memory     = result.error.energy;
+    const bool writes = parameters.output.reference_fields && phase > 0;
+    if (!writes && !scene.exact_solution && (reference.empty() || phase == 0))
+      return result;
+
+    TimerOutput::Scope       scope(timer, "errors");
+    const Discretisation    &d = *discretisation;
+    DistributedVector        multipliers;
+    const DistributedVector *density = nullptr;
+    if (d.face)
+      {
+        multipliers = d.face->density(of.friction);
+        density     = &multipliers;
+      }
+    if (writes)
+      write_samples(sample_fields(d.sampling, of, density),
+                    samples_file(output->directory(), phase),
+                    communicator);
+    if (scene.exact_solution)
+      result = solution_errors(d.sampling, of, density);
+    else if (!reference.empty() && phase > 0)
+      {
+        const auto samples =
+          read_samples<dim>(samples_file(reference, phase), communicator);
+        std::ostringstream message;
+        message << "'Exact solution/Reference directory': phase " << phase
+                << " of the reference ends at t = " << samples.t
+                << ", that of this run at t = " << of.t
+                << "; 'Time/Phases' must have the same end times.";
+        AssertThrow(std::abs(samples.t - of.t) <= 1e-10 * std::abs(of.t),
+                    ExcMessage(message.str()));
+        const double nothing = result.memory;
+        result               = differences(samples, d.sampling, of, density);
+        result.memory        = nothing;
+      }
+    return result;
   }
 
 

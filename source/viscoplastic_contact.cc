@@ -157,6 +157,7 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::begin()
   {
+    check_references();
     set_up();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(discretisation->space);

@@ -21,6 +21,7 @@
 #include <viscoplastic_contact/progress.h>
 #include <viscoplastic_contact/run_summary.h>
 #include <viscoplastic_contact/signals.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
 
@@ -218,6 +219,23 @@ namespace Viscoplastic
     record(const State<dim> &old_state,
            const Step       &step,
            const TimeStep   &time_step);
+
+    /// Against the exact solution, or a reference at the ends of phases; not
+    /// a number where there is none. Writes such a reference where wanted.
+    SolutionErrors
+    measure_errors(const State<dim> &of);
+
+    /// Whether measure_errors() will give anything, now or later.
+    bool
+    measures_errors() const
+    {
+      return scene.exact_solution ||
+             !parameters.exact_solution.reference_directory.empty();
+    }
+
+    /// Refuse missing references before the run.
+    void
+    check_references() const;
 
     void
     write_fields();

@@ -13,12 +13,14 @@
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/contact_tension.h>
+#include <viscoplastic_contact/error_bar.h>
 #include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/force_balance.h>
 #include <viscoplastic_contact/loads.h>
 #include <viscoplastic_contact/output.h>
 #include <viscoplastic_contact/point_probe.h>
 #include <viscoplastic_contact/progress.h>
+#include <viscoplastic_contact/residual_estimator.h>
 #include <viscoplastic_contact/run_summary.h>
 #include <viscoplastic_contact/signals.h>
 #include <viscoplastic_contact/solution_errors.h>
@@ -55,6 +57,15 @@ namespace Viscoplastic
     std::string
     run(const CommandLine::Restart restart = CommandLine::Restart::no);
 
+    /// All steps without any file, and what is known at the end.
+    RunSummary<dim>
+    run_without_files();
+
+    /// The closing words of run() give each quantity with its difference from
+    /// that of a run with twice the mesh width and twice the time steps.
+    void
+    compare_with(const RunSummary<dim> &coarser);
+
     /**
      * Everything that can be known without solving: validates the scene with
      * its mesh, initial data and the data of all times, and prints size,
@@ -84,6 +95,8 @@ namespace Viscoplastic
       std::unique_ptr<ContactTension<dim>> tension;
       /// Null without friction.
       std::unique_ptr<ContactFace<dim>> face;
+      /// Null in scenes without error bar that are not refined by it.
+      std::unique_ptr<ResidualEstimator<dim>> estimator;
 
       /// How often a solver will be used at least.
       unsigned int                n_solves;
@@ -106,6 +119,8 @@ namespace Viscoplastic
       double capped_volume;
       /// What the foundation moved, as a face vector; empty at rest.
       Vector<double> foundation_step;
+      /// Zero without error bar.
+      ErrorLedger errors;
     };
 
     /// What adds up over the steps.
@@ -124,6 +139,14 @@ namespace Viscoplastic
     /// From the start: everything up to the initial state.
     void
     begin();
+
+    /// Add the row of the initial state.
+    void
+    record_initial_state();
+
+    /// The next step, recorded and accepted.
+    void
+    make_step();
 
     void
     make_mesh();
@@ -164,8 +187,9 @@ namespace Viscoplastic
           const Vector<double>      &foundation_step,
           State<dim>                &state);
 
-    /// Estimate the error of a state, in scenes that use it.
-    void
+    /// Estimate the error of a state: squared_estimate in adaptive scenes.
+    /// Returns the residual estimate; zero in scenes that do not use it.
+    double
     estimate(const State<dim> &of);
 
     void
@@ -253,6 +277,7 @@ namespace Viscoplastic
     DoFHandler<dim>                           dof_handler;
     std::unique_ptr<Discretisation>           discretisation;
     ContactSolver                             contact_solver;
+    std::unique_ptr<ErrorBar<dim>>            error_bar; // null if not wanted
 
     State<dim>     state;
     Forces<dim>    forces; // of the state
@@ -269,6 +294,8 @@ namespace Viscoplastic
     std::vector<PointProbe<dim>> probes;
     Progress                     progress;
     RunSummary<dim>              summary;
+    /// What compare_with() was given.
+    std::optional<RunSummary<dim>> coarser_summary;
     /// Wall time by phase over the run, and what it was a step ago.
     TimerOutput                   timer;
     std::map<std::string, double> last_seconds;

@@ -21,6 +21,7 @@ ERRORS = {
     "error_h1": r"error of $u$ in $H^1$",
     "error_stress": r"error of $\sigma$ in $L^2$",
     "error_multiplier": r"error of $\lambda$ on $\Gamma_3$",
+    "estimate_total": r"estimated error of $u$ in the energy norm",
 }
 
 

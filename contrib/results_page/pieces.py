@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The parts of the page that are computed, each by itself."""
+
+import datetime
+import os
+import re
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import matplotlib.pyplot as plt
+
+from plotting import convergence, cost, style, work_precision
+from plotting.results import UserError, read_parameters
+
+from . import plan, program, references, tables
+
+SCENES = program.SOURCE / "prm" / "verification"
+
+ABOUT = {
+    "manufactured": "orders of convergence of all manufactured solutions",
+    **{name: title for name, (title, _) in plan.DIAGRAMS.items()},
+    "prices": "what errors of some per cent cost on these scenes",
+    "tolerance": "what coupling the solver's tolerance to the error saves",
+    "references": "reference cases beside independent values",
+}
+
+
+def make(name, runner, images):
+    """The Markdown of a piece."""
+    style.set_up()
+    if name == "manufactured":
+        return manufactured(runner)
+    if name == "references":
+        return references.section(runner) + stamp(runner)
+    if name == "tolerance":
+        return tolerance(runner)
+    if name == "prices":
+        return prices(runner)
+    return diagram(name, runner, images)
+
+
+def stamp(runner, about=None):
+    """Machine, date and version of what was computed."""
+    about = about or {}
+    words = [
+        str(about.get("version") or runner.version()),
+        program.processor(),
+        str(about.get("date") or datetime.date.today()),
+    ]
+    return f"\n*{', '.join(word for word in words if word)}.*\n"
+
+
+def both_cores(function, arguments):
+    """Two at a time, if there are two cores; errors are collected."""
+    workers = min(2, len(os.sched_getaffinity(0)))
+    with ThreadPoolExecutor(workers) as pool:
+        futures = [pool.submit(function, argument) for argument in arguments]
+    found, errors = [], []
+    for future in futures:
+        try:
+            found.append(future.result())
+        except UserError as error:
+            errors.append(error)
+    return found, errors
+
+
+def facts(scene, parameters):
+    """What the table of convergence says of a scene."""
+    dimension = parameters.get(("Dimension",), "2")
+    laws = dict.fromkeys(
+        value
+        for key, value in parameters.items()
+        if key[0].startswith("Material") and key[1:] == ("Law",)
+    )
+    friction = dict.fromkeys(
+        value for key, value in parameters.items() if key[1:] == ("Friction law",)
+    )
+    return {
+        "scene": f"`{scene.stem}`",
+        "law": ", ".join(laws) or "elastic",
+        "friction": ", ".join(friction) or tables.UNKNOWN,
+        "d": dimension,
+        "mesh": mesh_kind(parameters),
+    }
+
+
+def mesh_kind(parameters):
+    """Uniform, distorted or locally refined, from the section Geometry."""
+
+    def entry(name):
+        return parameters.get(("Geometry", name), "")
+
+    words = []
+    if entry("File") or not re.search("rectangle|cube", entry("Generator") or "cube"):
+        words.append("distorted")
+    if entry("Boundary refinements"):
+        words.append("locally refined")
+    return ", ".join(words) or "uniform"
+
+
+def manufactured_overrides(scene, parameters):
+    overrides = {**plan.COUPLED, **plan.MANUFACTURED}
+    if parameters.get(("Dimension",), "2") == "3":
+        overrides |= plan.MANUFACTURED_3D
+    return {**overrides, **plan.MANUFACTURED_SCENES.get(scene.stem, {})}
+
+
+def manufactured(runner):
+    scenes = sorted((SCENES / "manufactured").glob("*.prm"))
+    if not scenes:
+        raise UserError(f"there are no scenes in {SCENES / 'manufactured'}")
+
+    def one(scene):
+        parameters = read_parameters(scene)
+        study = runner.study(
+            f"manufactured/{scene.stem}",
+            scene,
+            manufactured_overrides(scene, parameters),
+        )
+        return tables.convergence_row(study, facts(scene, parameters)), study
+
+    found, errors = both_cores(one, scenes)
+    for error in errors:
+        print(f"Left out: {error}", file=sys.stderr)
+    if not found:
+        raise errors[0]
+    rows = [row for row, _ in found]
+    return tables.table(tables.CONVERGENCE_HEADER, rows) + stamp(
+        runner, found[0][1].about
+    )
+
+
+def diagram_study(name, runner):
+    overrides = plan.DIAGRAMS[name][1]
+    return runner.study(name, SCENES / f"{name}.prm", {**plan.COUPLED, **overrides})
+
+
+def diagram(name, runner, images):
+    """Pictures and fits of one scene."""
+    study = diagram_study(name, runner)
+    error = study.error()
+    pictures = {}
+    for module in (work_precision, convergence, cost):
+        picture = f"accuracy_{name}_{module.__name__.rpartition('.')[2]}.png"
+        images.mkdir(parents=True, exist_ok=True)
+        figure = module.draw(study, error)
+        figure.savefig(images / picture, dpi=110, bbox_inches="tight", pad_inches=0.15)
+        plt.close(figure)
+        pictures[module] = f"images/{picture}"
+    return (
+        f"![Error over seconds]({pictures[work_precision]})\n\n"
+        + f"![Error over mesh width and time step]({pictures[convergence]})\n\n"
+        + f"![Seconds by phase]({pictures[cost]})\n\n"
+        + tables.fit_table(study, error)
+        + stamp(runner, study.about)
+    )
+
+
+def prices(runner):
+    """One table of all scenes."""
+    rows, about = [], None
+    for name in plan.DIAGRAMS:
+        study = diagram_study(name, runner)
+        about = about or study.about
+        rows += tables.price_rows(
+            f"`{name}`", study, plan.TOLERANCES, study.error()
+        )
+    return tables.table(tables.price_header(plan.TOLERANCES), rows) + stamp(
+        runner, about
+    )
+
+
+def tolerance(runner):
+    rows = []
+    for name, (_, overrides) in plan.DIAGRAMS.items():
+        scene = SCENES / f"{name}.prm"
+        overrides = {**plan.COUPLED, **overrides, **plan.TOLERANCE_STUDY}
+        coupled = runner.study(f"tolerance/{name}_coupled", scene, overrides)
+        overrides["Solver/Contact tolerance"] = plan.FIXED_TOLERANCE
+        fixed = runner.study(f"tolerance/{name}_fixed", scene, overrides)
+        rows.append(tables.saving_row(f"`{name}`", coupled, fixed))
+    return tables.table(tables.SAVING_HEADER, rows) + stamp(runner)

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""contrib/make_results: its tables from made-up studies with known answers,
+and the page that keeps what was computed before."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import synthetic_study as synthetic
+from harness import EXECUTABLE, SOURCE, TestCase, main
+
+sys.path.insert(0, str(SOURCE / "contrib"))
+
+from plotting.results import UserError, read_parameters
+from plotting.study import Study
+from results_page import page, pieces, plan, tables
+
+UNIFORM = ("uniform", "forward Euler", "cell means")
+ADAPTIVE = ("adaptive", "forward Euler", "cell means")
+FACTS = {"scene": "s", "law": "maxwell", "friction": "none", "d": "2", "mesh": "m"}
+
+
+def cells(markdown):
+    """The cells of a table, its header first."""
+    lines = [line for line in markdown.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+
+
+class Folder(TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="page_")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def study(self, name="study", about=None, **more):
+        rows = synthetic.rows(**more)
+        return Study(
+            synthetic.write(
+                self.folder / name, rows, synthetic.about(rows, **(about or {}))
+            )
+        )
+
+
+class Tables(Folder):
+    def test_markdown(self):
+        header, line, *rows = cells(
+            tables.table(("a", "b", "c"), [("x", "1.5 s", "–"), ("y", "*2 %*", "1e-3")])
+        )
+        self.assertEqual(header, ["a", "b", "c"])
+        self.assertEqual(line, ["---", "---:", "---:"])
+        self.assertEqual(rows[1], ["y", "*2 %*", "1e-3"])
+
+    def test_numbers(self):
+        for value, digits, text in (
+            (12345.6, 3, "12346"),
+            (0.00012345, 2, "0.00012"),
+            (1e-9, 2, "1e-09"),
+            (2.0, 3, "2"),
+            (float("nan"), 3, "–"),
+            (None, 3, "–"),
+        ):
+            self.assertEqual(tables.number(value, digits), text)
+        self.assertEqual(tables.percent(0.003), "0.3 %")
+        self.assertEqual(tables.percent(0.1), "10 %")
+
+    def test_orders_of_a_known_study(self):
+        """The model's orders: its other term is made tiny."""
+        study = self.study(model={"C_h": 1.0, "p": 1.0, "C_k": 1e-9, "q": 2.0})
+        self.assertClose(tables.orders(study, "space"), 1, absolute=1e-6)
+        study = self.study(model={"C_h": 1e-9, "p": 1.0, "C_k": 1.0, "q": 2.0})
+        self.assertClose(tables.orders(study, "time"), 2, absolute=1e-6)
+        self.assertEqual(tables.orders(study, "sideways"), [None] * 4)
+
+    def test_convergence_row(self):
+        study = self.study(known=("energy", "stress"), effectivity=2.5)
+        row = tables.convergence_row(study, FACTS)
+        self.assertEqual(len(row), len(tables.CONVERGENCE_HEADER))
+        self.assertEqual(row[:5], ["s", "maxwell", "none", "2", "m"])
+        self.assertEqual(row[7], "1.00 / – / 1.00 / –")
+        self.assertEqual(row[9], "2.50 to 2.50")
+        # C_h h + C_k k of the finest run
+        self.assertEqual(row[8], f"{100 * (0.3 / 64 + 0.2 / 80):.2g} %")
+        study = self.study(known=(), levels=1)
+        row = tables.convergence_row(study, FACTS)
+        self.assertEqual(row[5:], ["– / – / – / –"] * 3 + ["–", "–"])
+
+    def test_prices_are_those_of_the_cheapest_sufficient_run(self):
+        study = self.study(ways=(UNIFORM, ADAPTIVE))
+        error, seconds = study["error_energy"], study["seconds_total"]
+        uniform = study["strategy"] == "uniform"
+        for tolerance in plan.TOLERANCES:
+            found = tables.price(study, UNIFORM, tolerance, "error_energy")
+            enough = uniform & (error <= tolerance)
+            if enough.any():
+                self.assertTrue(found["measured"])
+                self.assertClose(found["seconds"], seconds[enough].min(), absolute=0)
+            else:
+                self.assertIsNone(found)
+
+    def test_prices_beyond_the_ladder_are_predicted(self):
+        offered = {
+            "strategy": "uniform",
+            "scheme": "forward Euler",
+            "history": "cell means",
+            "error": "error_energy",
+            "tolerance": 1e-4,
+            "seconds": 1234.0,
+            "cells": 1e6,
+            "steps": 640,
+            "memory_MB": 2000.0,
+        }
+        study = self.study(ways=(UNIFORM, ADAPTIVE), about={"price_list": [offered]})
+        tolerances = (0.03, 1e-4)
+        rows = tables.price_rows("x", study, tolerances, "error_energy")
+        header = tables.price_header(tolerances)
+        self.assertEqual(header[-2:], ("3 %", "0.01 %"))
+        self.assertEqual([len(row) for row in rows], [len(header)] * 2)
+        self.assertEqual(
+            rows[0][-1], "***1234 s**: 1000000 cells, 640 steps, 2000 MB*"
+        )
+        self.assertEqual(rows[1][-1], "–")
+        bold = [row[-2].startswith("**") for row in rows]
+        self.assertEqual(sum(bold), 1, rows)
+        # other errors and other ways have no offer
+        self.assertIsNone(tables.offer(study, ADAPTIVE, 1e-4, "error_energy"))
+        self.assertIsNone(tables.offer(study, UNIFORM, 1e-4, "error_h1"))
+        self.assertIsNone(tables.offer(study, UNIFORM, 1e-3, "error_energy"))
+
+    def test_fits(self):
+        study = self.study(ways=(UNIFORM, ADAPTIVE))
+        _, _, *rows = cells(tables.fit_table(study, "error_energy"))
+        self.assertEqual(rows[0][3:], ["0.3", "1", "0.2", "1", "1 %"])
+        self.assertEqual(rows[1][3:], ["0.15", "1", "0.2", "1", "1 %"])
+        self.assertEqual(tables.fit_table(study, "error_stress"), "")
+
+    def test_savings(self):
+        """Half of the seconds, one error changed by 4 %; a run that only one
+        of the studies has does not count."""
+        coupled = self.study("coupled", ladders=("both",))
+        rows = synthetic.rows(ladders=("both",), levels=3)
+        for row in rows:
+            row["seconds_total"] *= 2
+            row["seconds_contact"] *= 3
+        rows[1]["error_stress"] /= 1.04
+        fixed = Study(synthetic.write(self.folder / "fixed", rows))
+        self.assertEqual(len(tables.matched(coupled, fixed)), 3)
+        row = tables.saving_row("x", coupled, fixed)
+        self.assertEqual(len(row), len(tables.SAVING_HEADER))
+        self.assertEqual(row[1], "3")
+        self.assertEqual(row[-2:], ["50 %", "4 % (stress)"])
+        total = sum(row["seconds_total"] for row in rows)
+        self.assertEqual(row[4], tables.seconds(total))
+        self.assertEqual(row[5], tables.seconds(total / 2))
+        other = self.study("other", ways=(ADAPTIVE,))
+        self.assertEqual(tables.saving_row("x", coupled, other)[1], "0")
+
+    def test_references(self):
+        row = tables.reference_row("c", "m", 1.0, "q", 1.001, 1.0)
+        self.assertEqual(len(row), len(tables.REFERENCE_HEADER))
+        self.assertEqual(row, ["c", "m", "1", "q", "1.001", "1", "1.0e-03"])
+
+
+class Page(Folder):
+    def test_parts_are_kept(self):
+        file = self.folder / "page.md"
+        page.write(file, "slab", "first\n")
+        page.write(file, "tolerance", "second\n")
+        page.write(file, "slab", "third\n")
+        parts = page.parts_of(file.read_text())
+        self.assertEqual(parts["slab"], "third\n")
+        self.assertEqual(parts["tolerance"], "second\n")
+        self.assertEqual(parts["manufactured"], page.NOT_YET)
+        self.assertEqual(set(parts), set(pieces.ABOUT))
+        # what is on the page is what would be written again
+        self.assertEqual(page.render(parts), file.read_text())
+
+    def test_other_files_are_left_alone(self):
+        file = self.folder / "page.md"
+        file.write_text("# Mine\n")
+        with self.assertRaisesRegex(UserError, "no page of contrib/make_results"):
+            page.write(file, "slab", "text\n")
+        self.assertEqual(file.read_text(), "# Mine\n")
+
+    def test_scenes_of_the_plan_exist(self):
+        for name, (_, overrides) in plan.DIAGRAMS.items():
+            scene = pieces.SCENES / f"{name}.prm"
+            self.assertTrue(scene.exists(), scene)
+            options = [
+                word
+                for entry, value in {**plan.COUPLED, **overrides}.items()
+                for word in ("--set", f"{entry}={value}")
+            ]
+            process = subprocess.run(
+                [EXECUTABLE, "--check", scene, *options],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                cwd=self.folder,
+                env={**os.environ, "OMP_NUM_THREADS": "1"},
+            )
+            self.assertEqual(process.returncode, 0, process.stderr)
+
+    def test_facts_of_a_scene(self):
+        scene = pieces.SCENES / "slab.prm"
+        self.assertEqual(
+            pieces.facts(scene, read_parameters(scene)),
+            {
+                "scene": "`slab`",
+                "law": "maxwell",
+                "friction": "tresca",
+                "d": "2",
+                "mesh": "uniform",
+            },
+        )
+
+    def test_what_is_wrong(self):
+        def make(*arguments):
+            process = subprocess.run(
+                [sys.executable, SOURCE / "contrib" / "make_results", *arguments],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            self.assertNotEqual(process.returncode, 0)
+            self.assertNotIn("Traceback", process.stderr)
+            return process.stderr
+
+        self.assertIn('no piece "slabs"; there are', make("slabs"))
+        nothing = self.folder / "nothing"
+        self.assertIn("no program", make("slab", "--executable", nothing))
+        file = self.folder / "page.md"
+        words = make(
+            "slab",
+            "--executable",
+            "/bin/false",
+            "--results",
+            self.folder / "results",
+            "--page",
+            file,
+        )
+        self.assertIn("Not made: slab: the study of", words)
+        self.assertIn("Error: slab could not be made", words)
+        self.assertFalse(file.exists())
+
+
+if __name__ == "__main__":
+    main()

@@ -92,8 +92,8 @@ runs of the study.
 ## What an error costs
 
 Three scenes without known solutions; each picture names the error that it
-shows. Below each are the fits $C_h h^p+C_k k^q$ with their residual, the root of
-the mean square of the relative deviations. The price list of all three:
+shows. Below each are the fits $C_h h^p+C_k k^q$ and the factor by which they miss
+the runs, as root mean square and at worst. The price list of all three:
 
 {prices}
 {diagrams}

@@ -43,9 +43,11 @@ def stamp(runner, about=None):
     """Machine, date and version of what was computed."""
     about = about or {}
     words = [
-        str(about.get("version") or runner.version()),
+        f"viscoplastic_contact {about['version']}"
+        if about.get("version")
+        else runner.version(),
         program.processor(),
-        str(about.get("date") or datetime.date.today()),
+        str(about.get("date") or datetime.date.today())[:10],
     ]
     return f"\n*{', '.join(word for word in words if word)}.*\n"
 

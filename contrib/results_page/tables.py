@@ -38,6 +38,7 @@ def number(value, digits=3):
         return UNKNOWN
     text = f"{value:.{digits}g}"
     if "e" in text and 1e-5 < abs(value) < 1e7:
+        value = float(text)
         text = f"{value:.0f}" if abs(value) >= 1 else f"{value:.7f}".rstrip("0")
     return text
 
@@ -121,7 +122,7 @@ def convergence_row(study, facts):
 
 def offer(study, way, tolerance, error):
     """The line of the price list of study.json for a way, or None."""
-    for offered in study.about.get("price_list", ()):
+    for offered in study.about.get("prices", ()):
         if (
             isinstance(offered, dict)
             and offered.get("error") == error
@@ -132,6 +133,12 @@ def offer(study, way, tolerance, error):
     return None
 
 
+def rows_of(study, way):
+    return np.array(
+        [i for i, row in enumerate(zip(*(study[n] for n in WAY))) if row == way]
+    )
+
+
 def price(study, way, tolerance, error):
     """What an error of `tolerance` costs: {seconds, cells, steps, memory,
     measured}, or None.
@@ -139,27 +146,27 @@ def price(study, way, tolerance, error):
     Measured where a run of the study is accurate enough, the cheapest of
     them; otherwise what the price list of the study predicts.
     """
-    rows = np.array(
-        [i for i, row in enumerate(zip(*(study[n] for n in WAY))) if row == way]
-    )
+    rows = rows_of(study, way)
     best = rates.cheapest_within(
         tolerance, study["seconds_total"][rows], study[error][rows]
     )
     if best is not None:
         row = rows[best]
         return {
-            "seconds": study["seconds_total"][row],
-            "cells": study["cells"][row],
-            "steps": study["steps"][row],
-            "memory": study["peak_memory_MB"][row],
+            "seconds": float(study["seconds_total"][row]),
+            "cells": float(study["cells"][row]),
+            "steps": float(study["steps"][row]),
+            "memory": float(study["peak_memory_MB"][row]),
             "measured": True,
         }
     offered = offer(study, way, tolerance, error)
     if offered is None:
         return None
+    finest = max(rows, key=lambda row: study["dofs"][row])
+    cells_per_dof = study["cells"][finest] / study["dofs"][finest]
     return {
         "seconds": offered["seconds"],
-        "cells": offered.get("cells"),
+        "cells": round((offered.get("dofs") or np.nan) * cells_per_dof, -1),
         "steps": offered.get("steps"),
         "memory": offered.get("memory_MB"),
         "measured": False,
@@ -174,11 +181,11 @@ def price_cell(found, is_cheapest):
     rest = ", ".join(
         f"{number(found[name], digits)}{unit}"
         for name, digits, unit in (
-            ("cells", 6, " cells"),
-            ("steps", 6, " steps"),
+            ("cells", 9, " cells"),
+            ("steps", 9, " steps"),
             ("memory", 2, " MB"),
         )
-        if found[name] is not None
+        if found[name] is not None and np.isfinite(found[name])
     )
     if is_cheapest:
         time = f"**{time}**"
@@ -211,17 +218,26 @@ def price_rows(name, study, tolerances, error):
     ]
 
 
-FIT_HEADER = (*WAY, "$C_h$", "$p$", "$C_k$", "$q$", "residual")
+FIT_HEADER = (*WAY, "$C_h$", "$p$", "$C_k$", "$q$", "off by", "at worst")
 
 
 def fit_table(study, error):
-    """C_h h^p + C_k k^q of each way, or nothing where no fit is known."""
+    """C_h h^p + C_k k^q of each way, and the factors by which it misses the
+    runs, or nothing where no fit is known."""
     rows = []
     for way in study.ways():
         fit = study.fit(way, error)
         if fit:
             values = (fit.get(name) for name in ("C_h", "p", "C_k", "q"))
-            rows.append([*way, *map(number, values), percent(fit.get("residual"))])
+            deviation = fit.get("rms_of_log")
+            rows.append(
+                [
+                    *way,
+                    *map(number, values),
+                    number(None if deviation is None else np.exp(deviation)),
+                    number(fit.get("worst_factor")),
+                ]
+            )
     return table(FIT_HEADER, rows) if rows else ""
 
 

@@ -118,8 +118,8 @@ def fit(way, model=MODEL, error="error_energy"):
         "error": error,
         **model,
         "C_h": gain * model["C_h"],
-        **PRICE,
-        "residual": 0.01,
+        "rms_of_log": 0.01,
+        "worst_factor": 1.5,
     }
 
 
@@ -134,9 +134,10 @@ def about(rows, scene="synthetic", model=MODEL, **more):
         "version": "1.2.3",
         "ranks": 1,
         "machine": "Abacus 3000",
-        "date": "2020-02-29",
+        "date": "2020-02-29T12:00:00Z",
         "reference": "exact",
         "fits": fits,
+        "prices": [],
         **more,
     }
 

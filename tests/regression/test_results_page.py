@@ -54,7 +54,7 @@ class Tables(Folder):
 
     def test_numbers(self):
         for value, digits, text in (
-            (12345.6, 3, "12346"),
+            (12345.6, 3, "12300"),
             (0.00012345, 2, "0.00012"),
             (1e-9, 2, "1e-09"),
             (2.0, 3, "2"),
@@ -107,18 +107,21 @@ class Tables(Folder):
             "error": "error_energy",
             "tolerance": 1e-4,
             "seconds": 1234.0,
-            "cells": 1e6,
+            "dofs": 2e6,
             "steps": 640,
             "memory_MB": 2000.0,
         }
-        study = self.study(ways=(UNIFORM, ADAPTIVE), about={"price_list": [offered]})
+        about = {"prices": [{**offered, "seconds": None, "error": "x"}, offered]}
+        study = self.study(ways=(UNIFORM, ADAPTIVE), about=about)
         tolerances = (0.03, 1e-4)
         rows = tables.price_rows("x", study, tolerances, "error_energy")
         header = tables.price_header(tolerances)
         self.assertEqual(header[-2:], ("3 %", "0.01 %"))
         self.assertEqual([len(row) for row in rows], [len(header)] * 2)
+        # cells for unknowns as on the finest mesh
+        cells = round(2e6 * 2 * 64**2 / (2 * 2 * 65**2), -1)
         self.assertEqual(
-            rows[0][-1], "***1234 s**: 1000000 cells, 640 steps, 2000 MB*"
+            rows[0][-1], f"***1200 s**: {cells:.0f} cells, 640 steps, 2000 MB*"
         )
         self.assertEqual(rows[1][-1], "–")
         bold = [row[-2].startswith("**") for row in rows]
@@ -131,8 +134,8 @@ class Tables(Folder):
     def test_fits(self):
         study = self.study(ways=(UNIFORM, ADAPTIVE))
         _, _, *rows = cells(tables.fit_table(study, "error_energy"))
-        self.assertEqual(rows[0][3:], ["0.3", "1", "0.2", "1", "1 %"])
-        self.assertEqual(rows[1][3:], ["0.15", "1", "0.2", "1", "1 %"])
+        self.assertEqual(rows[0][3:], ["0.3", "1", "0.2", "1", "1.01", "1.5"])
+        self.assertEqual(rows[1][3:], ["0.15", "1", "0.2", "1", "1.01", "1.5"])
         self.assertEqual(tables.fit_table(study, "error_stress"), "")
 
     def test_savings(self):

@@ -171,4 +171,5 @@ def write(file, name, text):
         parts = parts_of(file.read_text(encoding="utf-8"))
         if not parts:
             raise UserError(f"{file} is no page of contrib/make_results")
+    file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(render({**parts, name: text}), encoding="utf-8")

@@ -3,7 +3,6 @@
 
 import datetime
 import os
-import re
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
@@ -66,75 +65,71 @@ def both_cores(function, arguments):
     return found, errors
 
 
-def facts(scene, parameters):
-    """What the table of convergence says of a scene."""
-    dimension = parameters.get(("Dimension",), "2")
-    laws = dict.fromkeys(
-        value
-        for key, value in parameters.items()
-        if key[0].startswith("Material") and key[1:] == ("Law",)
-    )
+def manufactured_cases():
+    """(scene, law or None, mesh, overrides) of all studies."""
+    folder = SCENES / "manufactured"
+    laws = sorted(folder.glob("law_*.prm"))
+    cases = []
+    for scene in sorted(set(folder.glob("*.prm")) - set(laws)):
+        dimension = int(read_parameters(scene).get(("Dimension",), "2"))
+        common = {
+            **plan.COUPLED,
+            **plan.MANUFACTURED,
+            **plan.MANUFACTURED_OF_DIMENSION[dimension],
+        }
+        schemes = {"Study/Time schemes": ", ".join(plan.SCHEMES)}
+        cases.append((scene, None, "uniform", {**common, **schemes}))
+        for mesh, overrides in plan.MESHES[dimension].items():
+            cases.append((scene, None, mesh, {**common, **overrides}))
+        cases += [(scene, law, "uniform", common) for law in laws]
+    return cases
+
+
+def facts(scene, law, mesh):
+    """What the table of convergence says of a case."""
+    parameters = read_parameters(scene)
     friction = dict.fromkeys(
         value for key, value in parameters.items() if key[1:] == ("Friction law",)
     )
+    name = parameters.get(("Material", "Law"), "elastic")
+    if law is not None:
+        name = law.stem.removeprefix("law_").replace("_", ", ")
     return {
         "scene": f"`{scene.stem}`",
-        "law": ", ".join(laws) or "elastic",
+        "law": name,
         "friction": ", ".join(friction) or tables.UNKNOWN,
-        "d": dimension,
-        "mesh": mesh_kind(parameters),
+        "d": parameters.get(("Dimension",), "2"),
+        "mesh": mesh,
     }
 
 
-def mesh_kind(parameters):
-    """Uniform, distorted or locally refined, from the section Geometry."""
-
-    def entry(name):
-        return parameters.get(("Geometry", name), "")
-
-    words = []
-    if entry("File") or not re.search("rectangle|cube", entry("Generator") or "cube"):
-        words.append("distorted")
-    if entry("Boundary refinements"):
-        words.append("locally refined")
-    return ", ".join(words) or "uniform"
-
-
-def manufactured_overrides(scene, parameters):
-    overrides = {**plan.COUPLED, **plan.MANUFACTURED}
-    if parameters.get(("Dimension",), "2") == "3":
-        overrides |= plan.MANUFACTURED_3D
-    return {**overrides, **plan.MANUFACTURED_SCENES.get(scene.stem, {})}
-
-
 def manufactured(runner):
-    scenes = sorted((SCENES / "manufactured").glob("*.prm"))
-    if not scenes:
+    cases = manufactured_cases()
+    if not cases:
         raise UserError(f"there are no scenes in {SCENES / 'manufactured'}")
 
-    def one(scene):
-        parameters = read_parameters(scene)
-        study = runner.study(
-            f"manufactured/{scene.stem}",
-            scene,
-            manufactured_overrides(scene, parameters),
+    def one(case):
+        scene, law, mesh, overrides = case
+        name = "_".join(
+            [scene.stem, *([law.stem] if law else []), *mesh.split()]
         )
-        return tables.convergence_row(study, facts(scene, parameters)), study
+        files = [scene, law] if law else [scene]
+        study = runner.study(f"manufactured/{name}", files, overrides)
+        rows = tables.convergence_rows(study, facts(scene, law, mesh))
+        return rows, study.about
 
-    found, errors = both_cores(one, scenes)
+    found, errors = both_cores(one, cases)
     for error in errors:
         print(f"Left out: {error}", file=sys.stderr)
     if not found:
         raise errors[0]
-    rows = [row for row, _ in found]
-    return tables.table(tables.CONVERGENCE_HEADER, rows) + stamp(
-        runner, found[0][1].about
-    )
+    rows = [row for rows, _ in found for row in rows]
+    return tables.table(tables.CONVERGENCE_HEADER, rows) + stamp(runner, found[0][1])
 
 
 def diagram_study(name, runner):
     overrides = plan.DIAGRAMS[name][1]
-    return runner.study(name, SCENES / f"{name}.prm", {**plan.COUPLED, **overrides})
+    return runner.study(name, [SCENES / f"{name}.prm"], {**plan.COUPLED, **overrides})
 
 
 def diagram(name, runner, images):
@@ -175,10 +170,10 @@ def prices(runner):
 def tolerance(runner):
     rows = []
     for name, (_, overrides) in plan.DIAGRAMS.items():
-        scene = SCENES / f"{name}.prm"
+        files = [SCENES / f"{name}.prm"]
         overrides = {**plan.COUPLED, **overrides, **plan.TOLERANCE_STUDY}
-        coupled = runner.study(f"tolerance/{name}_coupled", scene, overrides)
+        coupled = runner.study(f"tolerance/{name}_coupled", files, overrides)
         overrides["Solver/Contact tolerance"] = plan.FIXED_TOLERANCE
-        fixed = runner.study(f"tolerance/{name}_fixed", scene, overrides)
+        fixed = runner.study(f"tolerance/{name}_fixed", files, overrides)
         rows.append(tables.saving_row(f"`{name}`", coupled, fixed))
     return tables.table(tables.SAVING_HEADER, rows) + stamp(runner)

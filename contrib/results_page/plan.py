@@ -11,21 +11,47 @@ TOLERANCES = (0.1, 0.03, 0.01, 0.003)
 # Of all studies, unless a scene says otherwise.
 COUPLED = {"Solver/Contact tolerance": "0", "Output/Fields every": "0"}
 
-# All scenes of prm/verification/manufactured, by their own mesh and steps.
-# Only orders are of interest, so two studies run side by side.
+SCHEMES = ("forward Euler", "backward Euler", "Heun")
+
+# Manufactured solutions: each scene of prm/verification/manufactured with each
+# of the laws there (law_*.prm, given after it) on its own mesh, and with its
+# own law on other meshes and with the other schemes.  Only orders are of
+# interest, so two studies run side by side.
 MANUFACTURED = {
     "Study/Levels": "4",
     "Study/Ladders": "space, time, both",
     "Study/Strategies": "uniform",
-    "Study/Budget": "60",
+    "Study/Time schemes": SCHEMES[0],
+    "Study/Budget": "120",
 }
-MANUFACTURED_3D = {"Study/Levels": "3"}
-# {scene: overrides} for those that need other sizes.
-MANUFACTURED_SCENES = {}
+MANUFACTURED_OF_DIMENSION = {2: {}, 3: {"Study/Levels": "3"}}
+
+# {dimension: {mesh: overrides}}.  The distorted ones are refinements of a
+# cell that is neither rectangle nor box; the locally refined ones have hanging
+# nodes along, in three dimensions also near, the foundation.
+MESHES = {
+    2: {
+        "distorted": {
+            "Geometry/Generator": "general_cell",
+            "Geometry/Arguments": "0,0; 1,0; 0.2,1; 0.9,1 : true",
+            "Geometry/Global refinements": "3",
+        },
+        "locally refined": {"Geometry/Boundary refinements": "2: 1"},
+    },
+    3: {
+        "distorted": {
+            "Geometry/Generator": "general_cell",
+            "Geometry/Arguments": "0,0,0; 1,0,0; 0,1,0; 1,1,0; "
+            "0.1,0.1,1; 0.9,0,1; 0.1,1,1; 0.8,0.9,1 : true",
+            "Geometry/Global refinements": "2",
+        },
+        "locally refined": {"Geometry/Boundary refinements": "4: 1"},
+    },
+}
 
 EVERY_WAY = {
     "Study/Strategies": "uniform, adaptive",
-    "Study/Time schemes": "forward Euler, backward Euler",
+    "Study/Time schemes": ", ".join(SCHEMES),
     "Study/Stress histories": "cell means, quadrature points",
     "Study/Target errors": ", ".join(map(str, TOLERANCES)),
 }

@@ -63,15 +63,17 @@ class Program:
         )
         return process.stdout.strip().splitlines()[0] if process.stdout else ""
 
-    def study(self, name, scene, overrides):
-        """The study of a scene; runs that are finished are not repeated."""
+    def study(self, name, files, overrides):
+        """The study of a scene, which may consist of several parameter files;
+        runs that are finished are not repeated."""
         results = self.directory / name
         results.mkdir(parents=True, exist_ok=True)
-        print(f"Study of {scene.stem} in {results}", file=sys.stderr, flush=True)
+        scene = " ".join(file.stem for file in files)
+        print(f"Study of {scene} in {results}", file=sys.stderr, flush=True)
         command = [
             self.executable,
             "study",
-            scene,
+            *files,
             *set_options({**overrides, "Output/Directory": results}),
         ]
         log = results / "study.log"

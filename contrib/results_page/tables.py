@@ -76,17 +76,17 @@ def orders(study, name, way=None):
     ]
 
 
-def effectivity(study):
-    """The smallest and largest index of the estimate, or None."""
-    values = study["effectivity"] if "effectivity" in study else np.array([])
-    values = values[rates.known(values)]
-    return (float(values.min()), float(values.max())) if len(values) else None
+def of_way(study, name, way):
+    """The known values of a column in the runs of a way."""
+    if name not in study:
+        return np.array([])
+    values = study[name][rows_of(study, way)]
+    return values[rates.known(values)]
 
 
-def smallest(study, norm):
-    values = study[norm] if norm in study else np.array([])
-    values = values[rates.known(values)]
-    return float(values.min()) if len(values) else None
+def rows_of(study, way):
+    ways = list(zip(*(study[name] for name in WAY)))
+    return np.array([i for i, other in enumerate(ways) if other == way])
 
 
 CONVERGENCE_HEADER = (
@@ -95,6 +95,7 @@ CONVERGENCE_HEADER = (
     "friction",
     "d",
     "mesh",
+    "scheme",
     "h alone",
     "k alone",
     "h and k",
@@ -103,21 +104,30 @@ CONVERGENCE_HEADER = (
 )
 
 
-def convergence_row(study, facts):
-    """One line of the table of all manufactured solutions.
+def convergence_rows(study, facts):
+    """Lines of the table of all manufactured solutions, one for each way.
 
     facts  scene, law, friction, d, mesh
     """
-    found = effectivity(study)
-    return [
-        *(facts[name] for name in ("scene", "law", "friction", "d", "mesh")),
-        *(
-            " / ".join(map(order, orders(study, name)))
-            for name in ("space", "time", "both")
-        ),
-        percent(smallest(study, "error_energy")),
-        UNKNOWN if found is None else f"{found[0]:.2f} to {found[1]:.2f}",
-    ]
+    rows = []
+    for way in study.ways():
+        errors = of_way(study, "error_energy", way)
+        indices = of_way(study, "effectivity", way)
+        rows.append(
+            [
+                *(facts[name] for name in ("scene", "law", "friction", "d", "mesh")),
+                way[WAY.index("scheme")],
+                *(
+                    " / ".join(map(order, orders(study, name, way)))
+                    for name in ("space", "time", "both")
+                ),
+                percent(errors.min()) if len(errors) else UNKNOWN,
+                f"{indices.min():.2f} to {indices.max():.2f}"
+                if len(indices)
+                else UNKNOWN,
+            ]
+        )
+    return rows
 
 
 def offer(study, way, tolerance, error):
@@ -131,12 +141,6 @@ def offer(study, way, tolerance, error):
         ):
             return offered if offered.get("seconds") is not None else None
     return None
-
-
-def rows_of(study, way):
-    return np.array(
-        [i for i, row in enumerate(zip(*(study[n] for n in WAY))) if row == way]
-    )
 
 
 def price(study, way, tolerance, error):

@@ -9,13 +9,16 @@ import tempfile
 from pathlib import Path
 
 import synthetic_study as synthetic
+import test_pad
+import test_shear_layer
+import test_slab
 from harness import EXECUTABLE, SOURCE, TestCase, main
 
 sys.path.insert(0, str(SOURCE / "contrib"))
 
-from plotting.results import UserError, read_parameters
+from plotting.results import UserError
 from plotting.study import Study
-from results_page import page, pieces, plan, tables
+from results_page import page, pieces, plan, program, references, tables
 
 UNIFORM = ("uniform", "forward Euler", "cell means")
 ADAPTIVE = ("adaptive", "forward Euler", "cell means")
@@ -73,18 +76,21 @@ class Tables(Folder):
         self.assertClose(tables.orders(study, "time"), 2, absolute=1e-6)
         self.assertEqual(tables.orders(study, "sideways"), [None] * 4)
 
-    def test_convergence_row(self):
-        study = self.study(known=("energy", "stress"), effectivity=2.5)
-        row = tables.convergence_row(study, FACTS)
-        self.assertEqual(len(row), len(tables.CONVERGENCE_HEADER))
-        self.assertEqual(row[:5], ["s", "maxwell", "none", "2", "m"])
-        self.assertEqual(row[7], "1.00 / – / 1.00 / –")
-        self.assertEqual(row[9], "2.50 to 2.50")
-        # C_h h + C_k k of the finest run
-        self.assertEqual(row[8], f"{100 * (0.3 / 64 + 0.2 / 80):.2g} %")
+    def test_convergence_rows(self):
+        ways = (UNIFORM, ("uniform", "fast", "cell means"))
+        study = self.study(ways=ways, known=("energy", "stress"), effectivity=2.5)
+        rows = tables.convergence_rows(study, FACTS)
+        self.assertEqual(len(rows), 2)
+        for row, way in zip(rows, ways):
+            self.assertEqual(len(row), len(tables.CONVERGENCE_HEADER))
+            self.assertEqual(row[:6], ["s", "maxwell", "none", "2", "m", way[1]])
+            self.assertEqual(row[8], "1.00 / – / 1.00 / –")
+            # C_h h + C_k k of the finest run
+            self.assertEqual(row[9], f"{100 * (0.3 / 64 + 0.2 / 80):.2g} %")
+            self.assertEqual(row[10], "2.50 to 2.50")
         study = self.study(known=(), levels=1)
-        row = tables.convergence_row(study, FACTS)
-        self.assertEqual(row[5:], ["– / – / – / –"] * 3 + ["–", "–"])
+        (row,) = tables.convergence_rows(study, FACTS)
+        self.assertEqual(row[6:], ["– / – / – / –"] * 3 + ["–", "–"])
 
     def test_prices_are_those_of_the_cheapest_sufficient_run(self):
         study = self.study(ways=(UNIFORM, ADAPTIVE))
@@ -186,37 +192,42 @@ class Page(Folder):
             page.write(file, "slab", "text\n")
         self.assertEqual(file.read_text(), "# Mine\n")
 
-    def test_scenes_of_the_plan_exist(self):
+    def check(self, files, overrides):
+        """The program accepts the scene."""
+        process = subprocess.run(
+            [EXECUTABLE, "--check", *files, *program.set_options(overrides)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=self.folder,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+        )
+        self.assertEqual(process.returncode, 0, process.stderr)
+
+    def test_scenes_of_the_diagrams(self):
         for name, (_, overrides) in plan.DIAGRAMS.items():
             scene = pieces.SCENES / f"{name}.prm"
             self.assertTrue(scene.exists(), scene)
-            options = [
-                word
-                for entry, value in {**plan.COUPLED, **overrides}.items()
-                for word in ("--set", f"{entry}={value}")
-            ]
-            process = subprocess.run(
-                [EXECUTABLE, "--check", scene, *options],
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                text=True,
-                cwd=self.folder,
-                env={**os.environ, "OMP_NUM_THREADS": "1"},
-            )
-            self.assertEqual(process.returncode, 0, process.stderr)
+            self.check([scene], {**plan.COUPLED, **overrides})
 
-    def test_facts_of_a_scene(self):
-        scene = pieces.SCENES / "slab.prm"
-        self.assertEqual(
-            pieces.facts(scene, read_parameters(scene)),
-            {
-                "scene": "`slab`",
-                "law": "maxwell",
-                "friction": "tresca",
-                "d": "2",
-                "mesh": "uniform",
-            },
-        )
+    def test_cases_of_manufactured_solutions(self):
+        cases = pieces.manufactured_cases()
+        seen = {tuple(pieces.facts(*case[:3]).values()) for case in cases}
+        self.assertEqual(len(seen), len(cases))
+        for scene in "tresca_2d", "coulomb_2d", "tresca_3d", "coulomb_3d":
+            friction, dimension = scene.split("_")
+            for law, mesh in (
+                ("maxwell", "uniform"),
+                ("maxwell", "distorted"),
+                ("maxwell", "locally refined"),
+                ("perzyna, hardening", "uniform"),
+                ("elastic", "uniform"),
+            ):
+                case = (f"`{scene}`", law, friction, dimension[0], mesh)
+                self.assertIn(case, seen)
+        for scene, law, mesh, overrides in cases:
+            if law is None:  # each mesh
+                self.check([scene], overrides)
 
     def test_what_is_wrong(self):
         def make(*arguments):
@@ -246,6 +257,24 @@ class Page(Folder):
         self.assertIn("Not made: slab: the study of", words)
         self.assertIn("Error: slab could not be made", words)
         self.assertFalse(file.exists())
+
+
+class References(TestCase):
+    def test_small_sizes(self):
+        """Every row is a comparison of like with like."""
+        rows = [
+            *references.slab_rows(test_slab, 16),
+            *references.block_rows(test_slab, 32),
+            *references.pad_rows(test_pad, 8),
+            *references.layer_rows(test_shear_layer, 8, 20),
+        ]
+        self.assertEqual(len(rows), 12 + 3 + 6 + 2)
+        for row in rows:
+            what = " ".join(row)
+            self.assertEqual(len(row), len(tables.REFERENCE_HEADER))
+            # the scheme's error in time is 0.1 k of 0.31
+            bound = 0.017 if row[3] == "foot, closed form" else 1e-3
+            self.assertLess(float(row[-1]), bound, what)
 
 
 if __name__ == "__main__":

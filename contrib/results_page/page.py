@@ -89,6 +89,14 @@ is the estimated over the true error, the largest of all steps each, over all
 runs of the study.
 
 {manufactured}
+### Solutions that are not smooth
+
+No solution is known here; errors are differences to a finer run. Theorem 4.4
+promises convergence without a rate. In adaptive runs $h$ is the width of a
+uniform mesh with as many cells: order one in $h$ is the best that bilinear
+elements can do, with any mesh.
+
+{low_regularity}
 ## What an error costs
 
 Three scenes without known solutions; each picture names the error that it
@@ -149,6 +157,7 @@ def render(parts):
         name: marked(name, parts.get(name, NOT_YET))
         for name in (
             "manufactured",
+            "low_regularity",
             "prices",
             "tolerance",
             "references",

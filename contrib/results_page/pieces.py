@@ -17,6 +17,7 @@ SCENES = program.SOURCE / "prm" / "verification"
 
 ABOUT = {
     "manufactured": "orders of convergence of all manufactured solutions",
+    "low_regularity": "orders where solutions are not smooth",
     **{name: title for name, (title, _) in plan.DIAGRAMS.items()},
     "prices": "what errors of some per cent cost on these scenes",
     "tolerance": "what coupling the solver's tolerance to the error saves",
@@ -29,6 +30,8 @@ def make(name, runner, images):
     style.set_up()
     if name == "manufactured":
         return manufactured(runner)
+    if name == "low_regularity":
+        return low_regularity(runner)
     if name == "references":
         return references.section(runner) + stamp(runner)
     if name == "tolerance":
@@ -125,6 +128,26 @@ def manufactured(runner):
         raise errors[0]
     rows = [row for rows, _ in found for row in rows]
     return tables.table(tables.CONVERGENCE_HEADER, rows) + stamp(runner, found[0][1])
+
+
+def low_regularity(runner):
+    def one(item):
+        name, (why, overrides) = item
+        study = runner.study(
+            f"low_regularity/{name}",
+            [SCENES / f"{name}.prm"],
+            {**plan.COUPLED, **overrides},
+        )
+        rows = tables.low_regularity_rows(f"`{name}`", why, study)
+        return rows, study.about
+
+    found, errors = both_cores(one, plan.LOW_REGULARITY.items())
+    if errors:
+        raise errors[0]
+    rows = [row for rows, _ in found for row in rows]
+    return tables.table(tables.LOW_REGULARITY_HEADER, rows) + stamp(
+        runner, found[0][1]
+    )
 
 
 def diagram_study(name, runner):

@@ -93,6 +93,31 @@ DIAGRAMS = {
     ),
 }
 
+# Solutions that are not smooth: {scene: (why, overrides)}.
+ROUGH = {
+    "Study/Levels": "4",
+    "Study/Ladders": "space, time, both",
+    "Study/Strategies": "uniform, adaptive",
+    "Study/Time schemes": ", ".join(SCHEMES),
+    "Study/Budget": "60",
+}
+LOW_REGULARITY = {
+    "kinked_load_2d": ("a kink of the load in time, a jump of the bound", ROUGH),
+    "junction_2d": (
+        "clamped and loaded pieces of one side",
+        {**ROUGH, "Study/Time schemes": SCHEMES[0]},
+    ),
+    "corner_singularity_2d": (
+        "re-entrant corner",
+        {
+            **ROUGH,
+            "Study/Time schemes": SCHEMES[0],
+            "Geometry/Global refinements": "1",
+            "Time/Phases": "1: 4",
+        },
+    ),
+}
+
 # Where the fixed tolerance is compared with the coupled one: the ladder of h
 # and k of the diagrams again.
 FIXED_TOLERANCE = "1e-10"

@@ -130,6 +130,27 @@ def convergence_rows(study, facts):
     return rows
 
 
+LOW_REGULARITY_HEADER = (
+    "scene",
+    "what is not smooth",
+    "strategy",
+    "scheme",
+    "h alone",
+    "k alone",
+    "h and k",
+    "smallest error",
+)
+
+
+def low_regularity_rows(name, why, study):
+    """As convergence_rows(), for solutions that nobody knows."""
+    facts = dict.fromkeys(("scene", "law", "friction", "d", "mesh"))
+    rows = convergence_rows(study, facts)
+    return [
+        [name, why, *way[:2], *row[6:10]] for way, row in zip(study.ways(), rows)
+    ]
+
+
 def offer(study, way, tolerance, error):
     """The line of the price list of study.json for a way, or None."""
     for offered in study.about.get("prices", ()):

@@ -92,6 +92,14 @@ class Tables(Folder):
         (row,) = tables.convergence_rows(study, FACTS)
         self.assertEqual(row[6:], ["– / – / – / –"] * 3 + ["–", "–"])
 
+    def test_low_regularity(self):
+        ways = (UNIFORM, ADAPTIVE)
+        rows = tables.low_regularity_rows("x", "why", self.study(ways=ways))
+        for row, way in zip(rows, ways):
+            self.assertEqual(len(row), len(tables.LOW_REGULARITY_HEADER))
+            self.assertEqual(row[:4], ["x", "why", way[0], way[1]])
+            self.assertEqual(row[6], "1.00 / 1.00 / 1.00 / 1.00")
+
     def test_prices_are_those_of_the_cheapest_sufficient_run(self):
         study = self.study(ways=(UNIFORM, ADAPTIVE))
         error, seconds = study["error_energy"], study["seconds_total"]
@@ -204,8 +212,11 @@ class Page(Folder):
         )
         self.assertEqual(process.returncode, 0, process.stderr)
 
-    def test_scenes_of_the_diagrams(self):
-        for name, (_, overrides) in plan.DIAGRAMS.items():
+    def test_scenes_of_the_plan(self):
+        for name, (_, overrides) in (
+            *plan.DIAGRAMS.items(),
+            *plan.LOW_REGULARITY.items(),
+        ):
             scene = pieces.SCENES / f"{name}.prm"
             self.assertTrue(scene.exists(), scene)
             self.check([scene], {**plan.COUPLED, **overrides})

@@ -116,7 +116,8 @@ class Numbers(Folder):
     def test_slope_triangles(self):
         x = np.array([0.1, 0.2, 0.4])
         low, high = (x, 2 * x**1.5), (x, 5 * x)
-        curves = [low, high]
+        # a third curve crosses both in their first segments
+        curves = [low, high, (x, 0.05 * (0.14 / x) ** 4)]
         for (curve_x, curve_y), above in ((low, False), (high, True)):
             segment = list(zip(curve_x[:2], curve_y[:2]))
             corners, order = rates.slope_triangle(segment, curves, above)

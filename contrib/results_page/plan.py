@@ -73,7 +73,7 @@ DIAGRAMS = {
         "Coulomb pad, three dimensions",
         {
             "Geometry/Arguments": "3, 3, 3 : 0, 0, 0 : 1, 1, 1 : true",
-            "Time/Phases": "0.5: 4, 1.5: 8",
+            "Time/Phases": "0.5: 2, 1.5: 4",
             "Study/Levels": "3",
             "Study/Ladders": "space, time, both",
             "Study/Budget": "300",

@@ -14,8 +14,8 @@ AXES = {
     "h": ("space", "mesh width $h$"),
     "k": ("time", "time step $k$"),
 }
-ALONE = {"ls": "-", "marker": "o"}
-BOTH = {"ls": "--", "marker": "s", "mfc": "white"}
+ALONE = {"lw": 1.7, "marker": "o"}
+BOTH = {"lw": 1.0, "marker": "s", "mfc": "white"}
 
 
 def draw(study, error):
@@ -41,7 +41,7 @@ def draw(study, error):
         layout="constrained",
     )
     for axes, (axis, label, ladders) in zip(all_axes[0], panels):
-        draw_panel(axes, study, error, axis, ladders, ways)
+        draw_panel(axes, study, error, axis, ladders)
         axes.set_xlabel(label)
     for axes in all_axes[0]:
         style.numbers_on_logarithmic_axis(axes.xaxis)
@@ -59,16 +59,17 @@ def curve(study, error, axis, ladder):
     return sizes[usable], errors[usable], ladder.rows[usable]
 
 
-def draw_panel(axes, study, error, axis, ladders, ways):
+def draw_panel(axes, study, error, axis, ladders):
     curves, orders, fitted = [], {}, False
+    looks = study.looks()
     for ladder in ladders:
         sizes, errors, rows = curve(study, error, axis, ladder)
-        colour = style.SERIES[ways.index(ladder.way) % len(style.SERIES)]
-        look = BOTH if ladder.name == "both" else ALONE
-        axes.plot(sizes, errors, color=colour, ms=6, lw=1.4, **look)
+        look = looks[ladder.way]
+        kind = BOTH if ladder.name == "both" else ALONE
+        axes.plot(sizes, errors, ms=6, **look, **kind)
         fit = study.fit(ladder.way, error)
         if fit and len(rows) > 1:
-            draw_fit(axes, fit, axis, study, rows, colour)
+            draw_fit(axes, fit, axis, study, rows, look["color"])
             fitted = True
         curves.append((sizes, errors))
         orders.setdefault(ladder.way, {})[ladder.name] = rates.final_order(
@@ -77,7 +78,7 @@ def draw_panel(axes, study, error, axis, ladders, ways):
     axes.set_xscale("log")
     axes.set_yscale("log")
     draw_triangles(axes, curves)
-    legend(axes, study, ladders, orders, ways, fitted)
+    legend(axes, study, ladders, orders, fitted)
     axes.grid(True, which="major", color="#dddddd", lw=0.6)
     axes.set_axisbelow(True)
     axes.margins(0.08)
@@ -147,9 +148,9 @@ def draw_triangle(axes, segment, curves, above):
     return corners, order
 
 
-def legend(axes, study, ladders, orders, ways, fitted):
+def legend(axes, study, ladders, orders, fitted):
     """Below the panel: a line for each way with its orders, then the looks."""
-    handles = []
+    handles, looks = [], study.looks()
     for way, found in orders.items():
         texts = [
             f"{order:.2f} ({LADDERS[name]})"
@@ -159,14 +160,13 @@ def legend(axes, study, ladders, orders, ways, fitted):
         text = study.way_label(way)
         if texts:
             text += ": order " + ", ".join(texts)
-        colour = style.SERIES[ways.index(way) % len(style.SERIES)]
-        handles.append(Line2D([], [], color=colour, lw=2.5, label=text))
+        handles.append(Line2D([], [], lw=2.5, label=text, **looks[way]))
     names = list(dict.fromkeys(ladder.name for ladder in ladders))
     for name in names:
-        look = BOTH if name == "both" else ALONE
+        kind = BOTH if name == "both" else ALONE
         text = LADDERS[name] + fixed_size(ladders, name)
         handles.append(
-            Line2D([], [], color=style.OUTLINE, ms=6, lw=1.2, label=text, **look)
+            Line2D([], [], color=style.OUTLINE, ms=6, label=text, **kind)
         )
     if fitted:
         handles.append(

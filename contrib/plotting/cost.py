@@ -47,13 +47,21 @@ def shares(columns, total):
 
 
 def chosen(study):
-    """Rows to draw: all, or those with h and k refined where they are many."""
-    rows = np.concatenate([ladder.rows for ladder in study.ladders()])
-    rows = rows[rates.known(study["seconds_total"][rows])]
+    """Rows to draw, and a remark: all, or where they are many of each way the
+    finest with h and k refined."""
+    ladders = study.ladders()
+    timed = {
+        ladder: ladder.rows[rates.known(study["seconds_total"][ladder.rows])]
+        for ladder in ladders
+    }
+    rows = np.concatenate(list(timed.values()))
     if len(rows) <= MOST_RUNS:
         return rows, ""
-    both = rows[study["ladder"][rows] == "both"]
-    few = (both if len(both) else rows)[-MOST_RUNS:]
+    names = {ladder.name for ladder in ladders}
+    kept = "both" if "both" in names else ladders[0].name
+    ladders = [ladder for ladder in ladders if ladder.name == kept]
+    each = max(1, MOST_RUNS // len(ladders))
+    few = np.concatenate([timed[ladder][-each:] for ladder in ladders])
     return few, f" ({len(few)} of {len(rows)} runs)"
 
 

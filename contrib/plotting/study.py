@@ -117,6 +117,25 @@ class Study:
         ]
         return style.plain(", ".join(parts or way[:2]))
 
+    def looks(self):
+        """{way: colour and dashes}: a colour each, or where they are many one
+        for each scheme and history, and dashes for the second strategy."""
+        ways = self.ways()
+        if len(ways) <= len(style.SERIES):
+            return {
+                way: {"color": colour, "ls": "-"}
+                for way, colour in zip(ways, style.SERIES)
+            }
+        methods = list(dict.fromkeys(way[1:] for way in ways))
+        strategies = list(dict.fromkeys(way[0] for way in ways))
+        return {
+            way: {
+                "color": style.SERIES[methods.index(way[1:]) % len(style.SERIES)],
+                "ls": ("-", (0, (4, 1.5)))[strategies.index(way[0]) % 2],
+            }
+            for way in ways
+        }
+
     def fit(self, way, error):
         """The fitted {C_h, p, C_k, q, ...} of study.json, or None."""
         for fit in self.about.get("fits", ()):

@@ -23,8 +23,8 @@ def draw(study, error):
     figure, axes = plt.subplots(
         figsize=(7.6, 5.2 + 0.24 * (len(ways) + 1)), layout="constrained"
     )
-    handles, names = [], []
-    for i, way in enumerate(ways):
+    handles, names, looks = [], [], study.looks()
+    for way in ways:
         ladders = [
             ladder
             for ladder in study.ladders()
@@ -33,8 +33,7 @@ def draw(study, error):
         ]
         if not ladders:
             continue
-        colour = style.SERIES[i % len(style.SERIES)]
-        dashes = ("-", "--")[i // len(style.SERIES) % 2]
+        colour, dashes = looks[way]["color"], looks[way]["ls"]
         # A curve through h and k refined together, which is what one does
         # for a better answer; the other runs show what unbalanced ones cost.
         through = [ladder for ladder in ladders if ladder.name == "both"] or ladders

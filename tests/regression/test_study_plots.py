@@ -21,7 +21,7 @@ import matplotlib.image
 import matplotlib.pyplot as plt
 from plotting import convergence, cost, rates, style, work_precision
 from plotting.results import UserError
-from plotting.study import Study, error_label
+from plotting.study import WAY, Study, error_label
 
 PLOT = SOURCE / "contrib" / "plot"
 NAN = float("nan")
@@ -190,7 +190,13 @@ class Reading(Folder):
         study = self.study(known=("h1", "stress"))
         self.assertEqual(
             study.errors(),
-            ["error_h1", "error_stress", "friction_force_x_error", "point0_x_error"],
+            [
+                "error_h1",
+                "error_stress",
+                "estimate_total",
+                "friction_force_x_error",
+                "point0_x_error",
+            ],
         )
         self.assertEqual(study.error(), "error_h1")
         self.assertEqual(study.error("point0_x"), "point0_x_error")
@@ -281,6 +287,14 @@ class Pictures(Folder):
         rows = synthetic.rows(ways=ways, levels=5)
         synthetic.write(self.folder, rows, synthetic.about(rows))
         self.assertEqual(self.draw("--dpi", 50), list(self.NAMES))
+        study = Study(self.folder)
+        looks = [str(look) for look in study.looks().values()]
+        self.assertEqual(len(set(looks)), len(ways), "curves that look alike")
+        shown, remark = cost.chosen(study)
+        self.assertLessEqual(len(shown), cost.MOST_RUNS)
+        self.assertIn("of 180 runs", remark)
+        found = set(zip(*(study[name][shown] for name in WAY)))
+        self.assertEqual(found, set(ways))
 
     def test_only_time_is_refined(self):
         rows = synthetic.rows(ladders=("time",), known=())

@@ -108,7 +108,7 @@ def draw_triangles(axes, curves):
     segments = [
         list(zip(sizes[-2:], errors[-2:]))
         for sizes, errors in curves
-        if len(sizes) > 1 and abs(sizes[-1] / sizes[-2] - 1) > 1e-9
+        if len(sizes) > 1 and rates.differ(sizes[-1], sizes[-2])
     ]
     if not segments:
         return
@@ -118,6 +118,10 @@ def draw_triangles(axes, curves):
     other = rates.slope_triangle(highest, curves, above=True)[1]
     if highest is not lowest and abs(other - order) > 0.1:
         draw_triangle(axes, highest, curves, above=True)
+
+
+def order_text(order):
+    return f"{round(order, 2) + 0.0:.2f}"  # no -0.00
 
 
 def draw_triangle(axes, segment, curves, above):
@@ -136,7 +140,7 @@ def draw_triangle(axes, segment, curves, above):
         **small,
     )
     axes.annotate(
-        f"{order:.2f}",
+        order_text(order),
         (xr, middle[1]),
         (3 if right else -3, 0),
         ha="left" if right else "right",
@@ -153,7 +157,7 @@ def legend(axes, study, ladders, orders, fitted):
     handles, looks = [], study.looks()
     for way, found in orders.items():
         texts = [
-            f"{order:.2f} ({LADDERS[name]})"
+            f"{order_text(order)} ({LADDERS[name]})"
             for name, order in found.items()
             if order is not None
         ]

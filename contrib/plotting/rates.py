@@ -15,14 +15,20 @@ def known(*columns):
     return np.logical_and.reduce(found)
 
 
+def differ(first, second):
+    """Whether two sizes are far enough apart for an order: on adaptive meshes
+    h may hardly change."""
+    return abs(np.log(first / second)) > np.log(1.1)
+
+
 def observed_orders(sizes, errors):
-    """log(e_i/e_{i-1}) / log(s_i/s_{i-1}) for i = 1, ...; nan where that is
-    not a number: an unknown error, or no change of the size."""
+    """log(e_i/e_{i-1}) / log(s_i/s_{i-1}) for i = 1, ...; nan where an error is
+    not known or the sizes hardly differ."""
     sizes, errors = np.asarray(sizes, float), np.asarray(errors, float)
     orders = np.full(max(len(sizes) - 1, 0), np.nan)
     usable = known(sizes, errors)
     for i in range(1, len(sizes)):
-        if usable[i - 1] and usable[i] and abs(sizes[i] / sizes[i - 1] - 1) > 1e-9:
+        if usable[i - 1] and usable[i] and differ(sizes[i], sizes[i - 1]):
             orders[i - 1] = np.log(errors[i] / errors[i - 1]) / np.log(
                 sizes[i] / sizes[i - 1]
             )

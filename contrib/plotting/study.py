@@ -12,7 +12,8 @@ from . import rates, style
 from .results import UserError
 
 TEXT = ("run", "strategy", "scheme", "history", "ladder")
-NEEDED = ("strategy", "scheme", "history", "ladder", "h", "k", "seconds_total")
+LEVELS = ("mesh_level", "time_level")
+NEEDED = (*TEXT[1:], *LEVELS, "h", "k", "seconds_total")
 WAY = ("strategy", "scheme", "history")  # what tells one way to compute
 
 LADDERS = {"space": "$h$ alone", "time": "$k$ alone", "both": "$h$ and $k$"}
@@ -22,6 +23,7 @@ ERRORS = {
     "error_stress": r"error of $\sigma$ in $L^2$",
     "error_multiplier": r"error of $\lambda$ on $\Gamma_3$",
     "estimate_total": r"estimated error of $u$ in the energy norm",
+    "quantities": "error of the worst quantity of interest",
 }
 
 
@@ -45,6 +47,7 @@ class Study:
     def __init__(self, directory):
         self.directory = Path(directory).resolve()
         self.columns = read_table(self.directory / "study.csv")
+        self.columns = with_worst_quantity(self.columns)
         self.about = read_about(self.directory / "study.json")
         self.name = str(self.about.get("scene") or self.directory.name)
 
@@ -94,16 +97,17 @@ class Study:
         return list(dict.fromkeys(zip(*(self[name] for name in WAY))))
 
     def ladders(self):
-        """All of them; of runs with the same h and k the last one counts."""
+        """All of them; of runs with the same levels the last one counts.
+
+        On adaptive meshes h is what came out, hence the levels."""
         keys = list(zip(*(self[name] for name in (*WAY, "ladder"))))
         found = []
         for key in dict.fromkeys(keys):
             rows = {}
             for i, other in enumerate(keys):
                 if other == key:
-                    rows[self["h"][i], self["k"][i]] = i
-            ordered = sorted(rows, reverse=True)
-            rows = np.array([rows[size] for size in ordered])
+                    rows[tuple(self[name][i] for name in LEVELS)] = i
+            rows = np.array([rows[levels] for levels in sorted(rows)])
             found.append(Ladder(self, key[:3], key[3], rows))
         return found
 
@@ -157,6 +161,20 @@ def error_label(name):
     quantity = re.sub(r"^max_", "largest ", quantity).replace("_", " ")
     quantity = re.sub(r"^(point|reaction) ?(\d+)$", r"\1 \2", quantity)
     return f"relative error of the {style.plain(quantity)}{component}"
+
+
+def with_worst_quantity(columns):
+    """Columns and, before the errors of single quantities, the largest of
+    them in each run."""
+    names = [name for name in columns if name.endswith("_error")]
+    if not names:
+        return columns
+    errors = np.array([columns[name] for name in names])
+    worst = np.nanmax(np.where(np.isnan(errors), -np.inf, errors), axis=0)
+    worst = np.where(np.isfinite(worst), worst, np.nan)
+    first = next(i for i, name in enumerate(columns) if name == names[0])
+    items = list(columns.items())
+    return dict([*items[: first - 1], ("quantities", worst), *items[first - 1 :]])
 
 
 def read_table(path):

@@ -4,7 +4,7 @@
 import numpy as np
 
 from plotting import rates
-from plotting.study import WAY
+from plotting.study import LEVELS, WAY
 
 UNKNOWN = "–"
 NORMS = ("error_energy", "error_h1", "error_stress", "error_multiplier")
@@ -44,7 +44,7 @@ def number(value, digits=3):
 
 
 def order(value):
-    return UNKNOWN if value is None else f"{value:.2f}"
+    return UNKNOWN if value is None else f"{round(value, 2) + 0.0:.2f}"
 
 
 def percent(value):
@@ -292,12 +292,12 @@ def reference_row(case, size, t, quantity, computed, independent):
 
 
 def matched(first, second):
-    """Pairs of rows of two studies with the same way, ladder, h and k."""
+    """Pairs of rows of two studies with the same way, ladder and levels."""
 
     def key(study, i):
         return (
             *(study[name][i] for name in (*WAY, "ladder")),
-            *(f"{study[name][i]:.9g}" for name in "hk"),
+            *(study[name][i] for name in LEVELS),
         )
 
     rows = {key(second, i): i for i in range(len(second))}

@@ -50,7 +50,8 @@ class Numbers(Folder):
         for sizes, errors in (
             ([], []),
             ([0.1], [1.0]),
-            ([0.1, 0.1], [1.0, 0.5]),  # no change of the size
+            ([0.1, 0.1], [1.0, 0.5]),
+            ([0.1, 0.095], [1.0, 0.5]),  # hardly a change of the size
             ([0.2, 0.1], [1.0, NAN]),
             ([0.2, 0.1], [1.0, 0.0]),  # exact by chance has no logarithm
             ([0.2, 0.1], [-1.0, 0.5]),
@@ -186,6 +187,23 @@ class Reading(Folder):
         (ladder,) = Study(self.folder).ladders()
         self.assertEqual(list(ladder.rows), [3, 4, 0, 2])
 
+    def test_meshes_that_are_not_finer(self):
+        """Adaptive ladders go by their levels, whatever h came out."""
+        rows = synthetic.rows(ladders=("time", "both"))
+        for row, h in zip(rows, (0.1, 0.11, 0.09, 0.1, 0.2, 0.1, 0.12, 0.08)):
+            row["h"] = h
+        study = Study(synthetic.write(self.folder, rows[::-1]))
+        for ladder in study.ladders():
+            self.assertTrue((np.diff(ladder.k) < 0).all(), ladder.name)
+
+    def test_worst_quantity(self):
+        rows = synthetic.rows(ladders=("both",))
+        rows[0] |= dict.fromkeys(("friction_force_x_error", "point0_x_error"), "nan")
+        study = Study(synthetic.write(self.folder, rows))
+        self.assertTrue(np.isnan(study["quantities"][0]))
+        worst = [row["friction_force_x_error"] for row in rows[1:]]
+        self.assertClose(study["quantities"][1:], worst, relative=1e-12)
+
     def test_unknown_errors_are_left_out(self):
         study = self.study(known=("h1", "stress"))
         self.assertEqual(
@@ -194,6 +212,7 @@ class Reading(Folder):
                 "error_h1",
                 "error_stress",
                 "estimate_total",
+                "quantities",
                 "friction_force_x_error",
                 "point0_x_error",
             ],

@@ -36,12 +36,12 @@ def observed_orders(sizes, errors):
 
 
 def final_order(sizes, errors):
-    """The order between the two finest runs whose error is known, or None."""
+    """The order between the two finest runs whose error is known, or None
+    where their sizes hardly differ."""
     sizes, errors = np.asarray(sizes, float), np.asarray(errors, float)
     usable = known(sizes, errors)
     orders = observed_orders(sizes[usable], errors[usable])
-    orders = orders[np.isfinite(orders)]
-    return float(orders[-1]) if len(orders) else None
+    return float(orders[-1]) if np.isfinite(orders[-1:]).any() else None
 
 
 def efficient_frontier(seconds, errors):

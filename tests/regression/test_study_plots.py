@@ -67,6 +67,8 @@ class Numbers(Folder):
         self.assertClose(rates.final_order(h, [9, 4, 2, 1]), 1, absolute=1e-12)
         self.assertClose(rates.final_order(h, [16, 4, 1, NAN]), 2, absolute=1e-12)
         self.assertClose(rates.final_order(h, [16, NAN, 1, NAN]), 2, absolute=1e-12)
+        # not that of coarser runs in its place
+        self.assertIsNone(rates.final_order([0.8, 0.4, 0.39], [16, 4, 3]))
 
     def test_efficient_frontier(self):
         seconds = np.array([1, 2, 4, 8, 3, 8, 2])

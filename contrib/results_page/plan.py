@@ -83,7 +83,7 @@ DIAGRAMS = {
     "corner_singularity_2d": (
         "Corner singularity, two dimensions",
         {
-            "Geometry/Global refinements": "1",
+            "Geometry/Global refinements": "2",
             "Time/Phases": "1: 4",
             "Study/Levels": "5",
             "Study/Ladders": "space, time, both",

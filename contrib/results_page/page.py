@@ -20,7 +20,8 @@ TEMPLATE = """\
 Made by `contrib/make_results`, which runs the program on the scenes named
 below, draws the pictures and writes every number of this page. The line under
 each part names version, machine and date. Errors are relative: the largest of
-all steps over the largest norm of the solution.
+all steps over the largest norm of the solution; where they are differences to a
+finer run, of the steps that end a phase of `Time/Phases`.
 
 - [How to read this page](#how-to-read-this-page)
 - [Orders of convergence](#orders-of-convergence)

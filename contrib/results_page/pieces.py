@@ -69,22 +69,38 @@ def both_cores(function, arguments):
 
 
 def manufactured_cases():
-    """(scene, law or None, mesh, overrides) of all studies."""
+    """(scene, law or None, mesh, {ladder: overrides}) of all cases."""
     folder = SCENES / "manufactured"
     laws = sorted(folder.glob("law_*.prm"))
     cases = []
     for scene in sorted(set(folder.glob("*.prm")) - set(laws)):
         dimension = int(read_parameters(scene).get(("Dimension",), "2"))
-        common = {
-            **plan.COUPLED,
-            **plan.MANUFACTURED,
-            **plan.MANUFACTURED_OF_DIMENSION[dimension],
-        }
-        schemes = {"Study/Time schemes": ", ".join(plan.SCHEMES)}
-        cases.append((scene, None, "uniform", {**common, **schemes}))
-        for mesh, overrides in plan.MESHES[dimension].items():
-            cases.append((scene, None, mesh, {**common, **overrides}))
-        cases += [(scene, law, "uniform", common) for law in laws]
+
+        def case(law=None, mesh="uniform", scheme=plan.SCHEMES[0], **overrides):
+            ladders = {
+                ladder: {
+                    **plan.COUPLED,
+                    **plan.MANUFACTURED,
+                    "Study/Ladders": ladder,
+                    "Study/Time schemes": scheme,
+                    **own,
+                    **overrides,
+                }
+                for ladder, own in plan.MANUFACTURED_LADDERS[dimension].items()
+            }
+            cases.append((scene, law, mesh, ladders))
+
+        case(scheme=", ".join(plan.SCHEMES))
+        for mesh, overrides in plan.MESHES.items():
+            case(
+                mesh=mesh,
+                **{
+                    name: text.format(folder=folder, dimension=dimension)
+                    for name, text in overrides.items()
+                },
+            )
+        for law in laws:
+            case(law)
     return cases
 
 
@@ -112,14 +128,15 @@ def manufactured(runner):
         raise UserError(f"there are no scenes in {SCENES / 'manufactured'}")
 
     def one(case):
-        scene, law, mesh, overrides = case
-        name = "_".join(
-            [scene.stem, *([law.stem] if law else []), *mesh.split()]
-        )
+        scene, law, mesh, ladders = case
+        name = "_".join([scene.stem, *([law.stem] if law else []), *mesh.split()])
         files = [scene, law] if law else [scene]
-        study = runner.study(f"manufactured/{name}", files, overrides)
-        rows = tables.convergence_rows(study, facts(scene, law, mesh))
-        return rows, study.about
+        studies = {
+            ladder: runner.study(f"manufactured/{name}_{ladder}", files, overrides)
+            for ladder, overrides in ladders.items()
+        }
+        rows = tables.convergence_rows(studies, facts(scene, law, mesh))
+        return rows, studies["both"].about
 
     found, errors = both_cores(one, cases)
     for error in errors:

@@ -15,38 +15,52 @@ SCHEMES = ("forward Euler", "backward Euler", "Heun")
 
 # Manufactured solutions: each scene of prm/verification/manufactured with each
 # of the laws there (law_*.prm, given after it) on its own mesh, and with its
-# own law on other meshes and with the other schemes.  Only orders are of
-# interest, so two studies run side by side.
-MANUFACTURED = {
-    "Study/Levels": "4",
-    "Study/Ladders": "space, time, both",
-    "Study/Strategies": "uniform",
-    "Study/Time schemes": SCHEMES[0],
-    "Study/Budget": "120",
-}
-MANUFACTURED_OF_DIMENSION = {2: {}, 3: {"Study/Levels": "3"}}
-
-# {dimension: {mesh: overrides}}.  The distorted ones are refinements of a
-# cell that is neither rectangle nor box; the locally refined ones have hanging
-# nodes along, in three dimensions also near, the foundation.
-MESHES = {
+# own law on other meshes and with the other schemes.  A ladder shows an order
+# where what it leaves alone is small: each has a study of its own.  Only orders
+# are of interest, so two studies run side by side.
+MANUFACTURED = {"Study/Strategies": "uniform", "Study/Budget": "120"}
+MANUFACTURED_LADDERS = {
     2: {
-        "distorted": {
-            "Geometry/Generator": "general_cell",
-            "Geometry/Arguments": "0,0; 1,0; 0.2,1; 0.9,1 : true",
-            "Geometry/Global refinements": "3",
+        "space": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 32",
+            "Study/Levels": "4",
         },
-        "locally refined": {"Geometry/Boundary refinements": "2: 1"},
+        "time": {
+            "Geometry/Global refinements": "2",
+            "Time/Phases": "1: 4",
+            "Study/Levels": "3",
+        },
+        "both": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 12",
+            "Study/Levels": "4",
+        },
     },
     3: {
-        "distorted": {
-            "Geometry/Generator": "general_cell",
-            "Geometry/Arguments": "0,0,0; 1,0,0; 0,1,0; 1,1,0; "
-            "0.1,0.1,1; 0.9,0,1; 0.1,1,1; 0.8,0.9,1 : true",
-            "Geometry/Global refinements": "2",
+        "space": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 16",
+            "Study/Levels": "3",
         },
-        "locally refined": {"Geometry/Boundary refinements": "4: 1"},
+        "time": {
+            "Geometry/Global refinements": "1",
+            "Time/Phases": "1: 4",
+            "Study/Levels": "3",
+        },
+        "both": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 12",
+            "Study/Levels": "3",
+        },
     },
+}
+
+# {mesh: overrides}; {dimension} stands for 2 or 3, {folder} for that of the
+# scenes.  Local refinement is along a side, across the foundation.
+MESHES = {
+    "distorted": {"Geometry/File": "{folder}/distorted_{dimension}d.msh"},
+    "locally refined": {"Geometry/Boundary refinements": "0: 1"},
 }
 
 EVERY_WAY = {

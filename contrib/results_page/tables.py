@@ -104,21 +104,24 @@ CONVERGENCE_HEADER = (
 )
 
 
-def convergence_rows(study, facts):
+def convergence_rows(studies, facts):
     """Lines of the table of all manufactured solutions, one for each way.
 
-    facts  scene, law, friction, d, mesh
+    studies  {ladder: the study that has it}
+    facts    scene, law, friction, d, mesh
     """
     rows = []
-    for way in study.ways():
-        errors = of_way(study, "error_energy", way)
-        indices = of_way(study, "effectivity", way)
+    for way in studies["both"].ways():
+        errors, indices = (
+            np.concatenate([of_way(study, name, way) for study in studies.values()])
+            for name in ("error_energy", "effectivity")
+        )
         rows.append(
             [
                 *(facts[name] for name in ("scene", "law", "friction", "d", "mesh")),
                 way[WAY.index("scheme")],
                 *(
-                    " / ".join(map(order, orders(study, name, way)))
+                    " / ".join(map(order, orders(studies[name], name, way)))
                     for name in ("space", "time", "both")
                 ),
                 percent(errors.min()) if len(errors) else UNKNOWN,
@@ -145,7 +148,7 @@ LOW_REGULARITY_HEADER = (
 def low_regularity_rows(name, why, study):
     """As convergence_rows(), for solutions that nobody knows."""
     facts = dict.fromkeys(("scene", "law", "friction", "d", "mesh"))
-    rows = convergence_rows(study, facts)
+    rows = convergence_rows(dict.fromkeys(("space", "time", "both"), study), facts)
     return [
         [name, why, *way[:2], *row[6:10]] for way, row in zip(study.ways(), rows)
     ]

@@ -79,7 +79,9 @@ class Tables(Folder):
     def test_convergence_rows(self):
         ways = (UNIFORM, ("uniform", "fast", "cell means"))
         study = self.study(ways=ways, known=("energy", "stress"), effectivity=2.5)
-        rows = tables.convergence_rows(study, FACTS)
+        coarse = self.study("coarse", ways=ways, levels=3, effectivity=0.5)
+        studies = {"space": coarse, "time": study, "both": study}
+        rows = tables.convergence_rows(studies, FACTS)
         self.assertEqual(len(rows), 2)
         for row, way in zip(rows, ways):
             self.assertEqual(len(row), len(tables.CONVERGENCE_HEADER))
@@ -87,9 +89,11 @@ class Tables(Folder):
             self.assertEqual(row[8], "1.00 / – / 1.00 / –")
             # C_h h + C_k k of the finest run
             self.assertEqual(row[9], f"{100 * (0.3 / 64 + 0.2 / 80):.2g} %")
-            self.assertEqual(row[10], "2.50 to 2.50")
+            self.assertEqual(row[10], "0.50 to 2.50")
         study = self.study(known=(), levels=1)
-        (row,) = tables.convergence_rows(study, FACTS)
+        (row,) = tables.convergence_rows(
+            dict.fromkeys(("space", "time", "both"), study), FACTS
+        )
         self.assertEqual(row[6:], ["– / – / – / –"] * 3 + ["–", "–"])
 
     def test_low_regularity(self):
@@ -238,7 +242,7 @@ class Page(Folder):
                 self.assertIn(case, seen)
         for scene, law, mesh, overrides in cases:
             if law is None:  # each mesh
-                self.check([scene], overrides)
+                self.check([scene], overrides["both"])
 
     def test_what_is_wrong(self):
         def make(*arguments):

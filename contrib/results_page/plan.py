@@ -23,8 +23,8 @@ MANUFACTURED_LADDERS = {
     2: {
         "space": {
             "Geometry/Global refinements": "0",
-            "Time/Phases": "1: 32",
-            "Study/Levels": "4",
+            "Time/Phases": "1: 64",
+            "Study/Levels": "3",
         },
         "time": {
             "Geometry/Global refinements": "2",
@@ -44,8 +44,8 @@ MANUFACTURED_LADDERS = {
             "Study/Levels": "3",
         },
         "time": {
-            "Geometry/Global refinements": "1",
-            "Time/Phases": "1: 4",
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 3",
             "Study/Levels": "3",
         },
         "both": {

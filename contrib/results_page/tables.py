@@ -182,7 +182,7 @@ def price(study, way, tolerance, error):
         row = rows[best]
         return {
             "seconds": float(study["seconds_total"][row]),
-            "cells": float(study["cells"][row]),
+            "cells": float(np.round(study["cells"][row])),  # mean of the steps
             "steps": float(study["steps"][row]),
             "memory": float(study["peak_memory_MB"][row]),
             "measured": True,
@@ -225,14 +225,18 @@ def price_header(tolerances):
     return ("scene", *WAY, *(percent(tolerance) for tolerance in tolerances))
 
 
+def best_seconds(prices):
+    """The least of what was measured, or else of what is predicted."""
+    prices = [price for price in prices if price]
+    measured = [price for price in prices if price["measured"]]
+    return min((price["seconds"] for price in measured or prices), default=None)
+
+
 def price_rows(name, study, tolerances, error):
     """A line for each way to compute, a column for each tolerance."""
     ways = study.ways()
     found = [[price(study, way, eps, error) for eps in tolerances] for way in ways]
-    cheapest = [
-        min((line[i]["seconds"] for line in found if line[i]), default=None)
-        for i in range(len(tolerances))
-    ]
+    cheapest = [best_seconds([line[i] for line in found]) for i in range(len(tolerances))]
     return [
         [
             name,

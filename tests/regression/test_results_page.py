@@ -149,6 +149,13 @@ class Tables(Folder):
         self.assertIsNone(tables.offer(study, UNIFORM, 1e-4, "error_h1"))
         self.assertIsNone(tables.offer(study, UNIFORM, 1e-3, "error_energy"))
 
+    def test_predictions_do_not_beat_measurements(self):
+        measured = {"seconds": 5.0, "measured": True}
+        predicted = {"seconds": 1.0, "measured": False}
+        self.assertEqual(tables.best_seconds([None, measured, predicted]), 5)
+        self.assertEqual(tables.best_seconds([None, predicted]), 1)
+        self.assertIsNone(tables.best_seconds([None]))
+
     def test_fits(self):
         study = self.study(ways=(UNIFORM, ADAPTIVE))
         _, _, *rows = cells(tables.fit_table(study, "error_energy"))

@@ -153,7 +153,9 @@ namespace Viscoplastic
         terms.dilatation +=
           terms.u[v] * shapes[cells[cell].shape].mean_gradients[v];
     if (!mean_z.empty())
-      terms.z = mean_z[cell];
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          terms.z[i][j] = mean_z[cell][i][j];
     return terms;
   }
 
@@ -177,7 +179,7 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j)
               gradient[i][j] += terms.u[v][i] * face.gradients[q][v][j];
-        tractions[q] = in_plane(terms.z, normal);
+        tractions[q] = terms.z * normal;
         if (stiffness.is_isotropic())
           {
             const double divergence = trace(gradient);
@@ -217,10 +219,14 @@ namespace Viscoplastic
     const double     mu              = stiffness.shear_modulus(),
                  lambda = (mean_dilatation ? 0. : stiffness.bulk_modulus()) -
                           2. / 3. * mu;
+    // Without a force that varies, one point speaks for all where the second
+    // derivatives are constant.
+    const bool one_point =
+      shape.constant_hessians && (body_force == nullptr || uniform_body_force);
     double square = 0.;
-    for (unsigned int q = 0; q < n_points; ++q)
+    for (unsigned int q = 0; q < (one_point ? 1 : n_points); ++q)
       {
-        std::array<SymmetricTensor<2, dim>, dim> hessian; // of u_i
+        std::array<Tensor<2, dim>, dim> hessian; // of u_i
         for (unsigned int v = 0; v < n_vertices; ++v)
           for (unsigned int i = 0; i < dim; ++i)
             hessian[i] += terms.u[v][i] * shape.hessians[q][v];
@@ -247,7 +253,8 @@ namespace Viscoplastic
               for (unsigned int i = 0; i < dim; ++i)
                 residual[i] += stress[i][j];
             }
-        square += residual.norm_square() * shape.weights[q];
+        square += residual.norm_square() *
+                  (one_point ? shape.volume : shape.weights[q]);
       }
     return square;
   }
@@ -317,8 +324,9 @@ namespace Viscoplastic
     std::vector<double>         eta(cells.size()); // squared
 
     // Tractions on all faces, and what is amiss within the cells.
-    std::vector<Tensor<1, dim>> tractions(
-      (cells.size() * n_faces + subface_sides.size()) * n_face_points);
+    std::vector<Tensor<1, dim>> &tractions = traction_buffer;
+    tractions.resize((cells.size() * n_faces + subface_sides.size()) *
+                     n_face_points);
     const auto                          &b = space.scene.body_force;
     std::array<Tensor<1, dim>, n_points> force;
     if (b && uniform_body_force)

@@ -78,6 +78,19 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  FlowLaws<dim>::have_constant_tangents() const
+  {
+    return std::all_of(
+      materials.begin(), materials.end(), [](const Entry &entry) {
+        return !entry.law ||
+               (entry.law->has_constant_tangents() && !entry.varies_in_time);
+      });
+  }
+
+
+
+  template <int dim>
   void
   FlowLaws<dim>::check(const double t) const
   {

@@ -29,6 +29,10 @@ namespace Viscoplastic
     /// Known on all ranks.
     bool any, any_cap, any_own_energy;
 
+    /// Whether the derivatives of G are the same at all times and states.
+    bool
+    have_constant_tangents() const;
+
     /// Throws ExcMessage if a parameter is out of range somewhere at time t.
     void
     check(const double t) const;

@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/backward_euler.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -25,6 +26,23 @@ namespace Viscoplastic
         return z - old_z - k * law.rate(elastic + z, strain, stiffness, point);
       }
 
+      /// Its norm; not finite where the law has no value, which a trial may
+      /// meet.
+      double
+      try_residual(const SymmetricTensor<2, 3> &z,
+                   SymmetricTensor<2, 3>       &F) const
+      {
+        try
+          {
+            F = residual(z);
+            return norm(F);
+          }
+        catch (const ExceptionBase &)
+          {
+            return std::numeric_limits<double>::quiet_NaN();
+          }
+      }
+
       /// In the energy norm of stresses, in which flow with a potential is
       /// monotone.
       double
@@ -38,12 +56,14 @@ namespace Viscoplastic
       solve(SymmetricTensor<2, 3> z) const
       {
         const double          scale = norm(elastic) + norm(old_z) + norm(z);
-        SymmetricTensor<2, 3> F     = residual(z);
-        double                size  = norm(F);
+        SymmetricTensor<2, 3> F;
+        double                size = try_residual(z, F);
         for (unsigned int iteration = 0; iteration < 100; ++iteration)
           {
             if (size == 0.)
               return z;
+            if (!std::isfinite(size))
+              return {};
             const auto tangents =
               law.tangents(elastic + z, strain, stiffness, point);
             const SymmetricTensor<2, 3> step =
@@ -53,16 +73,16 @@ namespace Viscoplastic
               return {};
             // Rounding of F, which k r multiplies, does not matter: that of
             // the correction does.
-            if (law.has_constant_tangents() || step_size <= 1e-12 * scale)
+            if (step_size <= 1e-12 * scale)
               return z + step;
             double damping = 1.;
             for (;; damping *= 0.5)
               {
                 if (damping < 1e-9)
                   return {};
-                const SymmetricTensor<2, 3> trial    = z + damping * step;
-                const SymmetricTensor<2, 3> F_trial  = residual(trial);
-                const double                new_size = norm(F_trial);
+                const SymmetricTensor<2, 3> trial = z + damping * step;
+                SymmetricTensor<2, 3>       F_trial;
+                const double new_size = try_residual(trial, F_trial);
                 if (new_size <= (1. - 1e-4 * damping) * size)
                   {
                     z    = trial;
@@ -91,9 +111,11 @@ namespace Viscoplastic
                                const LawPoint              &point,
                                const SymmetricTensor<2, 3> &start)
   {
-    if (const auto z =
-          SampleEquation{law, strain, old_z, k, stiffness, point}.solve(start))
-      return *z;
+    // Where a law is steep, the way from zero stress is shorter.
+    const SampleEquation equation{law, strain, old_z, k, stiffness, point};
+    for (const auto &from : {start, -1. * equation.elastic})
+      if (const auto z = equation.solve(from))
+        return *z;
 
     // From k = 0, where z = z_old, in steps that adapt.
     SymmetricTensor<2, 3> z    = old_z;
@@ -191,6 +213,41 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// Newton's step for a law with constant tangents, which is exact; keeps
+    /// the inverse of the last sample, of which most have the same.
+    class LinearEquation
+    {
+    public:
+      SymmetricTensor<2, 3>
+      solve(const SampleEquation &equation, const SymmetricTensor<2, 3> &start)
+      {
+        if (law != &equation.law || stiffness != &equation.stiffness ||
+            k != equation.k || parameters != equation.point.parameters)
+          {
+            law        = &equation.law;
+            stiffness  = &equation.stiffness;
+            k          = equation.k;
+            parameters = equation.point.parameters;
+            inverse    = invert(
+              identity_tensor<3>() -
+              k * law->tangents({}, {}, *stiffness, equation.point).stress);
+          }
+        return start - inverse * equation.residual(start);
+      }
+
+    private:
+      const ViscoplasticLaw *law       = nullptr;
+      const Stiffness       *stiffness = nullptr;
+      double                 k         = 0.;
+      std::array<double, 6>  parameters{};
+      SymmetricTensor<4, 3>  inverse;
+    };
+  } // namespace
+
+
+
   template <int dim>
   IrreversibleStress
   implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,
@@ -202,20 +259,23 @@ namespace Viscoplastic
   {
     IrreversibleStress                 z(old_z);
     std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    LinearEquation                     linear_equation;
     for (std::size_t c = 0; c < sampling.n_cells(); ++c)
       if (const ViscoplasticLaw *law = laws.law(c))
         {
+          const Stiffness &stiffness = sampling.moduli(c);
           sampling.strains(c, ghosted_u.begin(), strain.data());
           for (unsigned int s = 0; s < sampling.n_samples; ++s)
             {
-              const std::size_t i = c * sampling.n_samples + s;
-              z[i]                = implicit_irreversible_stress(*law,
-                                                  strain[s],
-                                                  old_z[i],
-                                                  k,
-                                                  sampling.moduli(c),
-                                                  laws.point(c, s),
-                                                  start[i]);
+              const std::size_t i     = c * sampling.n_samples + s;
+              const LawPoint    point = laws.point(c, s);
+              z[i] =
+                law->has_constant_tangents() ?
+                  linear_equation.solve(
+                    {*law, strain[s], old_z[i], k, stiffness, point},
+                    start[i]) :
+                  implicit_irreversible_stress(
+                    *law, strain[s], old_z[i], k, stiffness, point, start[i]);
             }
         }
     return z;

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <sstream>
 
@@ -88,7 +89,7 @@ namespace Viscoplastic
                                       const double              t,
                                       const double              k)
   {
-    TimerOutput::Scope  phase(timer, "set-up");
+    TimerOutput::Scope  phase(timer, "tangent");
     Discretisation     &d      = *discretisation;
     TangentMatrix<dim> &matrix = *d.tangent;
     const bool          is_new = matrix.linearise(ghosted_u, z, t, k);
@@ -197,6 +198,10 @@ namespace Viscoplastic
                                d.solver->rounding_error(),
                                1e-13 * d.tangent->norm(state.z)}))
           break;
+        if (getenv("VPTRACE"))
+          std::cerr << step.newton_iterations << " err " << error / size
+                    << " size " << size << " new " << tangent_is_new << " ci "
+                    << step.report.iterations << std::endl;
         best_error = std::min(best_error, error / size);
         if (step.newton_iterations == parameters.solver.maximal_iterations)
           {
@@ -301,6 +306,8 @@ namespace Viscoplastic
       return 1.;
     DistributedVector  there = space.ghosted_vector();
     IrreversibleStress z_there(z);
+    if (getenv("VPTRACE"))
+      std::cerr << "line search " << at_0 << " " << at_1 << std::endl;
     return find_root(
       [&](const double s) {
         DistributedVector between(base);

@@ -216,8 +216,10 @@ namespace Viscoplastic
 
         const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
         for (const char *name :
-             {"rate", "load", "contact", "balance", "output"})
+             {"rate", "tangent", "load", "contact", "balance", "output"})
           {
+            if (name == std::string("tangent") && !is_implicit())
+              continue;
             const auto   entry = total.find(name);
             const double now   = entry == total.end() ? 0. : entry->second;
             row.add(std::string("wall_") + name, now - last_seconds[name]);

@@ -82,19 +82,24 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::Discretisation::make_solver(
     const DistributedMatrix &of,
-    const double             max_poissons_ratio)
+    const double             max_nu)
   {
     static const std::vector<types::global_dof_index> no_dofs;
-    solver.reset(); // factors are what fills memory
     diagonal = space.owned_vector();
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       diagonal.begin()[i] = of.diag_element(space.owned.nth_index_in_set(i));
+    const FrictionFace &layout = face ? face->layout() : no_face;
+    const std::string  &choice = space.scene.parameters.solver.linear_solver;
+    if (solver && is_direct(space, layout.n_dofs(), choice, max_nu, n_solves) &&
+        solver->renew(of))
+      return;
+    solver.reset(); // factors are what fills memory
     solver = make_bulk_solver(space,
                               of,
-                              face ? face->layout() : no_face,
+                              layout,
                               face ? face->dofs() : no_dofs,
-                              space.scene.parameters.solver.linear_solver,
-                              max_poissons_ratio,
+                              choice,
+                              max_nu,
                               n_solves);
   }
 

@@ -78,7 +78,7 @@ namespace Viscoplastic
 
       /// For a matrix that stays in use; the elastic one, or of a tangent.
       void
-      make_solver(const DistributedMatrix &of, const double max_poissons_ratio);
+      make_solver(const DistributedMatrix &of, const double max_nu);
 
       AdmissibleSpace<dim> space;
       ElasticModuli<dim>   moduli;

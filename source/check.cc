@@ -3,6 +3,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/initial_state.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <algorithm>
@@ -48,10 +49,10 @@ namespace Viscoplastic
     const TimeStep first = scene.schedule.step(1);
     // Of backward Euler it is no limit, but what it would have been.
     const double rate =
-      is_implicit() ? advance_irreversible_stress(
-                        discretisation->laws, state.u, state.z, first.t_old, 0.)
-                        .relaxation_rate :
-                      flow(state, first.t_old, first).relaxation_rate; // throws
+      is_implicit() ?
+        evaluate_flow(discretisation->laws, state.u, state.z, first.t_old)
+          .relaxation_rate :
+        flow(state, first).relaxation_rate; // throws
     if (rate == 0.)
       return;
     out << "Stability limit 2/r of the initial state: " << 2. / rate
@@ -85,6 +86,9 @@ namespace Viscoplastic
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(d.space, x);
 
+    check_references();
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      check_exact_solution(d.space);
     // The initial data, and where they need no solution, the first step.
     state =
       make_initial_state(d.sampling, parameters.initial_state.equilibrate);

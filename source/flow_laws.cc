@@ -31,6 +31,9 @@ namespace Viscoplastic
     , any(false)
     , any_cap(false)
     , any_own_energy(false)
+    , source_solution(sampling.space.scene.has_source() ?
+                        sampling.space.scene.exact_solution.get() :
+                        nullptr)
   {
     const Scene<dim> &scene         = sampling.space.scene;
     bool              any_to_sample = false;
@@ -111,6 +114,30 @@ namespace Viscoplastic
 
 
   template <int dim>
+  SymmetricTensor<2, 3>
+  FlowLaws<dim>::source(const AtTime                           &now,
+                        const std::size_t                       cell,
+                        const unsigned int                      s,
+                        const typename ExactSolution<dim>::Side side) const
+  {
+    SymmetricTensor<2, 3> result;
+    if (source_solution == nullptr)
+      return result;
+    const Point<dim> &x         = sampling.position(cell, s);
+    const Stiffness  &stiffness = sampling.moduli(cell);
+    result                      = source_solution->stress_rate(x, now.t, side) -
+             stiffness.stress(source_solution->strain_rate(x, now.t, side));
+    if (const ViscoplasticLaw *law = now.law(cell))
+      result -= law->rate(source_solution->stress(x, now.t),
+                          source_solution->strain(x, now.t),
+                          stiffness,
+                          now.point(cell, s));
+    return result;
+  }
+
+
+
+  template <int dim>
   FlowLaws<dim>::AtTime::AtTime(const FlowLaws &laws, const double t)
     : laws(laws)
     , t(t)
@@ -145,19 +172,23 @@ namespace Viscoplastic
 
 
   template <int dim>
-  FlowStep<dim>
-  advance_irreversible_stress(const FlowLaws<dim>      &laws,
-                              const DistributedVector  &ghosted_u,
-                              const IrreversibleStress &z,
-                              const double              t,
-                              const double              k)
+  FlowRate
+  evaluate_flow(const FlowLaws<dim>                    &laws,
+                const DistributedVector                &ghosted_u,
+                const IrreversibleStress               &z,
+                const double                            t,
+                const typename ExactSolution<dim>::Side side)
   {
-    const StressSampling<dim>         &sampling = laws.sampling;
-    const auto                         now      = laws.at(t);
-    FlowStep<dim>                      result{z, 0., 0.};
+    const StressSampling<dim> &sampling = laws.sampling;
+    const auto                 now      = laws.at(t);
+    FlowRate                   result{IrreversibleStress(z.size()), 0., 0.};
     std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
     for (std::size_t c = 0; c < sampling.n_cells(); ++c)
       {
+        if (laws.source_solution)
+          for (unsigned int s = 0; s < sampling.n_samples; ++s)
+            result.rate[c * sampling.n_samples + s] =
+              laws.source(now, c, s, side);
         const ViscoplasticLaw *law = now.law(c);
         if (law == nullptr)
           continue;
@@ -169,7 +200,7 @@ namespace Viscoplastic
             const LawPoint              point = now.point(c, s);
             const SymmetricTensor<2, 3> stress =
               stiffness.stress(strain[s]) + z[i];
-            result.z[i] += k * law->rate(stress, strain[s], stiffness, point);
+            result.rate[i] += law->rate(stress, strain[s], stiffness, point);
             result.relaxation_rate = std::max(
               result.relaxation_rate,
               law->relaxation_rate(stress, strain[s], stiffness, point));
@@ -186,8 +217,56 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  FlowStep<dim>
+  advance_irreversible_stress(const FlowLaws<dim>      &laws,
+                              const DistributedVector  &ghosted_u,
+                              const IrreversibleStress &z,
+                              const double              t,
+                              const double              k)
+  {
+    FlowRate flow = evaluate_flow(laws, ghosted_u, z, t);
+    return advance_irreversible_stress<dim>(flow, z, k);
+  }
+
+
+
+  template <int dim>
+  FlowStep<dim>
+  advance_irreversible_stress(const FlowRate           &flow,
+                              const IrreversibleStress &z,
+                              const double              k)
+  {
+    FlowStep<dim> result{z, flow.relaxation_rate, flow.capped_volume};
+    for (std::size_t i = 0; i < z.size(); ++i)
+      result.z[i] += k * flow.rate[i];
+    return result;
+  }
+
+
+
   template class FlowLaws<2>;
   template class FlowLaws<3>;
+  template FlowRate
+  evaluate_flow<2>(const FlowLaws<2> &,
+                   const DistributedVector &,
+                   const IrreversibleStress &,
+                   const double,
+                   const ExactSolution<2>::Side);
+  template FlowRate
+  evaluate_flow<3>(const FlowLaws<3> &,
+                   const DistributedVector &,
+                   const IrreversibleStress &,
+                   const double,
+                   const ExactSolution<3>::Side);
+  template FlowStep<2>
+  advance_irreversible_stress<2>(const FlowRate &,
+                                 const IrreversibleStress &,
+                                 const double);
+  template FlowStep<3>
+  advance_irreversible_stress<3>(const FlowRate &,
+                                 const IrreversibleStress &,
+                                 const double);
   template FlowStep<2>
   advance_irreversible_stress<2>(const FlowLaws<2> &,
                                  const DistributedVector &,

@@ -4,15 +4,38 @@
 #include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
 #include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/reference_fields.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    void
+    add_errors(const SolutionErrors &errors, Statistics &row)
+    {
+      const auto add = [&row](const std::string   &prefix,
+                              const SolutionNorms &norms) {
+        row.add(prefix + "energy", norms.energy);
+        row.add(prefix + "h1", norms.h1);
+        row.add(prefix + "stress", norms.stress);
+        row.add(prefix + "multiplier", norms.multiplier);
+      };
+      add("error_", errors.error);
+      row.add("error_memory", errors.memory);
+      add("exact_", errors.exact);
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   ViscoplasticContact<dim>::announce() const
@@ -121,7 +144,7 @@ namespace Viscoplastic
     const double balance_defect = size > 0. ? balance.norm() / size : 0.;
     if (!is_initial && !balance_is_doubtful &&
         balance_defect >
-          std::max(1e-8, 1e3 * parameters.solver.strict_tolerance()))
+          std::max(1e-8, std::min(1e3 * step.report.tolerance, 1e-2)))
       {
         balance_is_doubtful = true;
         std::ostringstream text;
@@ -156,6 +179,9 @@ namespace Viscoplastic
                               total_estimate(squared_estimate, communicator) :
                               0.;
     phase.stop();
+    const SolutionErrors errors = measure_errors(step.state);
+    summary.largest_error.update(errors.error);
+    summary.largest_exact.update(errors.exact);
 
     if (statistics)
       {
@@ -213,12 +239,32 @@ namespace Viscoplastic
           row.add_vector("point" + std::to_string(i), point_values[i], dim);
         if (scene.is_adaptive())
           row.add("estimator", estimate);
+        if (error_bar)
+          {
+            const ErrorLedger &ledger = step.errors;
+            row.add("energy_norm", ledger.energy_norm);
+            row.add("estimate_space", ledger.space);
+            row.add("estimate_time", ledger.time);
+            row.add("estimate_algebraic", ledger.algebraic);
+            row.add("estimate_initial", ledger.initial);
+            row.add("estimate_total", ledger.total());
+            row.add("time_indicator", ledger.time_indicator);
+            row.add("velocity_variation", ledger.velocity_variation);
+          }
+        if (measures_errors())
+          add_errors(errors, row);
 
         const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
-        for (const char *name :
-             {"rate", "tangent", "load", "contact", "balance", "output"})
+        for (const char *name : {"rate",
+                                 "tangent",
+                                 "load",
+                                 "contact",
+                                 "balance",
+                                 "estimate",
+                                 "output"})
           {
-            if (name == std::string("tangent") && !is_implicit())
+            if ((!error_bar && name == std::string("estimate")) ||
+                (!is_implicit() && name == std::string("tangent")))
               continue;
             const auto   entry = total.find(name);
             const double now   = entry == total.end() ? 0. : entry->second;
@@ -243,6 +289,8 @@ namespace Viscoplastic
     summary.energy_balance_defect = defect;
     summary.tension_area.update(tension_area, time_step.t);
     summary.displacement.update(max_displacement, time_step.t);
+    summary.max_displacement    = max_displacement;
+    summary.point_displacements = point_values;
     summary.von_mises.update(stress.max_von_mises, time_step.t);
     if (scene.has_viscosity())
       summary.viscous_dissipation = accounts.viscous_dissipation;
@@ -252,6 +300,7 @@ namespace Viscoplastic
         summary.friction_dissipation = accounts.friction_dissipation;
         summary.friction_area        = friction.slip_area + friction.stick_area;
         summary.slip_area.update(friction.slip_area, time_step.t);
+        summary.slipping_area               = friction.slip_area;
         progress_of_step.contact_iterations = step.report.iterations;
         if (summary.friction_area > 0.)
           progress_of_step.slipping =
@@ -259,9 +308,19 @@ namespace Viscoplastic
       }
     if (scene.is_adaptive())
       {
-        summary.adaptation_energy       = accounts.adaptation_energy;
-        summary.error_estimate          = estimate;
-        progress_of_step.error_estimate = estimate;
+        summary.adaptation_energy = accounts.adaptation_energy;
+        if (!error_bar)
+          {
+            summary.error_estimate          = estimate;
+            progress_of_step.error_estimate = estimate;
+          }
+      }
+    if (error_bar)
+      {
+        summary.errors = error_bar->summary();
+        if (step.errors.energy_norm > 0.)
+          progress_of_step.relative_error =
+            step.errors.total() / step.errors.energy_norm;
       }
     // The rate of an explicit step is that of its beginning.
     const double rate_time = is_implicit() ? time_step.t : time_step.t_old;
@@ -279,6 +338,74 @@ namespace Viscoplastic
       first_set_up_seconds =
         timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
     progress.report(progress_of_step, elapsed);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_references() const
+  {
+    const std::string &directory =
+      parameters.exact_solution.reference_directory;
+    if (directory.empty())
+      return;
+    AssertThrow(!scene.exact_solution,
+                ExcMessage("'Exact solution/Reference directory' and 'Exact "
+                           "solution/Displacement' are both given; errors "
+                           "can be measured against one of them."));
+    for (unsigned int i = 1; i <= scene.schedule.n_phases(); ++i)
+      read_samples<dim>(samples_file(directory, i), communicator);
+  }
+
+
+
+  template <int dim>
+  SolutionErrors
+  ViscoplasticContact<dim>::measure_errors(const State<dim> &of)
+  {
+    const unsigned int phase = scene.schedule.phase_ending_with(of.n);
+    const std::string &reference =
+      parameters.exact_solution.reference_directory;
+    SolutionErrors result;
+    result.error.fill(std::numeric_limits<double>::quiet_NaN());
+    result.exact      = result.error;
+    result.memory     = result.error.energy;
+    const bool writes = parameters.output.reference_fields && phase > 0;
+    if (!writes && !scene.exact_solution && (reference.empty() || phase == 0))
+      return result;
+
+    TimerOutput::Scope       scope(timer, "errors");
+    const Discretisation    &d = *discretisation;
+    DistributedVector        multipliers;
+    const DistributedVector *density = nullptr;
+    if (d.face)
+      {
+        multipliers = d.face->density(of.friction);
+        density     = &multipliers;
+      }
+    if (writes)
+      write_samples(sample_fields(d.sampling, of, density),
+                    samples_file(output->directory(), phase),
+                    communicator);
+    if (scene.exact_solution)
+      result = solution_errors(d.sampling, of, density);
+    else if (!reference.empty() && phase > 0)
+      {
+        const auto samples =
+          read_samples<dim>(samples_file(reference, phase), communicator);
+        std::ostringstream message;
+        message << "'Exact solution/Reference directory': phase " << phase
+                << " of the reference ends at t = " << samples.t
+                << ", that of this run at t = " << of.t
+                << "; 'Time/Phases' must have the same end times.";
+        AssertThrow(std::abs(samples.t - of.t) <= 1e-10 * std::abs(of.t),
+                    ExcMessage(message.str()));
+        const double nothing = result.memory;
+        result               = differences(samples, d.sampling, of, density);
+        result.memory        = nothing;
+      }
+    return result;
   }
 
 
@@ -321,7 +448,14 @@ namespace Viscoplastic
       }
 
     out << '\n';
-    summary.print(console.stream());
+    summary.print(console.stream(),
+                  coarser_summary ? &*coarser_summary : nullptr);
+    if (coarser_summary && Utilities::MPI::this_mpi_process(communicator) == 0)
+      write_uncertainties(output->directory() + "uncertainty.csv",
+                          summary,
+                          *coarser_summary);
+    if (error_bar)
+      output->record_errors(error_bar->summary());
     out << std::setprecision(3) << "Iterations per step: ";
     if (is_implicit())
       out << static_cast<double>(accounts.newton_iterations) / n

@@ -89,12 +89,17 @@ namespace Viscoplastic
       .largest_force &accounts.adaptation_energy &accounts
       .contact_iterations &accounts.linear_iterations &accounts
       .newton_iterations;
+    if (error_bar)
+      error_bar->exchange(archive);
     for (Largest *largest : {&summary.displacement,
                              &summary.von_mises,
                              &summary.slip_area,
                              &summary.capped_volume,
                              &summary.tension_area})
       archive & largest->value & largest->t;
+    for (SolutionNorms *norms :
+         {&summary.largest_error, &summary.largest_exact})
+      archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
   }
 
 
@@ -265,6 +270,7 @@ namespace Viscoplastic
                       d.sampling,
                       has_initial_u,
                       has_estimate,
+                      ErrorBar<dim>::n_sample_fields(scene),
                       state,
                       squared_estimate);
       return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;

@@ -22,6 +22,20 @@ namespace Viscoplastic
 
 
 
+    /// Of the product of two tensors, as a map.
+    double
+    trace(const SymmetricTensor<4, 3> &a, const SymmetricTensor<4, 3> &b)
+    {
+      double sum = 0.;
+      for (unsigned int i = 0; i < 6; ++i)
+        for (unsigned int j = 0; j < 6; ++j)
+          sum += (i < 3 ? 1. : 2.) * (j < 3 ? 1. : 2.) *
+                 a.access_raw_entry(6 * i + j) * b.access_raw_entry(6 * j + i);
+      return sum;
+    }
+
+
+
     /// Of the isotropic tensor next to this one.
     double
     poissons_ratio(const SymmetricTensor<4, 3> &tangent)
@@ -96,13 +110,24 @@ namespace Viscoplastic
 
     tangents = std::move(new_tangents);
     compliances.clear();
-    max_nu = -1.;
-    for (const SymmetricTensor<4, 3> &tangent : tangents)
+    max_nu                        = -1.;
+    double                largest = 1.;
+    const Stiffness      *last    = nullptr;
+    SymmetricTensor<4, 3> E;
+    for (std::size_t i = 0; i < tangents.size(); ++i)
       {
-        compliances.push_back(invert(tangent));
-        max_nu = std::max(max_nu, poissons_ratio(tangent));
+        compliances.push_back(invert(tangents[i]));
+        max_nu = std::max(max_nu, poissons_ratio(tangents[i]));
+        // The largest eigenvalue of C^-1 E: with a potential, all others are at
+        // least 1.
+        const Stiffness &stiffness = sampling.moduli(i / n);
+        if (&stiffness != last)
+          E = stiffness.tensor();
+        last    = &stiffness;
+        largest = std::max(largest, trace(compliances[i], E) - 5.);
       }
     max_nu = Utilities::MPI::max(max_nu, comm);
+    ratio  = std::sqrt(Utilities::MPI::max(largest, comm));
     assemble();
     return true;
   }

@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <limits>
@@ -74,6 +75,10 @@ namespace Viscoplastic
       tangent = std::make_unique<TangentMatrix<dim>>(laws, matrix);
     else
       make_solver(matrix, moduli.max_poissons_ratio());
+    const Parameters &parameters = space.scene.parameters;
+    if (parameters.error_control.error_bar ||
+        parameters.refinement.strategy == "residual")
+      estimator = std::make_unique<ResidualEstimator<dim>>(sampling);
   }
 
 
@@ -121,8 +126,10 @@ namespace Viscoplastic
                       dim>::mesh_reconstruction_after_repartitioning)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
-    , contact_solver(parameters.solver.strict_tolerance(),
-                     parameters.solver.maximal_iterations)
+    , contact_solver(parameters.solver.maximal_iterations)
+    , error_bar(parameters.error_control.error_bar ?
+                  std::make_unique<ErrorBar<dim>>(scene) :
+                  nullptr)
     , progress(console, scene.schedule.n_steps())
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
   {}
@@ -148,19 +155,10 @@ namespace Viscoplastic
       begin();
 
     const SignalRequests signals;
-    const unsigned int   every_n_steps = parameters.refinement.every_n_steps;
     while (state.n < scene.schedule.n_steps())
       {
-        const TimeStep time_step = scene.schedule.step(state.n + 1);
-        if (scene.is_adaptive() && state.n > 0 && state.n % every_n_steps == 0)
-          adapt_mesh();
-        Step step = advance(state, forces, time_step);
-        if (scene.is_adaptive())
-          estimate(step.state);
-        record(state, step, time_step);
-        state  = std::move(step.state);
-        forces = std::move(step.forces);
-        if (output->is_due(time_step))
+        make_step();
+        if (output->is_due(scene.schedule.step(state.n)))
           write_fields();
         const std::string interruption = keep_checkpoints(signals);
         if (!interruption.empty())
@@ -173,10 +171,72 @@ namespace Viscoplastic
 
 
   template <int dim>
+  RunSummary<dim>
+  ViscoplasticContact<dim>::run_without_files()
+  {
+    make_mesh();
+    set_up();
+    set_initial_state();
+    check_steps();
+    record_initial_state();
+    while (state.n < scene.schedule.n_steps())
+      make_step();
+    return summary;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::compare_with(const RunSummary<dim> &coarser)
+  {
+    coarser_summary = coarser;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::make_step()
+  {
+    const TimeStep     time_step     = scene.schedule.step(state.n + 1);
+    const unsigned int every_n_steps = parameters.refinement.every_n_steps;
+    if (scene.is_adaptive() && state.n > 0 && state.n % every_n_steps == 0)
+      adapt_mesh();
+    Step         step     = advance(state, forces, time_step);
+    const double residual = estimate(step.state);
+    if (error_bar)
+      {
+        if (scene.has_viscosity())
+          {
+            TimerOutput::Scope phase(timer, "rate");
+            error_bar->evaluate_rate(discretisation->laws, state, step.state);
+          }
+        TimerOutput::Scope phase(timer, "estimate");
+        step.errors = error_bar->assess(discretisation->sampling,
+                                        discretisation->matrix,
+                                        state,
+                                        step.forces,
+                                        step.report,
+                                        residual,
+                                        step.state);
+        error_bar->accept(step.errors, step.state.t);
+      }
+    record(state, step, time_step);
+    state  = std::move(step.state);
+    forces = std::move(step.forces);
+  }
+
+
+
+  template <int dim>
   void
   ViscoplasticContact<dim>::begin()
   {
+    check_references();
     set_up();
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      check_exact_solution(discretisation->space);
     set_initial_state();
     check_steps();
     output.emplace(scene, communicator);
@@ -184,15 +244,25 @@ namespace Viscoplastic
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       statistics =
         std::make_unique<Statistics>(output->directory() + "statistics.csv");
+    record_initial_state();
+    write_fields();
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::record_initial_state()
+  {
     Step initial{state,
                  forces,
                  initial_report,
                  {},
                  std::numeric_limits<double>::infinity(),
                  0.,
-                 {}};
+                 {},
+                 error_bar ? error_bar->ledger() : ErrorLedger()};
     record(state, initial, {0, 0., 0., 0.});
-    write_fields();
   }
 
 
@@ -216,6 +286,8 @@ namespace Viscoplastic
     dof_handler.distribute_dofs(fe);
     // The old one goes first: matrices and factors are what fills memory.
     is_solved_on_mesh = false;
+    if (error_bar)
+      error_bar->forget_rate();
     discretisation.reset();
     discretisation = std::make_unique<Discretisation>(dof_handler, scene);
     discretisation->make_matrix();
@@ -236,6 +308,8 @@ namespace Viscoplastic
     const Discretisation         &d       = *discretisation;
     const InitialStateParameters &initial = parameters.initial_state;
     state = make_initial_state(d.sampling, initial.equilibrate);
+    if (error_bar)
+      error_bar->begin(d.sampling, state);
     const Load<dim>           load = d.loads.assemble(0.);
     const std::vector<double> bounds =
       d.face ? d.face->bounds(0.) : std::vector<double>();
@@ -255,8 +329,12 @@ namespace Viscoplastic
         check_compatibility(load);
       }
     forces = evaluate_forces(d.sampling, d.matrix, load, state);
-    if (scene.is_adaptive())
-      estimate(state);
+    if (scene.is_adaptive() || initial.equilibrate)
+      {
+        const double residual = estimate(state);
+        if (error_bar && initial.equilibrate)
+          error_bar->assess_equilibrium(forces, initial_report, residual);
+      }
   }
 
 
@@ -269,6 +347,9 @@ namespace Viscoplastic
     const double tolerance  = parameters.initial_state.compatibility_tolerance;
     const double violation =
       compatibility_violation(d.space, load, d.face.get(), state.friction);
+    // Data that a solution makes are compatible up to quadrature.
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      return;
     std::ostringstream message;
     message << "The initial data are not in equilibrium with the loads at "
                "t = 0, (2.12): the relative violation is "
@@ -283,21 +364,38 @@ namespace Viscoplastic
 
   template <int dim>
   FlowStep<dim>
-  ViscoplasticContact<dim>::flow(const State<dim> &from,
-                                 const double      t,
+  ViscoplasticContact<dim>::flow(const State<dim> &old_state,
                                  const TimeStep   &time_step) const
   {
-    FlowStep<dim> flow = advance_irreversible_stress(
-      discretisation->laws, from.u, from.z, t, time_step.k);
+    // With an error bar, G has been evaluated at the end of the last step.
+    const FlowLaws<dim> &laws = discretisation->laws;
+    FlowStep<dim>        flow =
+      error_bar ?
+               advance_irreversible_stress<dim>(error_bar->rate(laws, old_state),
+                                         old_state.z,
+                                         time_step.k) :
+               advance_irreversible_stress(
+          laws, old_state.u, old_state.z, time_step.t_old, time_step.k);
+    check_stability(flow.relaxation_rate, time_step);
+    return flow;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_stability(const double    relaxation_rate,
+                                            const TimeStep &time_step) const
+  {
     std::ostringstream message;
     message << "The time step " << time_step.k << " of step " << time_step.n
-            << " (t = " << time_step.t << ") exceeds the stability limit 2/r = "
-            << 2. / flow.relaxation_rate << " of " << parameters.time.scheme
+            << " (t = " << time_step.t
+            << ") exceeds the stability limit 2/r = " << 2. / relaxation_rate
+            << " of " << parameters.time.scheme
             << "; take more steps in 'Time/Phases', or set 'Time/Scheme' = "
                "backward Euler.";
-    AssertThrow(time_step.k * flow.relaxation_rate <= 2. * (1. + 1e-10),
+    AssertThrow(time_step.k * relaxation_rate <= 2. * (1. + 1e-10),
                 ExcMessage(message.str()));
-    return flow;
   }
 
 
@@ -358,16 +456,9 @@ namespace Viscoplastic
                                                const TimeStep    &time_step,
                                                Step              &step)
   {
-    State<dim> &state    = step.state;
-    state.z              = old_state.z;
-    double     rate      = 0.;
-    const auto flow_from = [&](const State<dim> &from, const double t) {
-      TimerOutput::Scope phase(timer, "rate");
-      FlowStep<dim>      result = flow(from, t, time_step);
-      rate                      = std::max(rate, result.relaxation_rate);
-      step.capped_volume = std::max(step.capped_volume, result.capped_volume);
-      return std::move(result.z);
-    };
+    State<dim> &state     = step.state;
+    state.z               = old_state.z;
+    double     rate       = 0.;
     const auto solve_with = [&](const State<dim> &guess) {
       TimerOutput::Scope  phase(timer, "contact");
       const ContactReport last = step.report;
@@ -377,16 +468,37 @@ namespace Viscoplastic
       step.report.linear_iterations += last.linear_iterations;
     };
 
+    const auto note = [&](const double relaxation_rate,
+                          const double capped_volume) {
+      rate               = std::max(rate, relaxation_rate);
+      step.capped_volume = std::max(step.capped_volume, capped_volume);
+    };
+
     if (scene.has_viscosity())
-      state.z = flow_from(old_state, time_step.t_old);
+      {
+        TimerOutput::Scope phase(timer, "rate");
+        FlowStep<dim>      z_step = flow(old_state, time_step);
+        state.z                   = std::move(z_step.z);
+        note(z_step.relaxation_rate, z_step.capped_volume);
+      }
     solve_with(old_state);
     if (scene.has_viscosity() && parameters.time.scheme == "Heun")
       {
         // z_{n-1} + k (G_{n-1} + G*)/2 with G* at the state just predicted.
         const State<dim> predicted = state;
-        state.z                    = flow_from(predicted, time_step.t);
-        for (std::size_t i = 0; i < state.z.size(); ++i)
-          state.z[i] = 0.5 * (old_state.z[i] + state.z[i]);
+        {
+          TimerOutput::Scope phase(timer, "rate");
+          const FlowRate     end = evaluate_flow(discretisation->laws,
+                                             predicted.u,
+                                             predicted.z,
+                                             time_step.t,
+                                             ExactSolution<dim>::Side::before);
+          check_stability(end.relaxation_rate, time_step);
+          note(end.relaxation_rate, end.capped_volume);
+          for (std::size_t i = 0; i < state.z.size(); ++i)
+            state.z[i] = 0.5 * (old_state.z[i] + predicted.z[i] +
+                                time_step.k * end.rate[i]);
+        }
         solve_with(predicted);
       }
     if (rate > 0.)
@@ -433,6 +545,7 @@ namespace Viscoplastic
                                             right_side,
                                             bounds,
                                             foundation_step,
+                                            step_tolerance(),
                                             u,
                                             new_state.friction);
     set_displacement(u, old_forces, new_state);
@@ -520,12 +633,26 @@ namespace Viscoplastic
           increment -= foundation_step;
         d.solver->begin(right_side, u);
         return contact_solver.solve(
-          *d.solver, d.face->layout(), bounds, increment, friction);
+          *d.solver, d.face->layout(), bounds, tolerance, increment, friction);
       }
     ContactReport report;
-    report.linear_iterations =
-      d.solver->solve(right_side, u, parameters.solver.strict_tolerance());
+    report.linear_iterations = d.solver->solve(right_side, u, tolerance);
+    report.tolerance         = tolerance;
+    report.error             = d.solver->rounding_error();
+    if (!d.solver->is_exact())
+      report.error =
+        std::max(report.error, tolerance * d.solver->energy_norm());
     return report;
+  }
+
+
+
+  template <int dim>
+  double
+  ViscoplasticContact<dim>::step_tolerance() const
+  {
+    return error_bar ? error_bar->tolerance() :
+                       parameters.solver.strict_tolerance();
   }
 
 
@@ -553,21 +680,23 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
+  double
   ViscoplasticContact<dim>::estimate(const State<dim> &of)
   {
     const Discretisation &d = *discretisation;
     TimerOutput::Scope    phase(timer, "estimate");
     if (parameters.refinement.strategy == "kelly")
-      {
-        squared_estimate = kelly_estimate(d.space, of.u);
-        return;
-      }
+      squared_estimate = kelly_estimate(d.space, of.u);
+    if (!d.estimator)
+      return 0.;
     DistributedVector density;
     if (d.face)
       density = d.face->density(of.friction);
-    squared_estimate = residual_estimate(
-      d.sampling, of.u, of.z, of.t, d.face ? &density : nullptr);
+    const Vector<double> residual =
+      d.estimator->estimate(of.u, of.z, of.t, d.face ? &density : nullptr);
+    if (parameters.refinement.strategy == "residual")
+      squared_estimate = residual;
+    return total_estimate(residual, communicator);
   }
 
 

@@ -60,6 +60,10 @@ namespace Viscoplastic
       return false;
     }
 
+    /// Whether solve() leaves nothing but rounding, whatever its tolerance.
+    virtual bool
+    is_exact() const = 0;
+
     /// For the user: "direct (CHOLMOD)".
     virtual std::string
     name() const = 0;

@@ -33,6 +33,9 @@ namespace Viscoplastic
     bool
     have_constant_tangents() const;
 
+    /// Null unless a manufactured solution has a source.
+    const ExactSolution<dim> *const source_solution;
+
     /// Throws ExcMessage if a parameter is out of range somewhere at time t.
     void
     check(const double t) const;
@@ -71,6 +74,18 @@ namespace Viscoplastic
       return AtTime(*this, t);
     }
 
+    /**
+     * What a manufactured solution adds to G at a sample,
+     * sigma' - E eps(u') - G(t, sigma, eps(u)) of that solution; zero in other
+     * scenes. The time derivatives are those of the step on this side of
+     * the time of @p now.
+     */
+    SymmetricTensor<2, 3>
+    source(const AtTime                           &now,
+           const std::size_t                       cell,
+           const unsigned int                      s,
+           const typename ExactSolution<dim>::Side side) const;
+
   private:
     struct Entry
     {
@@ -85,6 +100,31 @@ namespace Viscoplastic
     /// not on time.
     std::vector<std::array<double, 6>> parameters;
   };
+
+
+  /// G at a state, and what it means for a step from there.
+  struct FlowRate
+  {
+    /// At each sample.
+    IrreversibleStress rate;
+    /// The largest relaxation rate r; forward Euler is stable for k <= 2/r.
+    /// Collective result.
+    double relaxation_rate;
+    /// Volume of the samples with stresses beyond the cap of their law.
+    /// Collective result.
+    double capped_volume;
+  };
+
+  /// One evaluation a sample; a source is that of the step on this side of t.
+  /// Collective.
+  template <int dim>
+  FlowRate
+  evaluate_flow(const FlowLaws<dim>                    &laws,
+                const DistributedVector                &ghosted_u,
+                const IrreversibleStress               &z,
+                const double                            t,
+                const typename ExactSolution<dim>::Side side =
+                  ExactSolution<dim>::Side::after);
 
 
   /// Forward Euler for z, (3.19), and what the step meant.
@@ -110,5 +150,12 @@ namespace Viscoplastic
                               const DistributedVector  &ghosted_u,
                               const IrreversibleStress &z,
                               const double              t,
+                              const double              k);
+
+  /// The same with G as evaluated at the beginning of the step.
+  template <int dim>
+  FlowStep<dim>
+  advance_irreversible_stress(const FlowRate           &flow,
+                              const IrreversibleStress &z,
                               const double              k);
 } // namespace Viscoplastic

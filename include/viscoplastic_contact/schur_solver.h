@@ -39,6 +39,12 @@ namespace Viscoplastic
     bool
     renew(const DistributedMatrix &matrix) override;
 
+    bool
+    is_exact() const override
+    {
+      return true;
+    }
+
     std::string
     name() const override;
 

@@ -50,6 +50,14 @@ namespace Viscoplastic
       return max_nu;
     }
 
+    /// A bound on the energy norm of a(.,.) over that of the matrix, at least
+    /// 1 and about (1 + k r)^(1/2).
+    double
+    norm_ratio() const
+    {
+      return ratio;
+    }
+
     /// z + (C - E) (eps(to) - eps(from)), at the samples.
     IrreversibleStress
     extrapolate(const IrreversibleStress &z,
@@ -72,6 +80,6 @@ namespace Viscoplastic
     const DistributedMatrix           &elastic_matrix;
     std::vector<SymmetricTensor<4, 3>> tangents, compliances; // a sample
     DistributedMatrix                  tangent_matrix;
-    double                             step_size = 0., max_nu = -1.;
+    double                             step_size = 0., max_nu = -1., ratio = 1.;
   };
 } // namespace Viscoplastic

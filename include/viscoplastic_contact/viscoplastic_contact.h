@@ -13,14 +13,17 @@
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/contact_tension.h>
+#include <viscoplastic_contact/error_bar.h>
 #include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/force_balance.h>
 #include <viscoplastic_contact/loads.h>
 #include <viscoplastic_contact/output.h>
 #include <viscoplastic_contact/point_probe.h>
 #include <viscoplastic_contact/progress.h>
+#include <viscoplastic_contact/residual_estimator.h>
 #include <viscoplastic_contact/run_summary.h>
 #include <viscoplastic_contact/signals.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
 #include <viscoplastic_contact/tangent_matrix.h>
@@ -56,6 +59,15 @@ namespace Viscoplastic
     std::string
     run(const CommandLine::Restart restart = CommandLine::Restart::no);
 
+    /// All steps without any file, and what is known at the end.
+    RunSummary<dim>
+    run_without_files();
+
+    /// The closing words of run() give each quantity with its difference from
+    /// that of a run with twice the mesh width and twice the time steps.
+    void
+    compare_with(const RunSummary<dim> &coarser);
+
     /**
      * Everything that can be known without solving: validates the scene with
      * its mesh, initial data and the data of all times, and prints size,
@@ -90,6 +102,8 @@ namespace Viscoplastic
       std::unique_ptr<ContactTension<dim>> tension;
       /// Null without friction.
       std::unique_ptr<ContactFace<dim>> face;
+      /// Null in scenes without error bar that are not refined by it.
+      std::unique_ptr<ResidualEstimator<dim>> estimator;
 
       /// How often a solver will be used at least.
       unsigned int      n_solves;
@@ -115,6 +129,8 @@ namespace Viscoplastic
       double capped_volume;
       /// What the foundation moved, as a face vector; empty at rest.
       Vector<double> foundation_step;
+      /// Zero without error bar.
+      ErrorLedger errors;
       /// Of backward Euler; 0 in other schemes.
       unsigned int newton_iterations = 0;
     };
@@ -136,6 +152,14 @@ namespace Viscoplastic
     /// From the start: everything up to the initial state.
     void
     begin();
+
+    /// Add the row of the initial state.
+    void
+    record_initial_state();
+
+    /// The next step, recorded and accepted.
+    void
+    make_step();
 
     void
     make_mesh();
@@ -162,12 +186,14 @@ namespace Viscoplastic
              scene.has_viscosity();
     }
 
-    /// z at the end of a step of forward Euler from a state, with G at a time.
-    /// Throws ExcMessage beyond the stability limit.
+    /// z at the end of a step of forward Euler. Throws ExcMessage beyond the
+    /// stability limit.
     FlowStep<dim>
-    flow(const State<dim> &from,
-         const double      t,
-         const TimeStep   &time_step) const;
+    flow(const State<dim> &old_state, const TimeStep &time_step) const;
+
+    void
+    check_stability(const double    relaxation_rate,
+                    const TimeStep &time_step) const;
 
     /// One step: a function of the state, its forces and the time step. It
     /// keeps nothing but what a linear solver knows of its preconditioner.
@@ -239,14 +265,15 @@ namespace Viscoplastic
           const Vector<double> &foundation_step,
           State<dim>           &state) const;
 
-    /// Solve with the present matrix from a start. @p right_side is the load
-    /// less what does not depend on u.
+    /// Solve with the present matrix from a start to a relative tolerance.
+    /// @p right_side is the load less what does not depend on u.
     ContactReport
     solve_from(const Forces<dim>         &old_forces,
                const Load<dim>           &load,
                const DistributedVector   &right_side,
                const std::vector<double> &bounds,
                const Vector<double>      &foundation_step,
+               const double               tolerance,
                DistributedVector         &u,
                FrictionState             &friction);
 
@@ -256,8 +283,13 @@ namespace Viscoplastic
                      const Forces<dim>       &old_forces,
                      State<dim>              &state);
 
-    /// Estimate the error of a state, in scenes that use it.
-    void
+    /// At which the iterations of a step stop, relative to the solution.
+    double
+    step_tolerance() const;
+
+    /// Estimate the error of a state: squared_estimate in adaptive scenes.
+    /// Returns the residual estimate; zero in scenes that do not use it.
+    double
     estimate(const State<dim> &of);
 
     void
@@ -316,6 +348,23 @@ namespace Viscoplastic
            const Step       &step,
            const TimeStep   &time_step);
 
+    /// Against the exact solution, or a reference at the ends of phases; not
+    /// a number where there is none. Writes such a reference where wanted.
+    SolutionErrors
+    measure_errors(const State<dim> &of);
+
+    /// Whether measure_errors() will give anything, now or later.
+    bool
+    measures_errors() const
+    {
+      return scene.exact_solution ||
+             !parameters.exact_solution.reference_directory.empty();
+    }
+
+    /// Refuse missing references before the run.
+    void
+    check_references() const;
+
     void
     write_fields();
 
@@ -332,6 +381,7 @@ namespace Viscoplastic
     DoFHandler<dim>                           dof_handler;
     std::unique_ptr<Discretisation>           discretisation;
     ContactSolver                             contact_solver;
+    std::unique_ptr<ErrorBar<dim>>            error_bar; // null if not wanted
 
     State<dim>     state;
     Forces<dim>    forces; // of the state
@@ -350,6 +400,8 @@ namespace Viscoplastic
     std::vector<PointProbe<dim>> probes;
     Progress                     progress;
     RunSummary<dim>              summary;
+    /// What compare_with() was given.
+    std::optional<RunSummary<dim>> coarser_summary;
     /// Wall time by phase over the run, and what it was a step ago.
     TimerOutput                   timer;
     std::map<std::string, double> last_seconds;

@@ -2,9 +2,12 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/price_list.h>
+#include <viscoplastic_contact/progress.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -215,5 +218,115 @@ namespace Viscoplastic
         lowest = std::min(lowest, market.seconds(h, steps));
       }
     return lowest;
+  }
+
+
+
+  std::vector<Price>
+  list_prices(const Market              &market,
+              const std::vector<double> &tolerances,
+              const double               budget)
+  {
+    std::vector<Price> prices;
+    for (const double tolerance : tolerances)
+      {
+        Price price;
+        price.tolerance    = tolerance;
+        price.offer        = cheapest(market, tolerance);
+        price.is_in_budget = price.offer && price.offer->seconds <= budget;
+        if (price.offer)
+          price.halving = ideal_seconds(market, tolerance / 2.) /
+                          ideal_seconds(market, tolerance);
+        prices.push_back(price);
+      }
+    return prices;
+  }
+
+
+
+  std::string
+  in_words(const Market &market, const Price &price, const double budget)
+  {
+    std::ostringstream text;
+    const auto         describe = [&text](const Offer &offer) {
+      text << "h = " << digits(offer.h) << " (mesh level " << offer.mesh_level
+           << "), " << offer.steps << " steps, " << digits(offer.dofs)
+           << " unknowns, about " << seconds_in_words(offer.seconds) << " and "
+           << digits(offer.memory, 2) << " MB";
+    };
+    text << "Error " << digits(price.tolerance) << ": ";
+    if (price.is_in_budget)
+      {
+        describe(*price.offer);
+        text << "; half of it costs " << digits(price.halving, 2)
+             << " times as much";
+        if (price.offer->is_far)
+          text << " (far beyond what was measured)";
+        return text.str() + '.';
+      }
+    text << "not within " << seconds_in_words(budget);
+    if (price.offer)
+      text << ", it would take about "
+           << seconds_in_words(price.offer->seconds);
+    if (const auto best = most_accurate(market, budget))
+      {
+        text << "; the smallest error there is about " << digits(best->error)
+             << ": ";
+        describe(*best);
+      }
+    return text.str() + '.';
+  }
+
+
+
+  std::string
+  next_refinement(const Market &market)
+  {
+    const Offer        now = offer(market, 0, market.k);
+    std::ostringstream text;
+    text << "The scene as it is: error about " << digits(now.error) << " ("
+         << digits(market.error.first(now.h), 2) << " of the mesh, "
+         << digits(market.error.second(now.k), 2) << " of the steps), "
+         << seconds_in_words(now.seconds) << ".";
+    const auto add = [&](const std::string &what, const Offer &next) {
+      text << " Halving " << what << ": error " << digits(next.error) << " for "
+           << digits(next.seconds / now.seconds, 2) << " times the seconds.";
+      return std::log(now.error / next.error) /
+             std::log(std::max(1.001, next.seconds / now.seconds));
+    };
+    const double of_h = add("h", offer(market, 1, market.k)),
+                 of_k = add("k", offer(market, 0, market.k / 2.));
+    add("both", offer(market, 1, market.k / 2.));
+    text << " Refine "
+         << (of_h > 1.2 * of_k ? "the mesh" :
+             of_k > 1.2 * of_h ? "the steps" :
+                                 "both")
+         << " next.";
+    return text.str();
+  }
+
+
+
+  std::string
+  seconds_in_words(const double seconds)
+  {
+    return seconds < 100. ? digits(seconds, 2) + " s" : duration(seconds);
+  }
+
+
+
+  std::string
+  digits(const double value, const unsigned int n)
+  {
+    std::ostringstream text;
+    text << std::setprecision(n) << value;
+    // 1.2e+05 is for programs.
+    if (std::abs(value) >= std::pow(10., n) && std::abs(value) < 1e9)
+      {
+        std::ostringstream whole;
+        whole << std::lround(value);
+        return whole.str();
+      }
+    return text.str();
   }
 } // namespace Viscoplastic

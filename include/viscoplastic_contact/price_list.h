@@ -91,4 +91,37 @@ namespace Viscoplastic
   /// value: the smooth curve below all offers.
   double
   ideal_seconds(const Market &market, const double tolerance);
+
+
+  /// What a tolerance costs.
+  struct Price
+  {
+    double tolerance;
+    /// Absent if no mesh is fine enough.
+    std::optional<Offer> offer;
+    bool                 is_in_budget = false;
+    /// Factor of seconds for half of the error, on the ideal curve.
+    double halving = std::numeric_limits<double>::quiet_NaN();
+  };
+
+  std::vector<Price>
+  list_prices(const Market              &market,
+              const std::vector<double> &tolerances,
+              const double               budget);
+
+  /// One price as a sentence.
+  std::string
+  in_words(const Market &market, const Price &price, const double budget);
+
+  /// What halving h, k, or both does to the scene as it is, in sentences.
+  std::string
+  next_refinement(const Market &market);
+
+  /// Seconds for people, small ones with two digits.
+  std::string
+  seconds_in_words(const double seconds);
+
+  /// Three significant digits, as in 0.0123 or 1.2e-5.
+  std::string
+  digits(const double value, const unsigned int n = 3);
 } // namespace Viscoplastic

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/boundary_condition.h>
 #include <viscoplastic_contact/spelling.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace Viscoplastic
@@ -81,6 +82,40 @@ namespace Viscoplastic
 
 
 
+    /// Of the exact solution: all, or those that are not `free'.
+    template <int dim>
+    std::array<std::optional<Expression<dim>>, dim>
+    derived_components(const std::string        &text,
+                       const std::string        &entry,
+                       const ExactSolution<dim> &solution)
+    {
+      std::vector<std::string> parts(dim, "exact");
+      if (!Utilities::trim(text).empty())
+        parts = Utilities::split_string_list(text, ';');
+      AssertThrow(parts.size() == dim &&
+                    std::all_of(parts.begin(),
+                                parts.end(),
+                                [](const std::string &part) {
+                                  return part == "exact" || part == "free";
+                                }),
+                  ExcMessage("'" + entry + "' is '" + excerpt(text) +
+                             "', but with 'Exact solution/Data' = solution it "
+                             "can only be left out, or be a list of `exact' "
+                             "and `free' for the " +
+                             std::to_string(dim) + " components."));
+      std::array<std::optional<Expression<dim>>, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (parts[d] == "exact")
+          result[d].emplace(
+            [&solution, d](const Point<dim> &x, const double t) {
+              return solution.displacement(x, t)[d];
+            },
+            "Exact solution/Displacement");
+      return result;
+    }
+
+
+
     /// Whether the entry @p name means something for the role and the friction
     /// law.
     template <int dim>
@@ -110,9 +145,11 @@ namespace Viscoplastic
   template <int dim>
   BoundaryCondition<dim>::BoundaryCondition(
     const types::boundary_id  id,
-    const BoundaryParameters &parameters)
+    const BoundaryParameters &parameters,
+    const ExactSolution<dim> *solution)
     : id(id)
     , role(role_by_name(id, parameters.role))
+    , solution(solution)
   {
     if (role == BoundaryRole::contact)
       friction_law = friction_law_by_name(id, parameters.friction_law);
@@ -122,9 +159,18 @@ namespace Viscoplastic
     const auto is_given = [](const std::string &text) {
       return !Utilities::trim(text).empty();
     };
+    if (solution)
+      for (const auto &[name, text] :
+           {std::make_pair("Traction", parameters.traction),
+            std::make_pair("Normal stress", parameters.normal_stress)})
+        AssertThrow(!is_given(text),
+                    ExcMessage("'" + entry(id, name) +
+                               "' is given, but 'Exact solution/Data' = "
+                               "solution makes it; leave one of them out."));
     const auto scalar = [&](const std::string &name, const std::string &text) {
       std::optional<Expression<dim>> result;
-      AssertThrow(is_given(text) || !uses(*this, name),
+      AssertThrow(is_given(text) || !uses(*this, name) ||
+                    (solution && name == "Normal stress"),
                   ExcMessage("'" + entry(id, name) +
                              "' is missing; the friction law " +
                              parameters.friction_law + " needs it."));
@@ -144,12 +190,17 @@ namespace Viscoplastic
     const bool has_displacement = uses(*this, "Displacement");
     if (has_displacement || is_given(parameters.displacement))
       {
-        auto components = given_components<dim>(parameters.displacement,
-                                                entry(id, "Displacement"));
+        auto components = solution ?
+                            derived_components<dim>(parameters.displacement,
+                                                    entry(id, "Displacement"),
+                                                    *solution) :
+                            given_components<dim>(parameters.displacement,
+                                                  entry(id, "Displacement"));
         if (has_displacement)
           displacement = std::move(components);
       }
-    AssertThrow(role != BoundaryRole::traction || is_given(parameters.traction),
+    AssertThrow(role != BoundaryRole::traction || solution ||
+                  is_given(parameters.traction),
                 ExcMessage("'" + entry(id, "Traction") +
                            "' is missing; a boundary without load has the "
                            "role free."));
@@ -216,6 +267,55 @@ namespace Viscoplastic
         AssertThrow(false, ExcMessage(message.str()));
       }
     return is_tresca ? factor : factor * std::abs(normal_stress->value(x, t));
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryCondition<dim>::derive_data()
+  {
+    if (solution && friction_law == FrictionLaw::coulomb)
+      normal_stress.emplace(
+        [solution = solution, normal = normal](const Point<dim> &x,
+                                               const double      t) {
+          return solution->traction(x, normal, t) * normal;
+        },
+        "Exact solution/Stress");
+  }
+
+
+
+  template <int dim>
+  bool
+  BoundaryCondition<dim>::load_depends_on_time() const
+  {
+    return (traction && traction->depends_on_time()) ||
+           (normal_stress && normal_stress->depends_on_time()) ||
+           has_derived_traction();
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::load(const Point<dim>     &x,
+                               const Tensor<1, dim> &outward_normal,
+                               const double          t) const
+  {
+    if (traction)
+      return traction->vector(x, t);
+    if (normal_stress)
+      return normal_stress->value(x, t) * outward_normal;
+    Tensor<1, dim> result;
+    if (has_derived_traction())
+      {
+        result = solution->traction(x, outward_normal, t);
+        for (unsigned int d = 0; d < dim; ++d)
+          if (displacement[d])
+            result[d] = 0.;
+      }
+    return result;
   }
 
 

@@ -3,6 +3,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/initial_state.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <algorithm>
@@ -77,6 +78,8 @@ namespace Viscoplastic
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(d.space, x);
 
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      check_exact_solution(d.space);
     // The initial data, and where they need no solution, the first step.
     state =
       make_initial_state(d.sampling, parameters.initial_state.equilibrate);

@@ -41,7 +41,9 @@ namespace Viscoplastic
         if (has_z)
           {
             mean += sampling.mean(c, &state.z[c * n]);
-            if (law)
+            // A source flows also where there is no law.
+            const bool flows = law || laws.source_solution;
+            if (flows)
               sampling.strains(c, old_state.u.begin(), old_strain.data());
             for (unsigned int s = 0; s < n; ++s)
               {
@@ -49,7 +51,7 @@ namespace Viscoplastic
                 const double weight = sampling.weight(c, s);
                 result.irreversible_energy +=
                   0.5 * weight * (stiffness.strain(z) * z);
-                if (law == nullptr)
+                if (!flows)
                   continue;
                 const auto &old_z  = old_state.z[c * n + s];
                 const auto  stress = stiffness.stress(strain[s]) + z;
@@ -57,7 +59,7 @@ namespace Viscoplastic
                   0.5 * (stiffness.stress(old_strain[s]) + old_z + stress);
                 SymmetricTensor<2, 3> driving_strain;
                 // Parameters may be expressions: only for laws that use them.
-                if (law->has_own_energy())
+                if (law && law->has_own_energy())
                   {
                     const LawPoint point = now.point(c, s);
                     driving_strain =

@@ -206,6 +206,7 @@ namespace Viscoplastic
     Tensor<1, dim>
     boundary_residual(const BoundaryCondition<dim> &condition,
                       const Point<dim>             &x,
+                      const Tensor<1, dim>         &outward_normal,
                       const double                  t,
                       const Tensor<1, dim>         &traction,
                       const Tensor<1, dim>         &multiplier_density)
@@ -219,15 +220,14 @@ namespace Viscoplastic
           case BoundaryRole::clamped:
             break;
           case BoundaryRole::displacement:
+            residual = traction - condition.load(x, outward_normal, t);
             for (unsigned int d = 0; d < dim; ++d)
-              if (!condition.displacement[d])
-                residual[d] = traction[d];
+              if (condition.displacement[d])
+                residual[d] = 0.;
             break;
           case BoundaryRole::traction:
           case BoundaryRole::free:
-            residual = traction;
-            if (condition.traction)
-              residual -= condition.traction->vector(x, t);
+            residual = traction - condition.load(x, outward_normal, t);
             break;
           case BoundaryRole::symmetry:
             residual = tangential(traction);
@@ -336,6 +336,7 @@ namespace Viscoplastic
             }
           square += boundary_residual(condition,
                                       face_values.quadrature_point(q),
+                                      face_values.normal_vector(q),
                                       t,
                                       traction[q],
                                       density[q])

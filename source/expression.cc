@@ -161,11 +161,26 @@ namespace Viscoplastic
 
 
   template <int dim>
+  Expression<dim>::Expression(const Function    &function,
+                              const std::string &entry)
+    : entry(entry)
+    , variables(FunctionParser<dim>::default_variable_names())
+    , time_dependent(true)
+    , position_dependent(true)
+    , constant(0.)
+    , function(function)
+  {}
+
+
+
+  template <int dim>
   double
   Expression<dim>::value(const Point<dim> &x, const double t) const
   {
     double result = constant;
-    if (time_dependent || position_dependent)
+    if (!parser)
+      result = function(x, t);
+    else if (time_dependent || position_dependent)
       {
         parser->set_time(t);
         result = parser->value(x);
@@ -173,8 +188,8 @@ namespace Viscoplastic
     if (!std::isfinite(result))
       {
         std::ostringstream message;
-        message << "The expression '" << excerpt(text) << "' of '" << entry
-                << "' has the value " << result << " at "
+        message << "The expression '" << (parser ? excerpt(text) : "derived")
+                << "' of '" << entry << "' has the value " << result << " at "
                 << (variables == FunctionParser<dim>::default_variable_names() ?
                       "x" :
                       variables)
@@ -220,6 +235,17 @@ namespace Viscoplastic
                   "' has " + std::to_string(parts.size()) + "."));
     for (const std::string &part : parts)
       components.emplace_back(part, entry);
+  }
+
+
+
+  template <int dim>
+  VectorExpression<dim>::VectorExpression(
+    const std::vector<typename Expression<dim>::Function> &functions,
+    const std::string                                     &entry)
+  {
+    for (const auto &function : functions)
+      components.emplace_back(function, entry);
   }
 
 

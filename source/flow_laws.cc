@@ -31,6 +31,9 @@ namespace Viscoplastic
     , any(false)
     , any_cap(false)
     , any_own_energy(false)
+    , source_solution(sampling.space.scene.has_source() ?
+                        sampling.space.scene.exact_solution.get() :
+                        nullptr)
   {
     const Scene<dim> &scene         = sampling.space.scene;
     bool              any_to_sample = false;
@@ -98,6 +101,30 @@ namespace Viscoplastic
 
 
   template <int dim>
+  SymmetricTensor<2, 3>
+  FlowLaws<dim>::source(const AtTime                           &now,
+                        const std::size_t                       cell,
+                        const unsigned int                      s,
+                        const typename ExactSolution<dim>::Side side) const
+  {
+    SymmetricTensor<2, 3> result;
+    if (source_solution == nullptr)
+      return result;
+    const Point<dim> &x         = sampling.position(cell, s);
+    const Stiffness  &stiffness = sampling.moduli(cell);
+    result                      = source_solution->stress_rate(x, now.t, side) -
+             stiffness.stress(source_solution->strain_rate(x, now.t, side));
+    if (const ViscoplasticLaw *law = now.law(cell))
+      result -= law->rate(source_solution->stress(x, now.t),
+                          source_solution->strain(x, now.t),
+                          stiffness,
+                          now.point(cell, s));
+    return result;
+  }
+
+
+
+  template <int dim>
   FlowLaws<dim>::AtTime::AtTime(const FlowLaws &laws, const double t)
     : laws(laws)
     , t(t)
@@ -145,6 +172,10 @@ namespace Viscoplastic
     std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
     for (std::size_t c = 0; c < sampling.n_cells(); ++c)
       {
+        if (laws.source_solution)
+          for (unsigned int s = 0; s < sampling.n_samples; ++s)
+            result.z[c * sampling.n_samples + s] +=
+              k * laws.source(now, c, s, ExactSolution<dim>::Side::after);
         const ViscoplasticLaw *law = now.law(c);
         if (law == nullptr)
           continue;

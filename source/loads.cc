@@ -18,21 +18,10 @@ namespace Viscoplastic
             {
               const auto &condition =
                 space.scene.boundary.at(cell->face(f)->boundary_id());
-              if (condition.traction || condition.normal_stress)
+              if (condition.carries_load())
                 faces.push_back({cell, f, &condition});
             }
     add(0., false, constant);
-  }
-
-
-
-  template <int dim>
-  bool
-  Loads<dim>::depends_on_time(const BoundaryCondition<dim> &condition)
-  {
-    return (condition.traction && condition.traction->depends_on_time()) ||
-           (condition.normal_stress &&
-            condition.normal_stress->depends_on_time());
   }
 
 
@@ -90,20 +79,18 @@ namespace Viscoplastic
                                     update_quadrature_points |
                                     update_normal_vectors);
     for (const auto &pair : space.scene.boundary)
-      any |= (pair.second.traction || pair.second.normal_stress) &&
-             depends_on_time(pair.second) == time_dependent;
+      any |= pair.second.carries_load() &&
+             pair.second.load_depends_on_time() == time_dependent;
     for (const Face &face : faces)
-      if (depends_on_time(*face.condition) == time_dependent)
+      if (face.condition->load_depends_on_time() == time_dependent)
         {
           face_values.reinit(face.cell, face.face);
           for (const unsigned int q : face_values.quadrature_point_indices())
             {
-              const Point<dim>    &x = face_values.quadrature_point(q);
               const Tensor<1, dim> force =
-                face.condition->traction ?
-                  face.condition->traction->vector(x, t) :
-                  face.condition->normal_stress->value(x, t) *
-                    face_values.normal_vector(q);
+                face.condition->load(face_values.quadrature_point(q),
+                                     face_values.normal_vector(q),
+                                     t);
               add_at_point(face_values,
                            q,
                            face.cell,

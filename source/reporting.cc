@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
 #include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
@@ -13,6 +14,26 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    void
+    add_errors(const SolutionErrors &errors, Statistics &row)
+    {
+      const auto add = [&row](const std::string   &prefix,
+                              const SolutionNorms &norms) {
+        row.add(prefix + "energy", norms.energy);
+        row.add(prefix + "h1", norms.h1);
+        row.add(prefix + "stress", norms.stress);
+        row.add(prefix + "multiplier", norms.multiplier);
+      };
+      add("error_", errors.error);
+      row.add("error_memory", errors.memory);
+      add("exact_", errors.exact);
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   ViscoplasticContact<dim>::announce() const
@@ -142,6 +163,18 @@ namespace Viscoplastic
                               total_estimate(squared_estimate, communicator) :
                               0.;
     phase.stop();
+    SolutionErrors errors;
+    if (scene.exact_solution)
+      {
+        TimerOutput::Scope errors_phase(timer, "errors");
+        DistributedVector  density;
+        if (d.face)
+          density = d.face->density(step.state.friction);
+        errors =
+          solution_errors(d.sampling, step.state, d.face ? &density : nullptr);
+        summary.largest_error.update(errors.error);
+        summary.largest_exact.update(errors.exact);
+      }
 
     if (statistics)
       {
@@ -197,6 +230,8 @@ namespace Viscoplastic
           row.add_vector("point" + std::to_string(i), point_values[i], dim);
         if (scene.is_adaptive())
           row.add("estimator", estimate);
+        if (scene.exact_solution)
+          add_errors(errors, row);
 
         const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
         for (const char *name :

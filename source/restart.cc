@@ -94,6 +94,9 @@ namespace Viscoplastic
                              &summary.capped_volume,
                              &summary.tension_area})
       archive & largest->value & largest->t;
+    for (SolutionNorms *norms :
+         {&summary.largest_error, &summary.largest_exact})
+      archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
   }
 
 

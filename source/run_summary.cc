@@ -81,6 +81,20 @@ namespace Viscoplastic
                   " at t = " + number(slip_area.t));
     if (capped_volume.value > 0.)
       print_row(out, "volume beyond the cap", with_time(capped_volume));
+    const auto error =
+      [&](const std::string &name, const double value, const double norm) {
+        if (norm > 0.)
+          print_row(out,
+                    "error of " + name,
+                    number(value) + " (" + number(100. * value / norm) +
+                      " % of the exact solution)");
+      };
+    error("u in energy", largest_error.energy, largest_exact.energy);
+    error("u in H1", largest_error.h1, largest_exact.h1);
+    error("stress in L2", largest_error.stress, largest_exact.stress);
+    error("multiplier in L2",
+          largest_error.multiplier,
+          largest_exact.multiplier);
   }
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/mesh_ids.h>
 #include <viscoplastic_contact/mesh_pieces.h>
@@ -10,9 +11,41 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// The diagonal of the box around the vertices.
+    template <int dim>
+    double
+    mesh_size(const Triangulation<dim> &triangulation)
+    {
+      const auto corners =
+        GridTools::compute_bounding_box(triangulation).get_boundary_points();
+      return corners.first.distance(corners.second);
+    }
+
+
+
+    template <int dim>
+    std::unique_ptr<ExactSolution<dim>>
+    make_exact_solution(const ExactSolutionParameters &given,
+                        const double                   end_time)
+    {
+      const bool is_given = !Utilities::trim(given.displacement).empty() ||
+                            !Utilities::trim(given.stress).empty() ||
+                            given.data == "solution";
+      return is_given ? std::make_unique<ExactSolution<dim>>(given, end_time) :
+                        nullptr;
+    }
+  } // namespace
+
+
+
   template <int dim>
   Scene<dim>::Scene(const Parameters &parameters)
     : parameters(parameters)
+    , schedule(parameters.time.phases)
+    , exact_solution(make_exact_solution<dim>(parameters.exact_solution,
+                                              schedule.end_time()))
     , body_force(optional_vector<dim>(parameters.loads.body_force,
                                       dim,
                                       "Loads/Body force"))
@@ -23,15 +56,66 @@ namespace Viscoplastic
     , initial_stress(optional_vector<dim>(parameters.initial_state.stress,
                                           stress_components<dim>().size(),
                                           "Initial state/Stress"))
-    , schedule(parameters.time.phases)
   {
+    const ExactSolution<dim> *source_of_data =
+      exact_solution && exact_solution->makes_data ? exact_solution.get() :
+                                                     nullptr;
     for (const auto &[id, boundary_parameters] : parameters.boundaries)
-      boundary.emplace(id, BoundaryCondition<dim>(id, boundary_parameters));
+      boundary.emplace(
+        id, BoundaryCondition<dim>(id, boundary_parameters, source_of_data));
+    if (source_of_data)
+      derive_data();
 
     for (const std::string &point :
          Utilities::split_string_list(parameters.output.points, ';'))
       if (!point.empty())
         output_points.push_back(parse_point<dim>(point, "Output/Points"));
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::derive_data()
+  {
+    for (const auto &[name, text] :
+         {std::make_pair("Loads/Body force", parameters.loads.body_force),
+          std::make_pair("Initial state/Displacement",
+                         parameters.initial_state.displacement),
+          std::make_pair("Initial state/Stress",
+                         parameters.initial_state.stress)})
+      AssertThrow(Utilities::trim(text).empty(),
+                  ExcMessage("'" + std::string(name) +
+                             "' is given, but 'Exact solution/Data' = solution "
+                             "makes it; leave one of them out."));
+    AssertThrow(!parameters.initial_state.equilibrate,
+                ExcMessage("'Initial state/Equilibrate' contradicts 'Exact "
+                           "solution/Data' = solution, whose initial data are "
+                           "those of the solution."));
+
+    using Functions = std::vector<typename Expression<dim>::Function>;
+    const ExactSolution<dim> &solution = *exact_solution;
+    const std::string         stress   = "Exact solution/Stress",
+                      displacement     = "Exact solution/Displacement";
+    Functions forces, displacements, stresses;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        forces.push_back([&solution, d](const Point<dim> &x, const double t) {
+          return solution.body_force(x, t)[d];
+        });
+        displacements.push_back(
+          [&solution, d](const Point<dim> &x, const double t) {
+            return solution.displacement(x, t)[d];
+          });
+      }
+    for (const auto &[i, j] : stress_components<dim>())
+      stresses.push_back(
+        [&solution, i = i, j = j](const Point<dim> &x, const double t) {
+          return solution.stress(x, t)[i][j];
+        });
+    body_force.emplace(forces, stress);
+    initial_displacement.emplace(displacements, displacement);
+    initial_stress.emplace(stresses, stress);
   }
 
 
@@ -47,6 +131,14 @@ namespace Viscoplastic
     inspect_flatness(triangulation);
     inspect_junctions(triangulation);
     make_materials(material_ids(triangulation));
+    if (exact_solution)
+      {
+        const bool is_elastic = materials.size() == 1 && !materials[0]->law;
+        exact_solution->set_body(mesh_size(triangulation),
+                                 is_elastic ? materials[0].get() : nullptr);
+        for (auto &pair : boundary)
+          pair.second.derive_data();
+      }
   }
 
 
@@ -216,7 +308,7 @@ namespace Viscoplastic
     for (const auto &material : materials)
       if (material->law)
         return true;
-    return false;
+    return has_source();
   }
 
 
@@ -307,6 +399,11 @@ namespace Viscoplastic
     add("foundation moving in tangential direction",
         boundaries(
           [](const auto &b) { return b.foundation_motion.has_value(); }));
+    if (exact_solution)
+      result.push_back(exact_solution->makes_data ?
+                         "manufactured solution, which makes loads, initial "
+                         "data and a source in G" :
+                         "errors against an exact solution");
     if (body_force)
       result.push_back("body force");
     add("surface traction",

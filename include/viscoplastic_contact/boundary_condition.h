@@ -4,6 +4,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
+#include <viscoplastic_contact/exact_solution.h>
 #include <viscoplastic_contact/expression.h>
 #include <viscoplastic_contact/parameters.h>
 
@@ -39,10 +40,16 @@ namespace Viscoplastic
   {
     /**
      * Parses all entries, also those that it does not use. Throws ExcMessage
-     * naming the entry.
+     * naming the entry. If there is a @p solution that makes the data, what
+     * follows from it must not be given.
      */
     BoundaryCondition(const types::boundary_id  id,
-                      const BoundaryParameters &parameters);
+                      const BoundaryParameters &parameters,
+                      const ExactSolution<dim> *solution = nullptr);
+
+    /// Complete the data with what follows from the solution and the normal.
+    void
+    derive_data();
 
     types::boundary_id id;
     BoundaryRole       role;
@@ -60,6 +67,8 @@ namespace Viscoplastic
     std::optional<Expression<dim>> friction_bound;
     /// mu and S of the law coulomb.
     std::optional<Expression<dim>> friction_coefficient, normal_stress;
+    /// What makes the data, or null.
+    const ExactSolution<dim> *solution;
     /// Outward unit normal of a symmetry or contact piece, which is flat.
     Tensor<1, dim> normal;
 
@@ -85,6 +94,23 @@ namespace Viscoplastic
     {
       return friction_law == FrictionLaw::glued;
     }
+
+    /// Whether there is F or S.
+    bool
+    carries_load() const
+    {
+      return traction || normal_stress || has_derived_traction();
+    }
+
+    bool
+    load_depends_on_time() const;
+
+    /// The force per area that is given at a point with this outward normal:
+    /// F, or S nu; zero in the directions in which u is prescribed.
+    Tensor<1, dim>
+    load(const Point<dim>     &x,
+         const Tensor<1, dim> &outward_normal,
+         const double          t) const;
 
     /// The tangential part of w(x,t) - w(x,0); zero at rest.
     Tensor<1, dim>
@@ -127,5 +153,15 @@ namespace Viscoplastic
     /// Whether bound() depends on time.
     bool
     bound_depends_on_time() const;
+
+  private:
+    /// Whether F is sigma nu of the solution.
+    bool
+    has_derived_traction() const
+    {
+      return solution &&
+             (role == BoundaryRole::traction || role == BoundaryRole::free ||
+              (role == BoundaryRole::displacement && !prescribes_all()));
+    }
   };
 } // namespace Viscoplastic

@@ -5,6 +5,7 @@
 #include <deal.II/base/point.h>
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,6 +55,12 @@ namespace Viscoplastic
                const std::string &variables =
                  FunctionParser<dim>::default_variable_names());
 
+    using Function = std::function<double(const Point<dim> &, const double)>;
+
+    /// A datum that follows from others in ways unknown here; @p entry names
+    /// what it follows from.
+    Expression(const Function &function, const std::string &entry);
+
     /// Throws ExcMessage naming entry, place and time if not finite.
     double
     value(const Point<dim> &x, const double t) const;
@@ -86,6 +93,7 @@ namespace Viscoplastic
     bool                                 time_dependent, position_dependent;
     double                               constant;
     std::unique_ptr<FunctionParser<dim>> parser;
+    Function                             function; // if there is no parser
   };
 
 
@@ -97,6 +105,11 @@ namespace Viscoplastic
     VectorExpression(const std::string &text,
                      const unsigned int n_components,
                      const std::string &entry);
+
+    /// A component for each function.
+    VectorExpression(
+      const std::vector<typename Expression<dim>::Function> &functions,
+      const std::string                                     &entry);
 
     double
     value(const Point<dim> &x, const double t, const unsigned int c) const

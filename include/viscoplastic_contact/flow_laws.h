@@ -29,6 +29,9 @@ namespace Viscoplastic
     /// Known on all ranks.
     bool any, any_cap, any_own_energy;
 
+    /// Null unless a manufactured solution has a source.
+    const ExactSolution<dim> *const source_solution;
+
     /// Throws ExcMessage if a parameter is out of range somewhere at time t.
     void
     check(const double t) const;
@@ -66,6 +69,18 @@ namespace Viscoplastic
     {
       return AtTime(*this, t);
     }
+
+    /**
+     * What a manufactured solution adds to G at a sample,
+     * sigma' - E eps(u') - G(t, sigma, eps(u)) of that solution; zero in other
+     * scenes. The time derivatives are those of the step on this side of
+     * the time of @p now.
+     */
+    SymmetricTensor<2, 3>
+    source(const AtTime                           &now,
+           const std::size_t                       cell,
+           const unsigned int                      s,
+           const typename ExactSolution<dim>::Side side) const;
 
   private:
     struct Entry

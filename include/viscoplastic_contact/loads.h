@@ -42,9 +42,6 @@ namespace Viscoplastic
       const BoundaryCondition<dim> *condition;
     };
 
-    static bool
-    depends_on_time(const BoundaryCondition<dim> &condition);
-
     /// Add the part of the load that does (or does not) depend on time.
     void
     add(const double t, const bool time_dependent, Load<dim> &load) const;

@@ -4,6 +4,8 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
+#include <viscoplastic_contact/solution_norms.h>
+
 #include <map>
 #include <optional>
 #include <ostream>
@@ -49,6 +51,8 @@ namespace Viscoplastic
     Largest displacement, von_mises, slip_area, capped_volume, tension_area;
     /// Of all friction points.
     double friction_area = 0.;
+    /// Against an exact solution; zero without one.
+    SolutionNorms largest_error, largest_exact;
 
     void
     print(std::ostream &out) const;

@@ -4,6 +4,7 @@
 #include <deal.II/distributed/tria.h>
 
 #include <viscoplastic_contact/boundary_condition.h>
+#include <viscoplastic_contact/exact_solution.h>
 #include <viscoplastic_contact/expression.h>
 #include <viscoplastic_contact/material.h>
 #include <viscoplastic_contact/parameter_file.h>
@@ -50,8 +51,17 @@ namespace Viscoplastic
       return *material_of_id.at(id);
     }
 
+    /// Whether there is a G: laws, or the source of a manufactured solution.
     bool
     has_viscosity() const;
+
+    /// Whether a source makes the exact solution one of the scene.
+    bool
+    has_source() const
+    {
+      return exact_solution && exact_solution->makes_data &&
+             exact_solution->has_own_stress();
+    }
 
     /// Whether there is z = sigma - E eps(u): from viscosity, or from initial
     /// data.
@@ -76,14 +86,16 @@ namespace Viscoplastic
       return parameters.refinement.strategy != "none";
     }
 
-    const Parameters                                    &parameters;
+    const Parameters &parameters;
+    TimeSchedule      schedule;
+    /// Null if not known.
+    std::unique_ptr<ExactSolution<dim>>                  exact_solution;
     std::map<types::boundary_id, BoundaryCondition<dim>> boundary;
     /// Those that some cell has.
     std::vector<std::unique_ptr<const Material<dim>>> materials;
     /// b, u0, sigma0; absent where identically zero.
     std::optional<VectorExpression<dim>> body_force;
     std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
-    TimeSchedule                         schedule;
     /// Points whose displacement is recorded.
     std::vector<Point<dim>> output_points;
     /// What is allowed but should be known, a sentence each.
@@ -108,6 +120,10 @@ namespace Viscoplastic
 
     void
     make_materials(const std::set<types::material_id> &ids);
+
+    /// What follows from an exact solution, and refuse it from elsewhere.
+    void
+    derive_data();
 
     std::map<types::material_id, const Material<dim> *> material_of_id;
   };

@@ -14,21 +14,51 @@ namespace Viscoplastic
 
 
 
-    /// The size of a quantity; for a component that of its vector.
+    /// "friction_force_x" as "friction_force" and 'x'; others are scalars.
+    bool
+    is_component(const std::string &quantity)
+    {
+      const std::size_t n = quantity.size();
+      return n > 2 && quantity[n - 2] == '_' && quantity[n - 1] >= 'x';
+    }
+
+
+
+    /// What has the same unit.
+    std::string
+    kind_of(const std::string &quantity)
+    {
+      const auto contains = [&quantity](const std::string &word) {
+        return quantity.find(word) != std::string::npos;
+      };
+      return contains("force") || contains("reaction")     ? "force" :
+             contains("dissipation") || contains("energy") ? "energy" :
+             contains("point") || contains("displacement") ? "length" :
+                                                             quantity;
+    }
+
+
+
+    /// The size of a quantity; for a component that of its vector. Zero for
+    /// what only rounding keeps from being that.
     double
     size_of(const RunRecord &record, const std::string &quantity)
     {
-      const std::size_t n = quantity.size();
-      if (n < 2 || quantity[n - 2] != '_' || quantity[n - 1] < 'x')
-        return std::abs(record.quantity(quantity));
-      double square = 0.;
-      for (const char c : {'x', 'y', 'z'})
+      double size = 0., largest = 0.;
+      for (const auto &[name, value] : record.quantities)
         {
-          const double value = record.quantity(quantity.substr(0, n - 1) + c);
-          if (std::isfinite(value))
-            square += value * value;
+          if (!std::isfinite(value))
+            continue;
+          if (name == quantity ||
+              (is_component(name) && is_component(quantity) &&
+               name.compare(
+                 0, name.size() - 1, quantity, 0, quantity.size() - 1) == 0))
+            size += value * value;
+          if (kind_of(name) == kind_of(quantity))
+            largest = std::max(largest, std::abs(value));
         }
-      return std::sqrt(square);
+      size = std::sqrt(size);
+      return size > 1e-9 * largest ? size : 0.;
     }
   } // namespace
 

@@ -78,6 +78,7 @@ namespace Viscoplastic
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(d.space, x);
 
+    check_references();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(d.space);
     // The initial data, and where they need no solution, the first step.

@@ -197,7 +197,7 @@ namespace Viscoplastic
     const auto                  fields = nodal_fields(state);
     std::vector<bool>           is_packed(space.owned.n_elements(), false);
     std::vector<std::uint8_t>   vertices; // a bit a vertex with values here
-    std::vector<double>         nodal, z, estimate;
+    std::vector<double>         nodal, samples, estimate;
     std::size_t                 owned_cell = 0;
     for (const auto &cell : space.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -219,21 +219,23 @@ namespace Viscoplastic
                                field->begin() + first + dim);
             }
           vertices.push_back(with_values);
-          if (!state.z.empty())
-            for (unsigned int s = 0; s < sampling.n_samples; ++s)
-              {
-                const auto &sample =
-                  state.z[owned_cell * sampling.n_samples + s];
-                z.insert(z.end(),
-                         sample.begin_raw(),
-                         sample.begin_raw() + sample.n_independent_components);
-              }
+          for (const IrreversibleStress *field : sample_fields(state))
+            if (!field->empty())
+              for (unsigned int s = 0; s < sampling.n_samples; ++s)
+                {
+                  const auto &sample =
+                    (*field)[owned_cell * sampling.n_samples + s];
+                  samples.insert(samples.end(),
+                                 sample.begin_raw(),
+                                 sample.begin_raw() +
+                                   sample.n_independent_components);
+                }
           if (squared_estimate.size() > 0)
             estimate.push_back(squared_estimate[cell->active_cell_index()]);
           ++owned_cell;
         }
-    BinaryWriter                 archive;
-    archive &vertices &nodal &z &estimate;
+    BinaryWriter                       archive;
+    archive &vertices &nodal &samples &estimate;
     return archive.bytes();
   }
 
@@ -246,6 +248,7 @@ namespace Viscoplastic
                 const StressSampling<dim>      &sampling,
                 const bool                      has_initial_u,
                 const bool                      has_estimate,
+                const unsigned int              n_sample_fields,
                 State<dim>                     &state,
                 Vector<double>                 &squared_estimate)
   {
@@ -253,9 +256,11 @@ namespace Viscoplastic
     using Cell = typename DoFHandler<dim>::active_cell_iterator;
     const AdmissibleSpace<dim> &space = sampling.space;
     const auto        &triangulation  = space.dof_handler.get_triangulation();
-    const bool         has_z          = space.scene.has_irreversible_stress();
     const unsigned int n_fields       = has_initial_u ? 3 : 2;
-    const std::size_t  n_z = has_z ? sampling.n_samples * 6 : 0; // a cell
+    std::vector<IrreversibleStress *> sampled;
+    for (unsigned int f = 0; f < n_sample_fields; ++f)
+      sampled.push_back(sample_fields(state)[f]);
+    const std::size_t n_z = sampling.n_samples * 6; // a cell and field
 
     // Vertices of owned cells are vertices of owned or ghost cells elsewhere.
     struct LocalCell
@@ -278,8 +283,8 @@ namespace Viscoplastic
               });
 
     std::vector<DistributedVector> values(n_fields, space.owned_vector());
-    if (has_z)
-      state.z.resize(n_owned * sampling.n_samples);
+    for (IrreversibleStress *field : sampled)
+      field->resize(n_owned * sampling.n_samples);
     if (has_estimate)
       squared_estimate.reinit(triangulation.n_active_cells());
     std::size_t n_values = 0, n_cells = 0;
@@ -287,12 +292,12 @@ namespace Viscoplastic
       {
         const auto addresses =
           unpack_mesh<dim>(meshes[part], triangulation.n_cells(0));
-        std::vector<std::uint8_t>    vertices;
-        std::vector<double>          nodal, z, estimate;
-        BinaryReader                 archive(fields[part]);
-        archive &vertices &nodal &z &estimate;
+        std::vector<std::uint8_t>          vertices;
+        std::vector<double>                nodal, samples, estimate;
+        BinaryReader                       archive(fields[part]);
+        archive &vertices &nodal &samples &estimate;
         require(archive.is_at_end() && vertices.size() == addresses.size() &&
-                z.size() == n_z * addresses.size() &&
+                samples.size() == sampled.size() * n_z * addresses.size() &&
                 estimate.size() == (has_estimate ? addresses.size() : 0));
         std::size_t next = 0;
         for (std::size_t i = 0; i < addresses.size(); ++i)
@@ -328,9 +333,11 @@ namespace Viscoplastic
             if (!is_here || !local->cell->is_locally_owned())
               continue;
             ++n_cells;
-            for (std::size_t j = 0; j < n_z; ++j)
-              state.z[local->owned_index * sampling.n_samples + j / 6]
-                .begin_raw()[j % 6] = z[i * n_z + j];
+            for (std::size_t f = 0; f < sampled.size(); ++f)
+              for (std::size_t j = 0; j < n_z; ++j)
+                (*sampled[f])[local->owned_index * sampling.n_samples + j / 6]
+                  .begin_raw()[j % 6] =
+                  samples[(i * sampled.size() + f) * n_z + j];
             if (has_estimate)
               squared_estimate[local->cell->active_cell_index()] = estimate[i];
           }
@@ -428,7 +435,7 @@ namespace Viscoplastic
       if (section == "Initial state")
         return entry != "Compatibility tolerance";
       return section == "Dimension" || path == "Mesh refinement/Strategy" ||
-             path == "Output/Points";
+             path == "Output/Points" || path == "Error control/Error bar";
     }
   } // namespace
 
@@ -477,6 +484,7 @@ namespace Viscoplastic
                                    const StressSampling<dim> &,      \
                                    const bool,                       \
                                    const bool,                       \
+                                   const unsigned int,               \
                                    State<dim> &,                     \
                                    Vector<double> &);                \
   template CoarseMesh  describe_coarse_mesh<dim>(                           \

@@ -309,10 +309,8 @@ namespace Viscoplastic
 
 
 
-  ContactSolver::ContactSolver(const double       tolerance,
-                               const unsigned int max_iterations)
-    : tolerance(tolerance)
-    , max_iterations(max_iterations)
+  ContactSolver::ContactSolver(const unsigned int max_iterations)
+    : max_iterations(max_iterations)
   {}
 
 
@@ -321,6 +319,7 @@ namespace Viscoplastic
   ContactSolver::solve(BulkSolver                &bulk,
                        const FrictionFace        &face,
                        const std::vector<double> &bounds,
+                       const double               tolerance,
                        Vector<double>            &x,
                        FrictionState             &state) const
   {
@@ -336,7 +335,8 @@ namespace Viscoplastic
         inverse[node]  = invert(diagonal[node]);
       }
 
-    ContactReport  report;
+    ContactReport report;
+    report.tolerance = tolerance;
     Vector<double> residual(face.n_dofs()), force(face.n_dofs()),
       change(face.n_dofs()), w(face.n_dofs());
     FaceTruncation last_truncation;
@@ -403,6 +403,7 @@ namespace Viscoplastic
                                "finite."));
         if (error <= tolerance * size)
           {
+            report.error = error;
             for (const auto &[point, multiplier] : certificate.replaced)
               state.multiplier[point] = multiplier;
             break;
@@ -411,13 +412,12 @@ namespace Viscoplastic
         if (iteration == max_iterations)
           {
             std::ostringstream message;
-            message << "The active set iteration did not converge in "
-                    << max_iterations
-                    << " iterations: the relative error bound is " << best_error
-                    << " at best, and 'Solver/Contact tolerance' is "
-                    << tolerance
-                    << "; raise 'Solver/Maximal contact iterations' or the "
-                       "tolerance.";
+            message
+              << "The active set iteration did not converge in "
+              << max_iterations << " iterations: the relative error bound is "
+              << best_error << " at best, and the tolerance is " << tolerance
+              << " ('Solver/Contact tolerance'); raise 'Solver/Maximal contact iterations' or the "
+                 "tolerance.";
             AssertThrow(false, ExcMessage(message.str()));
           }
 

@@ -159,23 +159,22 @@ namespace Viscoplastic
 
 
   template <int dim>
-  FlowStep<dim>
-  advance_irreversible_stress(const FlowLaws<dim>      &laws,
-                              const DistributedVector  &ghosted_u,
-                              const IrreversibleStress &z,
-                              const double              t,
-                              const double              k)
+  FlowRate
+  evaluate_flow(const FlowLaws<dim>      &laws,
+                const DistributedVector  &ghosted_u,
+                const IrreversibleStress &z,
+                const double              t)
   {
-    const StressSampling<dim>         &sampling = laws.sampling;
-    const auto                         now      = laws.at(t);
-    FlowStep<dim>                      result{z, 0., 0.};
+    const StressSampling<dim> &sampling = laws.sampling;
+    const auto                 now      = laws.at(t);
+    FlowRate                   result{IrreversibleStress(z.size()), 0., 0.};
     std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
     for (std::size_t c = 0; c < sampling.n_cells(); ++c)
       {
         if (laws.source_solution)
           for (unsigned int s = 0; s < sampling.n_samples; ++s)
-            result.z[c * sampling.n_samples + s] +=
-              k * laws.source(now, c, s, ExactSolution<dim>::Side::after);
+            result.rate[c * sampling.n_samples + s] =
+              laws.source(now, c, s, ExactSolution<dim>::Side::after);
         const ViscoplasticLaw *law = now.law(c);
         if (law == nullptr)
           continue;
@@ -187,7 +186,7 @@ namespace Viscoplastic
             const LawPoint              point = now.point(c, s);
             const SymmetricTensor<2, 3> stress =
               stiffness.stress(strain[s]) + z[i];
-            result.z[i] += k * law->rate(stress, strain[s], stiffness, point);
+            result.rate[i] += law->rate(stress, strain[s], stiffness, point);
             result.relaxation_rate = std::max(
               result.relaxation_rate,
               law->relaxation_rate(stress, strain[s], stiffness, point));
@@ -204,8 +203,54 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  FlowStep<dim>
+  advance_irreversible_stress(const FlowLaws<dim>      &laws,
+                              const DistributedVector  &ghosted_u,
+                              const IrreversibleStress &z,
+                              const double              t,
+                              const double              k)
+  {
+    FlowRate flow = evaluate_flow(laws, ghosted_u, z, t);
+    return advance_irreversible_stress<dim>(flow, z, k);
+  }
+
+
+
+  template <int dim>
+  FlowStep<dim>
+  advance_irreversible_stress(const FlowRate           &flow,
+                              const IrreversibleStress &z,
+                              const double              k)
+  {
+    FlowStep<dim> result{z, flow.relaxation_rate, flow.capped_volume};
+    for (std::size_t i = 0; i < z.size(); ++i)
+      result.z[i] += k * flow.rate[i];
+    return result;
+  }
+
+
+
   template class FlowLaws<2>;
   template class FlowLaws<3>;
+  template FlowRate
+  evaluate_flow<2>(const FlowLaws<2> &,
+                   const DistributedVector &,
+                   const IrreversibleStress &,
+                   const double);
+  template FlowRate
+  evaluate_flow<3>(const FlowLaws<3> &,
+                   const DistributedVector &,
+                   const IrreversibleStress &,
+                   const double);
+  template FlowStep<2>
+  advance_irreversible_stress<2>(const FlowRate &,
+                                 const IrreversibleStress &,
+                                 const double);
+  template FlowStep<3>
+  advance_irreversible_stress<3>(const FlowRate &,
+                                 const IrreversibleStress &,
+                                 const double);
   template FlowStep<2>
   advance_irreversible_stress<2>(const FlowLaws<2> &,
                                  const DistributedVector &,

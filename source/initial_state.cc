@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/initial_state.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace Viscoplastic
@@ -210,6 +211,51 @@ namespace Viscoplastic
 
   template <int dim>
   double
+  initial_data_error(const StressSampling<dim> &sampling,
+                     const State<dim>          &state)
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    const Scene<dim>           &scene = space.scene;
+    if (!scene.initial_displacement && !scene.initial_stress)
+      return 0.;
+    std::vector<double>                sums(2, 0.);
+    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    std::size_t                        c = 0;
+    for_each_cell(space, 3, [&](const auto &cell, const auto &values) {
+      const Stiffness &stiffness = sampling.moduli(c);
+      sampling.strains(c, state.u.begin(), strain.data());
+      SymmetricTensor<2, 3> sigma =
+        stiffness.stress(sampling.mean(c, strain.data()));
+      sigma += sampling.mean(c, &state.z[c * sampling.n_samples]);
+      for (const unsigned int q : values.quadrature_point_indices())
+        {
+          SymmetricTensor<2, 3> error;
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = 0; j < dim; ++j)
+                error[i][j] -= (i == j ? 1. : 0.5) *
+                               state.u.begin()[space.relevant.index_within_set(
+                                                 cell->vertex_dof_index(v, 0)) +
+                                               i] *
+                               values.shape_grad(v * dim, q)[j];
+          if (scene.initial_displacement)
+            error += initial_strain(scene, values.quadrature_point(q));
+          sums[0] += (stiffness.stress(error) * error) * values.JxW(q);
+          error = -1. * sigma;
+          if (scene.initial_stress)
+            error += initial_stress(scene, values.quadrature_point(q));
+          sums[1] += (stiffness.strain(error) * error) * values.JxW(q);
+        }
+      ++c;
+    });
+    Utilities::MPI::sum(sums, space.communicator, sums);
+    return std::sqrt(sums[0]) + std::sqrt(sums[1]);
+  }
+
+
+
+  template <int dim>
+  double
   compatibility_violation(const AdmissibleSpace<dim> &space,
                           const Load<dim>            &load,
                           const ContactFace<dim>     *face,
@@ -259,6 +305,10 @@ namespace Viscoplastic
   make_initial_state<2>(const StressSampling<2> &, const bool);
   template State<3>
   make_initial_state<3>(const StressSampling<3> &, const bool);
+  template double
+  initial_data_error<2>(const StressSampling<2> &, const State<2> &);
+  template double
+  initial_data_error<3>(const StressSampling<3> &, const State<3> &);
   template double
   compatibility_violation<2>(const AdmissibleSpace<2> &,
                              const Load<2> &,

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/price_mode.h>
 #include <viscoplastic_contact/signals.h>
 #include <viscoplastic_contact/study.h>
+#include <viscoplastic_contact/two_level.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <chrono>
@@ -25,8 +26,21 @@ namespace
       Console           &console)
   {
     ViscoplasticContact<dim> problem(parameters, console);
+    const bool compares = parameters.error_control.two_level_comparison;
+    if (compares)
+      coarser_scene(parameters); // throws
     if (command_line.task == CommandLine::Task::run)
-      return problem.run(command_line.restart);
+      {
+        if (compares)
+          {
+            console.stream() << "First with twice the mesh width and twice the "
+                                "time steps, to compare."
+                             << std::endl;
+            problem.compare_with(
+              run_coarser_scene<dim>(parameters, command_line));
+          }
+        return problem.run(command_line.restart);
+      }
     problem.check();
     return "";
   }

@@ -147,9 +147,6 @@ namespace Viscoplastic
                   multiplier_density ? *multiplier_density :
                                        DistributedVector()}}
     , field_transfer(old_sampling.space.dof_handler)
-    , has_z(Utilities::MPI::max(state.z.empty() ? 0 : 1,
-                                old_sampling.space.communicator) == 1)
-    , old_z(state.z)
     , handle(numbers::invalid_unsigned_int)
     , n(state.n)
     , t(state.t)
@@ -161,9 +158,19 @@ namespace Viscoplastic
         present.push_back(&field);
     field_transfer.prepare_for_coarsening_and_refinement(present);
 
-    if (!has_z)
+    // A rank without cells has empty fields in every scene.
+    const auto sampled = sample_fields(state);
+    for (unsigned int f = 0; f < sampled.size(); ++f)
+      if (Utilities::MPI::max(sampled[f]->empty() ? 0 : 1,
+                              old_sampling.space.communicator) == 1)
+        {
+          AssertDimension(sampled[f]->size(),
+                          old_sampling.n_cells() * n_samples);
+          carried.push_back(f);
+          old_samples.push_back(*sampled[f]);
+        }
+    if (carried.empty())
       return;
-    AssertDimension(old_z.size(), old_sampling.n_cells() * n_samples);
     old_cell.resize(triangulation.n_active_cells());
     unsigned int index = 0;
     for (const auto &cell : triangulation.active_cell_iterators())
@@ -212,28 +219,33 @@ namespace Viscoplastic
     // curved cells, too. On straight ones this is the L2 projection, as the
     // Gauss rule integrates the parent's mass matrix (in 3D: on affine cells)
     // exactly, diagonal as it is.
-    IrreversibleStress values(n_samples + 1);
-    if (status == Triangulation<dim>::CELL_COARSEN)
+    IrreversibleStress values(carried.size() * (n_samples + 1));
+    for (unsigned int f = 0; f < carried.size(); ++f)
       {
-        for (unsigned int child = 0; child < cell->n_children(); ++child)
+        SymmetricTensor<2, 3>    *packed = &values[f * (n_samples + 1)];
+        const IrreversibleStress &old    = old_samples[f];
+        if (status == Triangulation<dim>::CELL_COARSEN)
+          {
+            for (unsigned int child = 0; child < cell->n_children(); ++child)
+              {
+                const std::size_t first =
+                  std::size_t(n_samples) *
+                  old_cell[cell->child(child)->active_cell_index()];
+                for (unsigned int s = 0; s < n_samples; ++s)
+                  for (unsigned int r = 0; r < n_samples; ++r)
+                    packed[r] += old_weights[first + s] *
+                                 prolongation[child](s, r) * old[first + s];
+              }
+          }
+        else
           {
             const std::size_t first =
-              std::size_t(n_samples) *
-              old_cell[cell->child(child)->active_cell_index()];
+              std::size_t(n_samples) * old_cell[cell->active_cell_index()];
             for (unsigned int s = 0; s < n_samples; ++s)
-              for (unsigned int r = 0; r < n_samples; ++r)
-                values[r] += old_weights[first + s] *
-                             prolongation[child](s, r) * old_z[first + s];
-          }
-      }
-    else
-      {
-        const std::size_t first =
-          std::size_t(n_samples) * old_cell[cell->active_cell_index()];
-        for (unsigned int s = 0; s < n_samples; ++s)
-          {
-            values[s] = old_z[first + s];
-            values[n_samples] += old_weights[first + s] * old_z[first + s];
+              {
+                packed[s] = old[first + s];
+                packed[n_samples] += old_weights[first + s] * old[first + s];
+              }
           }
       }
     return Utilities::pack(values, /* allow_compression = */ false);
@@ -274,16 +286,55 @@ namespace Viscoplastic
           *targets[i] = fields[next++];
         }
 
-    if (!has_z)
+    if (carried.empty())
       return result;
-    IrreversibleStress &z = result.state.z;
-    z.resize(new_sampling.n_cells() * n_samples);
+    const auto sampled = sample_fields(result.state);
+    for (const unsigned int f : carried)
+      sampled[f]->resize(new_sampling.n_cells() * n_samples);
     std::vector<unsigned int> new_cell(triangulation.n_active_cells());
     unsigned int              index = 0;
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         new_cell[cell->active_cell_index()] = index++;
     AssertDimension(index, new_sampling.n_cells());
+
+    const auto unpack_field = [&](const CellIterator          &cell,
+                                  const CellStatus             status,
+                                  const SymmetricTensor<2, 3> *values,
+                                  IrreversibleStress          &z) {
+      if (status == Triangulation<dim>::CELL_REFINE)
+        {
+          // On curved cells the children do not fill the parent; a shift
+          // makes up for it.
+          SymmetricTensor<2, 3> missing = values[n_samples];
+          double                volume  = 0.;
+          for (unsigned int child = 0; child < cell->n_children(); ++child)
+            {
+              const std::size_t c =
+                new_cell[cell->child(child)->active_cell_index()];
+              volume += new_sampling.volume(c);
+              for (unsigned int s = 0; s < n_samples; ++s)
+                {
+                  SymmetricTensor<2, 3> &sample = z[c * n_samples + s];
+                  for (unsigned int r = 0; r < n_samples; ++r)
+                    sample += prolongation[child](s, r) * values[r];
+                  missing -= new_sampling.weight(c, s) * sample;
+                }
+            }
+          for (const auto &child : cell->child_iterators())
+            for (unsigned int s = 0; s < n_samples; ++s)
+              z[std::size_t(n_samples) * new_cell[child->active_cell_index()] +
+                s] += missing / volume;
+        }
+      else
+        {
+          const std::size_t c = new_cell[cell->active_cell_index()];
+          for (unsigned int s = 0; s < n_samples; ++s)
+            z[c * n_samples + s] = status == Triangulation<dim>::CELL_COARSEN ?
+                                     values[s] / new_sampling.weight(c, s) :
+                                     values[s];
+        }
+    };
 
     triangulation.notify_ready_to_unpack(
       handle,
@@ -296,40 +347,11 @@ namespace Viscoplastic
                                                 data.end(),
                                                 /* allow_compression = */
                                                 false);
-        if (status == Triangulation<dim>::CELL_REFINE)
-          {
-            // On curved cells the children do not fill the parent; a shift
-            // makes up for it.
-            SymmetricTensor<2, 3> missing = values[n_samples];
-            double                volume  = 0.;
-            for (unsigned int child = 0; child < cell->n_children(); ++child)
-              {
-                const std::size_t c =
-                  new_cell[cell->child(child)->active_cell_index()];
-                volume += new_sampling.volume(c);
-                for (unsigned int s = 0; s < n_samples; ++s)
-                  {
-                    SymmetricTensor<2, 3> &sample = z[c * n_samples + s];
-                    for (unsigned int r = 0; r < n_samples; ++r)
-                      sample += prolongation[child](s, r) * values[r];
-                    missing -= new_sampling.weight(c, s) * sample;
-                  }
-              }
-            for (const auto &child : cell->child_iterators())
-              for (unsigned int s = 0; s < n_samples; ++s)
-                z[std::size_t(n_samples) *
-                    new_cell[child->active_cell_index()] +
-                  s] += missing / volume;
-          }
-        else
-          {
-            const std::size_t c = new_cell[cell->active_cell_index()];
-            for (unsigned int s = 0; s < n_samples; ++s)
-              z[c * n_samples + s] =
-                status == Triangulation<dim>::CELL_COARSEN ?
-                  values[s] / new_sampling.weight(c, s) :
-                  values[s];
-          }
+        for (unsigned int f = 0; f < carried.size(); ++f)
+          unpack_field(cell,
+                       status,
+                       &values[f * (n_samples + 1)],
+                       *sampled[carried[f]]);
       });
     return result;
   }

@@ -67,9 +67,10 @@ namespace Viscoplastic
 
     template <int dim>
     void
-    write_record(const Scene<dim>  &scene,
-                 const std::string &path,
-                 const unsigned int n_ranks)
+    write_record(const Scene<dim>   &scene,
+                 const std::string  &path,
+                 const unsigned int  n_ranks,
+                 const ErrorSummary *errors = nullptr)
     {
       std::ofstream parameters(path + "parameters.prm");
       scene.parameters.handler.print_parameters(parameters,
@@ -97,7 +98,18 @@ namespace Viscoplastic
           json << separator << "\n    " << std::quoted(effect);
           separator = ",";
         }
-      json << "\n  ],\n  \"date\": " << std::quoted(date) << "\n}\n";
+      json << "\n  ]";
+      if (errors != nullptr)
+        json << ",\n  \"estimated_error\": {\n    \"t\": " << errors->t
+             << ",\n    \"space\": " << errors->largest.space
+             << ",\n    \"time\": " << errors->largest.time
+             << ",\n    \"algebraic\": " << errors->largest.algebraic
+             << ",\n    \"initial\": " << errors->largest.initial
+             << ",\n    \"total\": " << errors->largest.total()
+             << ",\n    \"largest_energy_norm\": "
+             << errors->largest_energy_norm
+             << ",\n    \"relative\": " << errors->relative() << "\n  }";
+      json << ",\n  \"date\": " << std::quoted(date) << "\n}\n";
     }
   } // namespace
 
@@ -140,6 +152,19 @@ namespace Viscoplastic
       }
     failure = Utilities::MPI::broadcast(communicator, failure);
     AssertThrow(failure.empty(), ExcMessage(failure));
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::record_errors(const ErrorSummary &errors) const
+  {
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      write_record(scene,
+                   path,
+                   Utilities::MPI::n_mpi_processes(communicator),
+                   &errors);
   }
 
 

@@ -447,6 +447,12 @@ namespace Viscoplastic
     if (!geometry.file.empty())
       locate_mesh_file(*mesh_file);
     refinement.check();
+    std::ostringstream message;
+    message << "'Solver/Contact tolerance' = " << solver.contact_tolerance
+            << " is below rounding; it must be 0 or lie between 1e-14 and 0.1.";
+    AssertThrow(solver.contact_tolerance == 0. ||
+                  solver.contact_tolerance >= 1e-14,
+                ExcMessage(message.str()));
   }
 
 

@@ -179,6 +179,12 @@ namespace Viscoplastic
       "which also add the source sigma' - E eps(u') - G to G. Materials, "
       "friction bounds and coefficients remain those of the scene.",
       Patterns::Selection("scene|solution"));
+    prm.add_parameter("Reference directory",
+                      reference_directory,
+                      "Results of a finer run of the same scene with `Output/"
+                      "Reference fields': the run reports its differences from "
+                      "them at the ends of the phases of time, in the place "
+                      "of errors.");
   }
 
 
@@ -419,6 +425,11 @@ namespace Viscoplastic
                       "Time between outputs of fields; where positive, it "
                       "replaces the entry above. Unit: time.",
                       Patterns::Double(0.));
+    prm.add_parameter("Reference fields",
+                      reference_fields,
+                      "At the end of each phase of time, write the fields at "
+                      "all quadrature points for coarser runs to be compared "
+                      "with, see `Exact solution/Reference directory'.");
     prm.add_parameter("Points",
                       points,
                       "Points of the body, coordinates separated by commas and "

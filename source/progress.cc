@@ -65,6 +65,9 @@ namespace Viscoplastic
         line += "  slipping " + percent(*step.slipping);
       if (step.error_estimate)
         line += "  error estimate " + number(*step.error_estimate, 3);
+      if (step.relative_error)
+        line +=
+          "  error estimate " + number(100. * *step.relative_error, 2) + " %";
       return line + "  elapsed " + duration(elapsed) + "  left " +
              duration(left);
     }
@@ -95,6 +98,10 @@ namespace Viscoplastic
         parts.emplace_back("slip " + percent(*step.slipping), 5);
       if (step.error_estimate)
         parts.emplace_back("error " + number(*step.error_estimate, 2), 5);
+      if (step.relative_error)
+        parts.emplace_back("error " + number(100. * *step.relative_error, 2) +
+                             " %",
+                           5);
       parts.emplace_back("elapsed " + duration(elapsed), 1);
       parts.emplace_back("left " + duration(left), 7);
 

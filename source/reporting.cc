@@ -4,12 +4,14 @@
 #include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
 #include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/reference_fields.h>
 #include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -129,7 +131,7 @@ namespace Viscoplastic
     const double balance_defect = size > 0. ? balance.norm() / size : 0.;
     if (!is_initial && !balance_is_doubtful &&
         balance_defect >
-          std::max(1e-8, 1e3 * parameters.solver.strict_tolerance()))
+          std::max(1e-8, std::min(1e3 * step.report.tolerance, 1e-2)))
       {
         balance_is_doubtful = true;
         std::ostringstream text;
@@ -163,18 +165,9 @@ namespace Viscoplastic
                               total_estimate(squared_estimate, communicator) :
                               0.;
     phase.stop();
-    SolutionErrors errors;
-    if (scene.exact_solution)
-      {
-        TimerOutput::Scope errors_phase(timer, "errors");
-        DistributedVector  density;
-        if (d.face)
-          density = d.face->density(step.state.friction);
-        errors =
-          solution_errors(d.sampling, step.state, d.face ? &density : nullptr);
-        summary.largest_error.update(errors.error);
-        summary.largest_exact.update(errors.exact);
-      }
+    const SolutionErrors errors = measure_errors(step.state);
+    summary.largest_error.update(errors.error);
+    summary.largest_exact.update(errors.exact);
 
     if (statistics)
       {
@@ -230,13 +223,27 @@ namespace Viscoplastic
           row.add_vector("point" + std::to_string(i), point_values[i], dim);
         if (scene.is_adaptive())
           row.add("estimator", estimate);
-        if (scene.exact_solution)
+        if (error_bar)
+          {
+            const ErrorLedger &ledger = step.errors;
+            row.add("energy_norm", ledger.energy_norm);
+            row.add("estimate_space", ledger.space);
+            row.add("estimate_time", ledger.time);
+            row.add("estimate_algebraic", ledger.algebraic);
+            row.add("estimate_initial", ledger.initial);
+            row.add("estimate_total", ledger.total());
+            row.add("time_indicator", ledger.time_indicator);
+            row.add("velocity_variation", ledger.velocity_variation);
+          }
+        if (measures_errors())
           add_errors(errors, row);
 
         const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
         for (const char *name :
-             {"rate", "load", "contact", "balance", "output"})
+             {"rate", "load", "contact", "balance", "estimate", "output"})
           {
+            if (!error_bar && name == std::string("estimate"))
+              continue;
             const auto   entry = total.find(name);
             const double now   = entry == total.end() ? 0. : entry->second;
             row.add(std::string("wall_") + name, now - last_seconds[name]);
@@ -260,6 +267,8 @@ namespace Viscoplastic
     summary.energy_balance_defect = defect;
     summary.tension_area.update(tension_area, time_step.t);
     summary.displacement.update(max_displacement, time_step.t);
+    summary.max_displacement    = max_displacement;
+    summary.point_displacements = point_values;
     summary.von_mises.update(stress.max_von_mises, time_step.t);
     if (scene.has_viscosity())
       summary.viscous_dissipation = accounts.viscous_dissipation;
@@ -269,6 +278,7 @@ namespace Viscoplastic
         summary.friction_dissipation = accounts.friction_dissipation;
         summary.friction_area        = friction.slip_area + friction.stick_area;
         summary.slip_area.update(friction.slip_area, time_step.t);
+        summary.slipping_area               = friction.slip_area;
         progress_of_step.contact_iterations = step.report.iterations;
         if (summary.friction_area > 0.)
           progress_of_step.slipping =
@@ -276,9 +286,19 @@ namespace Viscoplastic
       }
     if (scene.is_adaptive())
       {
-        summary.adaptation_energy       = accounts.adaptation_energy;
-        summary.error_estimate          = estimate;
-        progress_of_step.error_estimate = estimate;
+        summary.adaptation_energy = accounts.adaptation_energy;
+        if (!error_bar)
+          {
+            summary.error_estimate          = estimate;
+            progress_of_step.error_estimate = estimate;
+          }
+      }
+    if (error_bar)
+      {
+        summary.errors = error_bar->summary();
+        if (step.errors.energy_norm > 0.)
+          progress_of_step.relative_error =
+            step.errors.total() / step.errors.energy_norm;
       }
     if (summary.capped_volume.value == 0. && step.capped_volume > 0.)
       {
@@ -295,6 +315,74 @@ namespace Viscoplastic
       first_set_up_seconds =
         timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
     progress.report(progress_of_step, elapsed);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_references() const
+  {
+    const std::string &directory =
+      parameters.exact_solution.reference_directory;
+    if (directory.empty())
+      return;
+    AssertThrow(!scene.exact_solution,
+                ExcMessage("'Exact solution/Reference directory' and 'Exact "
+                           "solution/Displacement' are both given; errors "
+                           "can be measured against one of them."));
+    for (unsigned int i = 1; i <= scene.schedule.n_phases(); ++i)
+      read_samples<dim>(samples_file(directory, i), communicator);
+  }
+
+
+
+  template <int dim>
+  SolutionErrors
+  ViscoplasticContact<dim>::measure_errors(const State<dim> &of)
+  {
+    const unsigned int phase = scene.schedule.phase_ending_with(of.n);
+    const std::string &reference =
+      parameters.exact_solution.reference_directory;
+    SolutionErrors result;
+    result.error.fill(std::numeric_limits<double>::quiet_NaN());
+    result.exact      = result.error;
+    result.memory     = result.error.energy;
+    const bool writes = parameters.output.reference_fields && phase > 0;
+    if (!writes && !scene.exact_solution && (reference.empty() || phase == 0))
+      return result;
+
+    TimerOutput::Scope       scope(timer, "errors");
+    const Discretisation    &d = *discretisation;
+    DistributedVector        multipliers;
+    const DistributedVector *density = nullptr;
+    if (d.face)
+      {
+        multipliers = d.face->density(of.friction);
+        density     = &multipliers;
+      }
+    if (writes)
+      write_samples(sample_fields(d.sampling, of, density),
+                    samples_file(output->directory(), phase),
+                    communicator);
+    if (scene.exact_solution)
+      result = solution_errors(d.sampling, of, density);
+    else if (!reference.empty() && phase > 0)
+      {
+        const auto samples =
+          read_samples<dim>(samples_file(reference, phase), communicator);
+        std::ostringstream message;
+        message << "'Exact solution/Reference directory': phase " << phase
+                << " of the reference ends at t = " << samples.t
+                << ", that of this run at t = " << of.t
+                << "; 'Time/Phases' must have the same end times.";
+        AssertThrow(std::abs(samples.t - of.t) <= 1e-10 * std::abs(of.t),
+                    ExcMessage(message.str()));
+        const double nothing = result.memory;
+        result               = differences(samples, d.sampling, of, density);
+        result.memory        = nothing;
+      }
+    return result;
   }
 
 
@@ -337,7 +425,14 @@ namespace Viscoplastic
       }
 
     out << '\n';
-    summary.print(console.stream());
+    summary.print(console.stream(),
+                  coarser_summary ? &*coarser_summary : nullptr);
+    if (coarser_summary && Utilities::MPI::this_mpi_process(communicator) == 0)
+      write_uncertainties(output->directory() + "uncertainty.csv",
+                          summary,
+                          *coarser_summary);
+    if (error_bar)
+      output->record_errors(error_bar->summary());
     out << std::setprecision(3) << "Iterations per step: ";
     if (discretisation->face)
       out << static_cast<double>(accounts.contact_iterations) / n

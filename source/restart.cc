@@ -88,6 +88,8 @@ namespace Viscoplastic
       .viscous_dissipation &accounts.friction_dissipation &accounts
       .largest_force &accounts.adaptation_energy &accounts
       .contact_iterations                        &accounts.linear_iterations;
+    if (error_bar)
+      error_bar->exchange(archive);
     for (Largest *largest : {&summary.displacement,
                              &summary.von_mises,
                              &summary.slip_area,
@@ -264,6 +266,7 @@ namespace Viscoplastic
                       d.sampling,
                       has_initial_u,
                       has_estimate,
+                      ErrorBar<dim>::n_sample_fields(scene),
                       state,
                       squared_estimate);
       return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;

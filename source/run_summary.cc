@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/run_summary.h>
 
 #include <cmath>
+#include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <utility>
@@ -21,13 +22,30 @@ namespace Viscoplastic
 
 
 
+    std::string
+    with_uncertainty(const double value, const double *coarser)
+    {
+      std::string text = number(value);
+      if (coarser != nullptr)
+        {
+          std::ostringstream difference;
+          difference << std::setprecision(2) << std::abs(value - *coarser);
+          text += " +- " + difference.str();
+        }
+      return text;
+    }
+
+
+
     template <int dim>
     std::string
-    components(const Tensor<1, dim> &vector)
+    components(const Tensor<1, dim> &vector,
+               const Tensor<1, dim> *coarser = nullptr)
     {
-      std::string text = number(vector[0]);
-      for (unsigned int d = 1; d < dim; ++d)
-        text += "; " + number(vector[d]);
+      std::string text;
+      for (unsigned int d = 0; d < dim; ++d)
+        text += (d > 0 ? "; " : "") +
+                with_uncertainty(vector[d], coarser ? &(*coarser)[d] : nullptr);
       return text;
     }
 
@@ -47,21 +65,48 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RunSummary<dim>::print(std::ostream &out) const
+  RunSummary<dim>::print(std::ostream &out, const RunSummary *coarser) const
   {
-    out << "At t = " << number(t) << ":\n";
+    const auto row = [&](const std::string &name, const auto member) {
+      const auto &value = this->*member;
+      if (value)
+        print_row(out,
+                  name,
+                  with_uncertainty(*value,
+                                   coarser ? &*(coarser->*member) : nullptr));
+    };
+    out << "At t = " << number(t)
+        << (coarser ? " (+- what twice the mesh width and the time steps "
+                      "change):\n" :
+                      ":\n");
     if (friction_force)
-      print_row(out, "friction force", components(*friction_force));
+      print_row(out,
+                "friction force",
+                components(*friction_force,
+                           coarser ? &*coarser->friction_force : nullptr));
+    if (coarser)
+      row("slipping area", &RunSummary::slipping_area);
     for (const auto &[id, force] : reactions)
       print_row(out,
                 "reaction of boundary " + std::to_string(id),
-                components(force));
-    print_row(out, "external work", number(external_work));
-    print_row(out, "stored energy", number(stored_energy));
-    if (viscous_dissipation)
-      print_row(out, "viscous dissipation", number(*viscous_dissipation));
-    if (friction_dissipation)
-      print_row(out, "friction dissipation", number(*friction_dissipation));
+                components(force,
+                           coarser ? &coarser->reactions.at(id) : nullptr));
+    if (coarser)
+      for (unsigned int i = 0; i < point_displacements.size(); ++i)
+        print_row(out,
+                  "displacement of point " + std::to_string(i),
+                  components(point_displacements[i],
+                             &coarser->point_displacements[i]));
+    print_row(out,
+              "external work",
+              with_uncertainty(external_work,
+                               coarser ? &coarser->external_work : nullptr));
+    print_row(out,
+              "stored energy",
+              with_uncertainty(stored_energy,
+                               coarser ? &coarser->stored_energy : nullptr));
+    row("viscous dissipation", &RunSummary::viscous_dissipation);
+    row("friction dissipation", &RunSummary::friction_dissipation);
     if (adaptation_energy)
       print_row(out, "energy from new meshes", number(*adaptation_energy));
     print_row(out, "energy balance defect", number(energy_balance_defect));
@@ -81,6 +126,7 @@ namespace Viscoplastic
                   " at t = " + number(slip_area.t));
     if (capped_volume.value > 0.)
       print_row(out, "volume beyond the cap", with_time(capped_volume));
+
     const auto error =
       [&](const std::string &name, const double value, const double norm) {
         if (norm > 0.)
@@ -95,6 +141,77 @@ namespace Viscoplastic
     error("multiplier in L2",
           largest_error.multiplier,
           largest_exact.multiplier);
+    if (errors)
+      {
+        const auto part = [&](const std::string &name, const double value) {
+          const double       size = errors->largest_energy_norm;
+          std::ostringstream text;
+          text << std::setprecision(2) << std::left << std::setw(9) << value
+               << std::right;
+          if (size > 0.)
+            text << std::setw(8) << 100. * value / size << " %";
+          print_row(out, name, text.str());
+        };
+        out << "Estimated error in the energy norm, largest at t = "
+            << number(errors->t)
+            << " (without what the mesh\nhas done to the memory z of earlier "
+               "steps), and relative to the solution:\n";
+        part("mesh", errors->largest.space);
+        if (viscous_dissipation)
+          part("time steps", errors->largest.time);
+        part("iterations", errors->largest.algebraic);
+        if (errors->largest.initial > 0.)
+          part("initial data", errors->largest.initial);
+        part("sum", errors->largest.total());
+      }
+  }
+
+
+
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  RunSummary<dim>::quantities() const
+  {
+    std::vector<std::pair<std::string, double>> result;
+    const auto add = [&](const std::string &name, const Tensor<1, dim> &value) {
+      for (unsigned int d = 0; d < dim; ++d)
+        result.emplace_back(name + "_" + "xyz"[d], value[d]);
+    };
+    if (friction_force)
+      {
+        add("friction_force", *friction_force);
+        result.emplace_back("slip_area", *slipping_area);
+        result.emplace_back("friction_dissipation", *friction_dissipation);
+      }
+    for (const auto &[id, force] : reactions)
+      add("reaction_" + std::to_string(id), force);
+    if (viscous_dissipation)
+      result.emplace_back("viscous_dissipation", *viscous_dissipation);
+    result.emplace_back("stored_energy", stored_energy);
+    result.emplace_back("external_work", external_work);
+    result.emplace_back("max_displacement", max_displacement);
+    for (unsigned int i = 0; i < point_displacements.size(); ++i)
+      add("point" + std::to_string(i), point_displacements[i]);
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  write_uncertainties(const std::string     &file,
+                      const RunSummary<dim> &summary,
+                      const RunSummary<dim> &coarser)
+  {
+    std::ofstream out(file);
+    out << std::setprecision(12) << "quantity,value,uncertainty\n";
+    const auto fine = summary.quantities(), coarse = coarser.quantities();
+    AssertDimension(fine.size(), coarse.size());
+    for (unsigned int i = 0; i < fine.size(); ++i)
+      out << fine[i].first << ',' << fine[i].second << ','
+          << std::abs(fine[i].second - coarse[i].second) << '\n';
+    out.close();
+    AssertThrow(out, ExcMessage("'" + file + "' cannot be written."));
   }
 
 
@@ -115,7 +232,7 @@ namespace Viscoplastic
       {"contact",
        has_friction ? "friction and elasticity together: all solves" :
                       "elasticity: linear solves"},
-      {"estimate", "adaptivity: error estimate"},
+      {"estimate", "error estimates"},
       {"adaptation", "adaptivity: new meshes with their set-up"},
       {"balance", "energies, reactions, statistics.csv"},
       {"output", "fields for ParaView"},
@@ -157,4 +274,12 @@ namespace Viscoplastic
 
   template struct RunSummary<2>;
   template struct RunSummary<3>;
+  template void
+  write_uncertainties<2>(const std::string &,
+                         const RunSummary<2> &,
+                         const RunSummary<2> &);
+  template void
+  write_uncertainties<3>(const std::string &,
+                         const RunSummary<3> &,
+                         const RunSummary<3> &);
 } // namespace Viscoplastic

@@ -29,7 +29,8 @@ namespace Viscoplastic
                Console                        &console)
     : runs(files, overrides, MPI_COMM_WORLD)
     , parameters(runs.scene.study)
-    , has_exact_solution(!runs.scene.exact_solution.displacement.empty())
+    , has_exact_solution(!runs.scene.exact_solution.displacement.empty() ||
+                         !runs.scene.exact_solution.reference_directory.empty())
     , console(console)
     , out(console.stream(),
           Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
@@ -234,77 +235,130 @@ namespace Viscoplastic
 
 
 
-  std::string
-  Study::run()
+  unsigned int
+  Study::find_finished()
   {
-    const MPI_Comm communicator = MPI_COMM_WORLD;
-    Timer          timer;
-    const auto     elapsed = [&] {
-      return Utilities::MPI::broadcast(communicator, timer.wall_time());
-    };
-
-    unsigned int n_found = 0;
+    unsigned int n = 0;
     for (PlannedRun &run : plan)
       {
         run.record = runs.find(run.key);
-        n_found += run.record ? 1 : 0;
+        n += run.record ? 1 : 0;
       }
-    out << "Study of " << runs.scene.file << ": " << plan.size() << " runs";
-    if (n_found > 0)
-      out << ", of which " << n_found << " are finished already";
-    out << std::endl;
+    return n;
+  }
 
-    std::string failure;
-    for (PlannedRun &run : plan)
+
+
+  std::string
+  Study::make(PlannedRun &run, const Timer &timer)
+  {
+    const auto elapsed = [&timer] {
+      return Utilities::MPI::broadcast(MPI_COMM_WORLD, timer.wall_time());
+    };
+    const std::string name   = runs.name(run.key);
+    const double      before = elapsed(), seconds = expected_seconds(run.key);
+    const bool        is_known = std::isfinite(seconds);
+    if (before + (is_known ? seconds : 0.) > parameters.budget)
       {
-        if (run.record)
-          continue;
-        const std::string name = runs.name(run.key);
-        const double before = elapsed(), seconds = expected_seconds(run.key);
-        if (before + (std::isfinite(seconds) ? seconds : 0.) >
-            parameters.budget)
-          {
-            run.skipped =
-              "would take about " + seconds_in_words(seconds) + ", and " +
-              seconds_in_words(std::max(0., parameters.budget - before)) +
-              " of 'Study/Budget' = " + seconds_in_words(parameters.budget) +
-              " were left";
-            out << name << ": left out, it " << run.skipped << std::endl;
-            continue;
-          }
-        console.show_status(name +
-                            (std::isfinite(seconds) ?
-                               ": running, about " + seconds_in_words(seconds) :
-                               ": running"));
-        auto outcome = runs.make(run.key);
-        if (!outcome.interruption.empty())
-          {
-            report(false);
-            return outcome.interruption.substr(
-                     0, outcome.interruption.find(" has ended")) +
-                   " has ended the study in the run " + name +
-                   "; the same command goes on.";
-          }
-        if (!outcome.record)
-          {
-            failure     = outcome.failure;
-            run.skipped = "failed: " + outcome.failure;
-            console.remark(name + ' ' + run.skipped);
-            continue;
-          }
-        run.record = std::move(outcome.record);
-        announce(run, elapsed());
-        report(false);
+        run.skipped =
+          "would take about " + seconds_in_words(seconds) + ", and " +
+          seconds_in_words(std::max(0., parameters.budget - before)) +
+          " of 'Study/Budget' = " + seconds_in_words(parameters.budget) +
+          " were left";
+        out << name << ": left out, it " << run.skipped << std::endl;
+        return "";
       }
+    console.show_status(
+      name + (is_known ? ": running, about " + seconds_in_words(seconds) :
+                         ": running"));
+    StudyRuns::Outcome outcome = runs.make(run.key);
+    if (!outcome.interruption.empty())
+      {
+        report(false);
+        return outcome.interruption.substr(
+                 0, outcome.interruption.find(" has ended")) +
+               " has ended the study in the run " + name +
+               "; the same command goes on.";
+      }
+    if (!outcome.record)
+      {
+        run.skipped = "failed: " + outcome.failure;
+        console.remark(name + ' ' + run.skipped);
+        return "";
+      }
+    run.record = std::move(outcome.record);
+    announce(run, elapsed());
+    report(false);
+    return "";
+  }
 
+
+
+  std::string
+  Study::make_reference(const Timer &timer)
+  {
+    const auto is_reference = [](const PlannedRun &run) {
+      return run.is_reference;
+    };
+    PlannedRun &last = *std::find_if(plan.begin(), plan.end(), is_reference);
+    runs.reference   = last.key;
+    if (runs.find(last.key))
+      return "";
+    runs.reference.reset();
+
+    // Coarse runs without it tell how long it takes.
+    find_finished();
+    for (PlannedRun &run : plan)
+      if (!run.record && run.key.way() == last.key.way() &&
+          run.key.mesh_level == run.key.time_level &&
+          run.key.mesh_level + 2 < last.key.mesh_level)
+        {
+          const std::string interruption = make(run, timer);
+          if (!interruption.empty())
+            return interruption;
+        }
+    runs.reference                 = last.key;
+    const std::string interruption = make(last, timer);
+    if (!last.record)
+      {
+        runs.reference.reset();
+        out << "The study goes on without a reference run." << std::endl;
+      }
+    return interruption;
+  }
+
+
+
+  std::string
+  Study::run()
+  {
+    Timer timer;
+    out << "Study of " << runs.scene.file << ": " << plan.size() << " runs"
+        << std::endl;
     if (!has_exact_solution)
-      for (PlannedRun &run : plan)
-        if (run.record && !run.is_reference && reference() != nullptr)
-          measure_field_errors(runs, *run.record, *reference());
+      {
+        const std::string interruption = make_reference(timer);
+        if (!interruption.empty())
+          return interruption;
+      }
+    const unsigned int n_found = find_finished();
+    if (n_found > 0)
+      out << n_found << " of them are finished" << std::endl;
+    for (PlannedRun &run : plan)
+      if (!run.record && run.skipped.empty())
+        {
+          const std::string interruption = make(run, timer);
+          if (!interruption.empty())
+            return interruption;
+        }
+
+    std::string failure = "'Study/Budget' leaves no time.";
+    for (const PlannedRun &run : plan)
+      if (!run.skipped.empty())
+        failure = "the run " + runs.name(run.key) + ' ' + run.skipped;
     AssertThrow(!records().empty(),
                 ExcMessage("No run of the study could be computed: " +
-                           (failure.empty() ? "'Study/Budget' leaves no time." :
-                                              failure)));
+                           failure));
     report(true);
     out << prices_in_words(*this) << "Results in " << runs.directory
         << "\nPictures: contrib/plot " << runs.directory << std::endl;

@@ -257,15 +257,4 @@ namespace Viscoplastic
       }
     return result;
   }
-
-
-
-  void
-  measure_field_errors(const StudyRuns & /*runs*/,
-                       RunRecord &record,
-                       const RunRecord & /*reference*/)
-  {
-    for (const std::string &name : field_errors)
-      record.numbers[name] = nan;
-  }
 } // namespace Viscoplastic

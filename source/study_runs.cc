@@ -351,6 +351,12 @@ namespace Viscoplastic
           "Checkpoint/Directory=" + place + "/checkpoint",
           std::string("Error control/Two-level comparison=false")})
       result.push_back(text);
+    const bool is_reference = reference && key == *reference;
+    result.push_back(std::string("Output/Reference fields=") +
+                     (is_reference ? "true" : "false"));
+    if (reference && !is_reference)
+      result.push_back("Exact solution/Reference directory=" + directory +
+                       name(*reference));
     return result;
   }
 
@@ -364,10 +370,14 @@ namespace Viscoplastic
       crc.process_bytes(text.data(), text.size());
     };
     for (const auto &[path, value] : parameters.values())
-      if (path == "Output/Points" || (path.compare(0, 7, "Output/") != 0 &&
-                                      path.compare(0, 6, "Study/") != 0 &&
-                                      path.compare(0, 11, "Checkpoint/") != 0))
+      if (path == "Output/Points" || path == "Output/Reference fields" ||
+          (path.compare(0, 7, "Output/") != 0 &&
+           path.compare(0, 6, "Study/") != 0 &&
+           path.compare(0, 11, "Checkpoint/") != 0 &&
+           !(reference && path == "Exact solution/Reference directory")))
         add(path + '=' + value + '\n');
+    if (reference)
+      add(name(*reference));
     if (!scene.geometry.file.empty())
       add(read_file(scene.geometry.file));
     return {{"version", VISCOPLASTIC_CONTACT_VERSION},

@@ -75,13 +75,17 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       diagonal.begin()[i] =
         matrix.diag_element(space.owned.nth_index_in_set(i));
-    solver = make_bulk_solver(space,
+    solver                       = make_bulk_solver(space,
                               matrix,
                               face ? face->layout() : no_face,
                               face ? face->dofs() : no_dofs,
                               space.scene.parameters.solver.linear_solver,
                               moduli.max_poissons_ratio(),
                               n_solves);
+    const Parameters &parameters = space.scene.parameters;
+    if (parameters.error_control.error_bar ||
+        parameters.refinement.strategy == "residual")
+      estimator = std::make_unique<ResidualEstimator<dim>>(sampling);
   }
 
 
@@ -102,8 +106,10 @@ namespace Viscoplastic
                       dim>::mesh_reconstruction_after_repartitioning)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
-    , contact_solver(parameters.solver.strict_tolerance(),
-                     parameters.solver.maximal_iterations)
+    , contact_solver(parameters.solver.maximal_iterations)
+    , error_bar(parameters.error_control.error_bar ?
+                  std::make_unique<ErrorBar<dim>>(scene) :
+                  nullptr)
     , progress(console, scene.schedule.n_steps())
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
   {}
@@ -129,19 +135,10 @@ namespace Viscoplastic
       begin();
 
     const SignalRequests signals;
-    const unsigned int   every_n_steps = parameters.refinement.every_n_steps;
     while (state.n < scene.schedule.n_steps())
       {
-        const TimeStep time_step = scene.schedule.step(state.n + 1);
-        if (scene.is_adaptive() && state.n > 0 && state.n % every_n_steps == 0)
-          adapt_mesh();
-        Step step = advance(state, forces, time_step);
-        if (scene.is_adaptive())
-          estimate(step.state);
-        record(state, step, time_step);
-        state  = std::move(step.state);
-        forces = std::move(step.forces);
-        if (output->is_due(time_step))
+        make_step();
+        if (output->is_due(scene.schedule.step(state.n)))
           write_fields();
         const std::string interruption = keep_checkpoints(signals);
         if (!interruption.empty())
@@ -154,9 +151,69 @@ namespace Viscoplastic
 
 
   template <int dim>
+  RunSummary<dim>
+  ViscoplasticContact<dim>::run_without_files()
+  {
+    make_mesh();
+    set_up();
+    set_initial_state();
+    check_steps();
+    record_initial_state();
+    while (state.n < scene.schedule.n_steps())
+      make_step();
+    return summary;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::compare_with(const RunSummary<dim> &coarser)
+  {
+    coarser_summary = coarser;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::make_step()
+  {
+    const TimeStep     time_step     = scene.schedule.step(state.n + 1);
+    const unsigned int every_n_steps = parameters.refinement.every_n_steps;
+    if (scene.is_adaptive() && state.n > 0 && state.n % every_n_steps == 0)
+      adapt_mesh();
+    Step         step     = advance(state, forces, time_step);
+    const double residual = estimate(step.state);
+    if (error_bar)
+      {
+        if (scene.has_viscosity())
+          {
+            TimerOutput::Scope phase(timer, "rate");
+            error_bar->evaluate_rate(discretisation->laws, state, step.state);
+          }
+        TimerOutput::Scope phase(timer, "estimate");
+        step.errors = error_bar->assess(discretisation->sampling,
+                                        discretisation->matrix,
+                                        state,
+                                        step.forces,
+                                        step.report,
+                                        residual,
+                                        step.state);
+        error_bar->accept(step.errors, step.state.t);
+      }
+    record(state, step, time_step);
+    state  = std::move(step.state);
+    forces = std::move(step.forces);
+  }
+
+
+
+  template <int dim>
   void
   ViscoplasticContact<dim>::begin()
   {
+    check_references();
     set_up();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(discretisation->space);
@@ -167,15 +224,25 @@ namespace Viscoplastic
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       statistics =
         std::make_unique<Statistics>(output->directory() + "statistics.csv");
+    record_initial_state();
+    write_fields();
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::record_initial_state()
+  {
     Step initial{state,
                  forces,
                  initial_report,
                  {},
                  std::numeric_limits<double>::infinity(),
                  0.,
-                 {}};
+                 {},
+                 error_bar ? error_bar->ledger() : ErrorLedger()};
     record(state, initial, {0, 0., 0., 0.});
-    write_fields();
   }
 
 
@@ -199,6 +266,8 @@ namespace Viscoplastic
     dof_handler.distribute_dofs(fe);
     // The old one goes first: matrices and factors are what fills memory.
     is_solved_on_mesh = false;
+    if (error_bar)
+      error_bar->forget_rate();
     discretisation.reset();
     discretisation = std::make_unique<Discretisation>(dof_handler, scene);
     discretisation->make_solver();
@@ -221,6 +290,8 @@ namespace Viscoplastic
     const Discretisation         &d       = *discretisation;
     const InitialStateParameters &initial = parameters.initial_state;
     state = make_initial_state(d.sampling, initial.equilibrate);
+    if (error_bar)
+      error_bar->begin(d.sampling, state);
     const Load<dim>           load = d.loads.assemble(0.);
     const std::vector<double> bounds =
       d.face ? d.face->bounds(0.) : std::vector<double>();
@@ -238,8 +309,12 @@ namespace Viscoplastic
         check_compatibility(load);
       }
     forces = evaluate_forces(d.sampling, d.matrix, load, state);
-    if (scene.is_adaptive())
-      estimate(state);
+    if (scene.is_adaptive() || initial.equilibrate)
+      {
+        const double residual = estimate(state);
+        if (error_bar && initial.equilibrate)
+          error_bar->assess_equilibrium(forces, initial_report, residual);
+      }
   }
 
 
@@ -272,11 +347,15 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::flow(const State<dim> &old_state,
                                  const TimeStep   &time_step) const
   {
-    FlowStep<dim>      flow = advance_irreversible_stress(discretisation->laws,
-                                                     old_state.u,
-                                                     old_state.z,
-                                                     time_step.t_old,
-                                                     time_step.k);
+    // With an error bar, G has been evaluated at the end of the last step.
+    const FlowLaws<dim> &laws = discretisation->laws;
+    FlowStep<dim>        flow =
+      error_bar ?
+               advance_irreversible_stress<dim>(error_bar->rate(laws, old_state),
+                                         old_state.z,
+                                         time_step.k) :
+               advance_irreversible_stress(
+          laws, old_state.u, old_state.z, time_step.t_old, time_step.k);
     std::ostringstream message;
     message << "The time step " << time_step.k << " of step " << time_step.n
             << " (t = " << time_step.t << ") exceeds the stability limit 2/r = "
@@ -364,7 +443,9 @@ namespace Viscoplastic
                                   const Vector<double>      &foundation_step,
                                   State<dim>                &new_state)
   {
-    const double                t = new_state.t, k = new_state.k;
+    const double t = new_state.t, k = new_state.k,
+                 tolerance            = error_bar ? error_bar->tolerance() :
+                                                    parameters.solver.strict_tolerance();
     Discretisation             &d     = *discretisation;
     const AdmissibleSpace<dim> &space = d.space;
     DistributedVector           right_side(load.values);
@@ -424,8 +505,12 @@ namespace Viscoplastic
         if (foundation_step.size() > 0)
           increment -= foundation_step;
         d.solver->begin(right_side, u);
-        report = contact_solver.solve(
-          *d.solver, d.face->layout(), bounds, increment, new_state.friction);
+        report = contact_solver.solve(*d.solver,
+                                      d.face->layout(),
+                                      bounds,
+                                      tolerance,
+                                      increment,
+                                      new_state.friction);
       }
     else
       {
@@ -445,8 +530,12 @@ namespace Viscoplastic
                 return report;
               }
           }
-        report.linear_iterations =
-          d.solver->solve(right_side, u, parameters.solver.strict_tolerance());
+        report.linear_iterations = d.solver->solve(right_side, u, tolerance);
+        report.tolerance         = tolerance;
+        report.error             = d.solver->rounding_error();
+        if (!d.solver->is_exact())
+          report.error =
+            std::max(report.error, tolerance * d.solver->energy_norm());
       }
 
     new_state.u        = space.ghosted_vector();
@@ -465,21 +554,23 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
+  double
   ViscoplasticContact<dim>::estimate(const State<dim> &of)
   {
     const Discretisation &d = *discretisation;
     TimerOutput::Scope    phase(timer, "estimate");
     if (parameters.refinement.strategy == "kelly")
-      {
-        squared_estimate = kelly_estimate(d.space, of.u);
-        return;
-      }
+      squared_estimate = kelly_estimate(d.space, of.u);
+    if (!d.estimator)
+      return 0.;
     DistributedVector density;
     if (d.face)
       density = d.face->density(of.friction);
-    squared_estimate = residual_estimate(
-      d.sampling, of.u, of.z, of.t, d.face ? &density : nullptr);
+    const Vector<double> residual =
+      d.estimator->estimate(of.u, of.z, of.t, d.face ? &density : nullptr);
+    if (parameters.refinement.strategy == "residual")
+      squared_estimate = residual;
+    return total_estimate(residual, communicator);
   }
 
 

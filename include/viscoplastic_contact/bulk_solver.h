@@ -49,6 +49,10 @@ namespace Viscoplastic
     recall(const Memory &)
     {}
 
+    /// Whether solve() leaves nothing but rounding, whatever its tolerance.
+    virtual bool
+    is_exact() const = 0;
+
     /// For the user: "direct (CHOLMOD)".
     virtual std::string
     name() const = 0;

@@ -61,8 +61,8 @@ namespace Viscoplastic
 
   /**
    * What is attached to the cells of this rank and to their vertices:
-   * displacements, z, and @p squared_estimate of active cells (empty without an
-   * estimator).
+   * displacements, fields at samples, and @p squared_estimate of active cells
+   * (empty without an estimator).
    */
   template <int dim>
   std::string
@@ -73,10 +73,12 @@ namespace Viscoplastic
   /**
    * The inverse, on the same mesh. @p meshes and @p fields are what pack_mesh()
    * and pack_fields() have returned on some ranks, or all of them. Sets u,
-   * velocity, initial_u and z of @p state; @p has_initial_u and @p has_estimate
-   * tell what there was. Returns whether that was all that this rank needs.
-   * Throws ExcMessage for bytes that make no sense. Not collective but for the
-   * exchange of ghost values at its end.
+   * velocity, initial_u and the fields at samples of @p state; @p
+   * has_initial_u,
+   * @p has_estimate and @p n_sample_fields, of which none is missing before the
+   * last, tell what there was. Returns whether that was all that this rank
+   * needs. Throws ExcMessage for bytes that make no sense. Not collective but
+   * for the exchange of ghost values at its end.
    */
   template <int dim>
   bool
@@ -85,6 +87,7 @@ namespace Viscoplastic
                 const StressSampling<dim>      &sampling,
                 const bool                      has_initial_u,
                 const bool                      has_estimate,
+                const unsigned int              n_sample_fields,
                 State<dim>                     &state,
                 Vector<double>                 &squared_estimate);
 

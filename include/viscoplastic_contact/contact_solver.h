@@ -17,6 +17,10 @@ namespace Viscoplastic
     double duality_gap = 0.;
     /// That bound on the error over the energy norm of the solution.
     double relative_error = 0.;
+    /// The bound itself; without friction that of the linear solver.
+    double error = 0.;
+    /// The relative tolerance of the solve; zero where nothing was solved.
+    double tolerance = 0.;
   };
 
 
@@ -46,13 +50,14 @@ namespace Viscoplastic
   class ContactSolver
   {
   public:
-    ContactSolver(const double tolerance, const unsigned int max_iterations);
+    explicit ContactSolver(const unsigned int max_iterations);
 
     /**
      * @p bounds: rho_c >= 0 of each point (infinite for glued ones);
      * @p increment: face part of u - u_prev at the start given to
      * bulk.begin(), and of the solution on return; @p state: the sets and
-     * multipliers to start from and those of the solution.
+     * multipliers to start from and those of the solution; @p tolerance: the
+     * relative error at which to stop.
      *
      * Throws ExcMessage when the iteration is exhausted or a value is not
      * finite: there is no unconverged result.
@@ -61,11 +66,11 @@ namespace Viscoplastic
     solve(BulkSolver                &bulk,
           const FrictionFace        &face,
           const std::vector<double> &bounds,
+          const double               tolerance,
           Vector<double>            &increment,
           FrictionState             &state) const;
 
   private:
-    const double       tolerance;
     const unsigned int max_iterations;
   };
 } // namespace Viscoplastic

@@ -98,6 +98,28 @@ namespace Viscoplastic
   };
 
 
+  /// G at a state, and what it means for a step from there.
+  struct FlowRate
+  {
+    /// At each sample.
+    IrreversibleStress rate;
+    /// The largest relaxation rate r; forward Euler is stable for k <= 2/r.
+    /// Collective result.
+    double relaxation_rate;
+    /// Volume of the samples with stresses beyond the cap of their law.
+    /// Collective result.
+    double capped_volume;
+  };
+
+  /// One evaluation a sample. Collective.
+  template <int dim>
+  FlowRate
+  evaluate_flow(const FlowLaws<dim>      &laws,
+                const DistributedVector  &ghosted_u,
+                const IrreversibleStress &z,
+                const double              t);
+
+
   /// Forward Euler for z, (3.19), and what the step meant.
   template <int dim>
   struct FlowStep
@@ -121,5 +143,12 @@ namespace Viscoplastic
                               const DistributedVector  &ghosted_u,
                               const IrreversibleStress &z,
                               const double              t,
+                              const double              k);
+
+  /// The same with G as evaluated at the beginning of the step.
+  template <int dim>
+  FlowStep<dim>
+  advance_irreversible_stress(const FlowRate           &flow,
+                              const IrreversibleStress &z,
                               const double              k);
 } // namespace Viscoplastic

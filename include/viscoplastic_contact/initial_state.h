@@ -22,6 +22,17 @@ namespace Viscoplastic
                      const bool                 equilibrate);
 
   /**
+   * |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
+   * stresses, (int E^-1 s : s)^{1/2}, by quadrature; @p state as
+   * make_initial_state() gives it. Zero and free without initial data.
+   * Collective.
+   */
+  template <int dim>
+  double
+  initial_data_error(const StressSampling<dim> &sampling,
+                     const State<dim>          &state);
+
+  /**
    * The violation of compatibility (2.12),
    *
    *     (sigma0, eps(v)) + j(v) >= L(0, v)  for all v,

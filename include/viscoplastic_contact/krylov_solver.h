@@ -35,6 +35,12 @@ namespace Viscoplastic
                  const std::vector<types::global_dof_index> &face_dofs,
                  const unsigned int                          dim);
 
+    bool
+    is_exact() const override
+    {
+      return false;
+    }
+
     std::string
     name() const override;
 

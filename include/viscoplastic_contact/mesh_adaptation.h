@@ -37,10 +37,10 @@ namespace Viscoplastic
    * cells:
    *
    * - displacements and multiplier density by interpolation;
-   * - z by an L2 projection that conserves int z over every cell that is
-   *   refined or coarsened. Samples on the children of a cell are values of the
-   *   polynomial through the parent's samples: a copy of cell means, the
-   *   (bi-, tri-)linear interpolant of quadrature points.
+   * - z and the other fields at samples by an L2 projection that conserves int
+   * z over every cell that is refined or coarsened. Samples on the children of
+   * a cell are values of the polynomial through the parent's samples: a copy of
+   * cell means, the (bi-, tri-)linear interpolant of quadrature points.
    *
    * Equilibrium is restored by the next step, which solves for the total
    * displacement.
@@ -91,13 +91,14 @@ namespace Viscoplastic
     parallel::distributed::SolutionTransfer<dim, DistributedVector>
       field_transfer;
 
-    /// Old z (without z: nothing else below), weights of its samples, and the
-    /// number of each owned cell by active cell index.
-    bool                      has_z;
-    IrreversibleStress        old_z;
-    std::vector<double>       old_weights;
-    std::vector<unsigned int> old_cell;
-    unsigned int              handle;
+    /// Which of the fields at samples there are (without any: nothing else
+    /// below), their old values, the weights of the samples, and the number of
+    /// each owned cell by active cell index.
+    std::vector<unsigned int>       carried;
+    std::vector<IrreversibleStress> old_samples;
+    std::vector<double>             old_weights;
+    std::vector<unsigned int>       old_cell;
+    unsigned int                    handle;
     /// Samples on each child = prolongation * samples on the parent.
     std::vector<FullMatrix<double>> prolongation;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/contact_face.h>
+#include <viscoplastic_contact/error_ledger.h>
 #include <viscoplastic_contact/state.h>
 
 #include <optional>
@@ -42,6 +43,10 @@ namespace Viscoplastic
     {
       return times;
     }
+
+    /// Add the estimated error to the record of the run. On all ranks.
+    void
+    record_errors(const ErrorSummary &errors) const;
 
     const std::string &
     directory() const

@@ -40,8 +40,10 @@ namespace Viscoplastic
     /// the area.
     std::optional<unsigned int> contact_iterations = {};
     std::optional<double>       slipping           = {};
-    /// In adaptive scenes.
+    /// In adaptive scenes without error bar.
     std::optional<double> error_estimate = {};
+    /// With an error bar: the estimate over the energy norm of the solution.
+    std::optional<double> relative_error = {};
   };
 
 

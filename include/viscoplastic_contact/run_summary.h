@@ -4,12 +4,15 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
+#include <viscoplastic_contact/error_ledger.h>
 #include <viscoplastic_contact/solution_norms.h>
 
 #include <map>
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace Viscoplastic
 {
@@ -46,7 +49,14 @@ namespace Viscoplastic
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
     double stored_energy = 0., external_work = 0., energy_balance_defect = 0.;
     std::optional<double> viscous_dissipation, friction_dissipation,
-      adaptation_energy, error_estimate;
+      adaptation_energy;
+    std::optional<double>       slipping_area;
+    std::vector<Tensor<1, dim>> point_displacements;
+    double                      max_displacement = 0.;
+    /// Of an adaptive scene without error bar.
+    std::optional<double> error_estimate;
+    /// Of a scene with error bar.
+    std::optional<ErrorSummary> errors;
 
     Largest displacement, von_mises, slip_area, capped_volume, tension_area;
     /// Of all friction points.
@@ -54,9 +64,26 @@ namespace Viscoplastic
     /// Against an exact solution; zero without one.
     SolutionNorms largest_error, largest_exact;
 
+    /// @p coarser: of a run with twice the mesh width and twice the time steps,
+    /// or null. The difference is the uncertainty of each quantity, by first
+    /// order convergence.
     void
-    print(std::ostream &out) const;
+    print(std::ostream &out, const RunSummary *coarser = nullptr) const;
+
+    /// The quantities at the end, by the names that statistics.csv has.
+    std::vector<std::pair<std::string, double>>
+    quantities() const;
   };
+
+
+
+  /// A table `quantity,value,uncertainty'. Throws ExcMessage if it cannot be
+  /// written.
+  template <int dim>
+  void
+  write_uncertainties(const std::string     &file,
+                      const RunSummary<dim> &summary,
+                      const RunSummary<dim> &coarser);
 
 
 

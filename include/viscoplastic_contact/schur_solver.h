@@ -35,6 +35,12 @@ namespace Viscoplastic
                 const unsigned int                          dim);
     ~SchurSolver() override;
 
+    bool
+    is_exact() const override
+    {
+      return true;
+    }
+
     std::string
     name() const override;
 

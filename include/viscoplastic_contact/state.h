@@ -5,6 +5,8 @@
 #include <viscoplastic_contact/stress_history.h>
 #include <viscoplastic_contact/types.h>
 
+#include <array>
+
 namespace Viscoplastic
 {
   /**
@@ -25,10 +27,26 @@ namespace Viscoplastic
     /// initial stress.
     IrreversibleStress z;
 
+    /// At the same samples, with viscosity and an error bar only: what the time
+    /// scheme has left out of z so far, to leading order, and what its second
+    /// order needs (see ErrorBar).
+    IrreversibleStress time_error, rate_slope;
+
     /// Of the step that led here; no points without friction.
     FrictionState friction;
 
     /// u_0, Cartesian with ghosts; empty where zero.
     DistributedVector initial_u;
   };
+
+
+
+  /// The fields of a state that have values at the samples.
+  template <typename StateType>
+  auto
+  sample_fields(StateType &state)
+  {
+    return std::array<decltype(&state.z), 3>{
+      {&state.z, &state.time_error, &state.rate_slope}};
+  }
 } // namespace Viscoplastic

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deal.II/base/conditional_ostream.h>
+#include <deal.II/base/timer.h>
 
 #include <viscoplastic_contact/study_analysis.h>
 
@@ -31,7 +32,8 @@ namespace Viscoplastic
    * the study, `time' the steps on its finest mesh, `both' both; so that the
    * part of the error that a ladder leaves alone is the smallest that the study
    * has, and they share the finest run. A scene without an exact solution gets
-   * a reference run one level finer in both.
+   * a reference run one level finer in both, which comes before those that are
+   * compared with it; a few coarse runs tell whether it fits into the budget.
    */
   class Study
   {
@@ -46,9 +48,10 @@ namespace Viscoplastic
     std::string
     run();
 
-    const StudyRuns       runs;
+    StudyRuns             runs;
     const StudyParameters parameters;
-    const bool            has_exact_solution;
+    /// Or fields of a reference of the user's.
+    const bool has_exact_solution;
 
     std::vector<PlannedRun> plan;
 
@@ -68,6 +71,19 @@ namespace Viscoplastic
   private:
     void
     make_plan();
+
+    /// Make a run unless it is too long; @p timer runs since the study began.
+    /// Returns the sentence of a signal.
+    std::string
+    make(PlannedRun &run, const Timer &timer);
+
+    /// Make the reference run, if there is time for it.
+    std::string
+    make_reference(const Timer &timer);
+
+    /// Look for records of finished runs; returns how many there are.
+    unsigned int
+    find_finished();
 
     /// What a run will take, from those that are finished; not a number if that
     /// cannot be known yet.

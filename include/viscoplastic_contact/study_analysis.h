@@ -77,14 +77,4 @@ namespace Viscoplastic
   std::vector<Richardson>
   extrapolate(const std::array<const RunRecord *, 3> &runs);
 
-
-  /**
-   * Differences of the fields of a run to those of the reference run, in the
-   * norms of field_errors: not measured yet, hence not numbers. They go into
-   * the numbers of the record.
-   */
-  void
-  measure_field_errors(const StudyRuns &runs,
-                       RunRecord       &record,
-                       const RunRecord &reference);
 } // namespace Viscoplastic

@@ -45,6 +45,11 @@ namespace Viscoplastic
     /// cell over sqrt(dim).
     double n_cells = 0., h = 0.;
 
+    /// The run that writes its fields, and with whose fields those of all
+    /// others are compared, if any. Records of runs that have been compared
+    /// with another one, or none, do not count as finished.
+    std::optional<RunKey> reference;
+
     /// The scene as it is.
     RunKey
     scene_key() const;

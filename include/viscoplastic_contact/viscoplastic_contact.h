@@ -13,14 +13,17 @@
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/contact_tension.h>
+#include <viscoplastic_contact/error_bar.h>
 #include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/force_balance.h>
 #include <viscoplastic_contact/loads.h>
 #include <viscoplastic_contact/output.h>
 #include <viscoplastic_contact/point_probe.h>
 #include <viscoplastic_contact/progress.h>
+#include <viscoplastic_contact/residual_estimator.h>
 #include <viscoplastic_contact/run_summary.h>
 #include <viscoplastic_contact/signals.h>
+#include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
 
@@ -53,6 +56,15 @@ namespace Viscoplastic
     /// checkpoint.
     std::string
     run(const CommandLine::Restart restart = CommandLine::Restart::no);
+
+    /// All steps without any file, and what is known at the end.
+    RunSummary<dim>
+    run_without_files();
+
+    /// The closing words of run() give each quantity with its difference from
+    /// that of a run with twice the mesh width and twice the time steps.
+    void
+    compare_with(const RunSummary<dim> &coarser);
 
     /**
      * Everything that can be known without solving: validates the scene with
@@ -94,6 +106,8 @@ namespace Viscoplastic
       std::unique_ptr<ContactTension<dim>> tension;
       /// Null without friction.
       std::unique_ptr<ContactFace<dim>> face;
+      /// Null in scenes without error bar that are not refined by it.
+      std::unique_ptr<ResidualEstimator<dim>> estimator;
 
       /// How often a solver will be used at least.
       unsigned int                n_solves;
@@ -116,6 +130,8 @@ namespace Viscoplastic
       double capped_volume;
       /// What the foundation moved, as a face vector; empty at rest.
       Vector<double> foundation_step;
+      /// Zero without error bar.
+      ErrorLedger errors;
     };
 
     /// What adds up over the steps.
@@ -134,6 +150,14 @@ namespace Viscoplastic
     /// From the start: everything up to the initial state.
     void
     begin();
+
+    /// Add the row of the initial state.
+    void
+    record_initial_state();
+
+    /// The next step, recorded and accepted.
+    void
+    make_step();
 
     void
     make_mesh();
@@ -174,8 +198,9 @@ namespace Viscoplastic
           const Vector<double>      &foundation_step,
           State<dim>                &state);
 
-    /// Estimate the error of a state, in scenes that use it.
-    void
+    /// Estimate the error of a state: squared_estimate in adaptive scenes.
+    /// Returns the residual estimate; zero in scenes that do not use it.
+    double
     estimate(const State<dim> &of);
 
     void
@@ -230,6 +255,23 @@ namespace Viscoplastic
            const Step       &step,
            const TimeStep   &time_step);
 
+    /// Against the exact solution, or a reference at the ends of phases; not
+    /// a number where there is none. Writes such a reference where wanted.
+    SolutionErrors
+    measure_errors(const State<dim> &of);
+
+    /// Whether measure_errors() will give anything, now or later.
+    bool
+    measures_errors() const
+    {
+      return scene.exact_solution ||
+             !parameters.exact_solution.reference_directory.empty();
+    }
+
+    /// Refuse missing references before the run.
+    void
+    check_references() const;
+
     void
     write_fields();
 
@@ -246,6 +288,7 @@ namespace Viscoplastic
     DoFHandler<dim>                           dof_handler;
     std::unique_ptr<Discretisation>           discretisation;
     ContactSolver                             contact_solver;
+    std::unique_ptr<ErrorBar<dim>>            error_bar; // null if not wanted
 
     State<dim>     state;
     Forces<dim>    forces; // of the state
@@ -262,6 +305,8 @@ namespace Viscoplastic
     std::vector<PointProbe<dim>> probes;
     Progress                     progress;
     RunSummary<dim>              summary;
+    /// What compare_with() was given.
+    std::optional<RunSummary<dim>> coarser_summary;
     /// Wall time by phase over the run, and what it was a step ago.
     TimerOutput                   timer;
     std::map<std::string, double> last_seconds;

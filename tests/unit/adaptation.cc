@@ -12,6 +12,7 @@
 #include <viscoplastic_contact/error_estimator.h>
 #include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
+#include <viscoplastic_contact/residual_estimator.h>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -34,6 +35,22 @@ namespace
   using Stress = SymmetricTensor<2, 3>;
 
   const double mu = 1. / 2.6; // of the default material, E = 1, nu = 0.3
+
+
+
+  template <int dim>
+  Vector<double>
+  residual_estimate(const StressSampling<dim> &sampling,
+                    const DistributedVector   &u,
+                    const IrreversibleStress  &z,
+                    const double               t,
+                    const DistributedVector   *multiplier_density)
+  {
+    return ResidualEstimator<dim>(sampling).estimate(u,
+                                                     z,
+                                                     t,
+                                                     multiplier_density);
+  }
 
 
 

@@ -491,9 +491,8 @@ namespace
         Vector<double>    increment(face.n_dofs());
         FrictionState     state(face.points.size());
         solver->begin(scenario.load, u);
-        const ContactReport report =
-          ContactSolver(tolerance, 50)
-            .solve(*solver, face, bounds, increment, state);
+        const ContactReport report = ContactSolver(50).solve(
+          *solver, face, bounds, tolerance, increment, state);
         EXPECT_LE(report.relative_error, tolerance);
         EXPECT_LE(report.iterations, 20u);
 

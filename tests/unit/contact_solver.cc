@@ -526,6 +526,12 @@ namespace
       relax_bulk();
     }
 
+    bool
+    is_exact() const override
+    {
+      return true;
+    }
+
     std::string
     name() const override
     {
@@ -764,8 +770,8 @@ namespace
     increment -= problem.u_prev;
     increment = problem.on_face(increment);
     const ContactReport report =
-      ContactSolver(tolerance, max_iterations)
-        .solve(bulk, problem.face, problem.bounds, increment, state);
+      ContactSolver(max_iterations)
+        .solve(bulk, problem.face, problem.bounds, tolerance, increment, state);
     EXPECT_TRUE(bulk.is_finished);
     // The increment returned is that of the displacement.
     Vector<double> change(bulk.u);

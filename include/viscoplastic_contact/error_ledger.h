@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+namespace Viscoplastic
+{
+  /**
+   * The error of a state in the energy norm a(.,.)^{1/2}, by its causes. It
+   * bounds the error of one step for given z, with the time error of z: the
+   * error in space that has accumulated in z is not part of it.
+   */
+  struct ErrorLedger
+  {
+    /// Of the mesh: space_calibration times the residual estimator.
+    double space = 0.;
+    /// Of the time steps up to now: (int E^-1 D : D)^{1/2}.
+    double time = 0.;
+    /// Of the iterations that solved the step.
+    double algebraic = 0.;
+    /// Of the initial data.
+    double initial = 0.;
+
+    /// What this step alone has added to D, in the norm of `time'.
+    double time_indicator = 0.;
+    /// (sum_j (k_j/3) |du_j - du_{j-1}|^2)^{1/2}, the computable part of
+    /// I^k(u')^{1/2}, (5.19); energy^{1/2} time^{-1/2}.
+    double velocity_variation = 0.;
+    /// a(u_h, u_h)^{1/2}.
+    double energy_norm = 0.;
+
+    /// By the triangle inequality.
+    double
+    total() const
+    {
+      return space + time + algebraic + initial;
+    }
+  };
+
+
+
+  /// What there is to say of all steps.
+  struct ErrorSummary
+  {
+    /// The ledger with the largest total, and its time.
+    ErrorLedger largest;
+    double      t = 0.;
+    /// Over the run.
+    double largest_energy_norm = 0.;
+
+    /// 0 for a body that never deforms.
+    double
+    relative() const
+    {
+      return largest_energy_norm > 0. ? largest.total() / largest_energy_norm :
+                                        0.;
+    }
+  };
+} // namespace Viscoplastic

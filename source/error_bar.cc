@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/error_bar.h>
+#include <viscoplastic_contact/initial_state.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    template <int dim>
+    double
+    energy_norm(const Forces<dim> &forces)
+    {
+      return std::sqrt(2. * std::max(0., forces.strain_energy));
+    }
+  } // namespace
+
+
+
+  TimeDefect
+  time_defect(const std::string &scheme)
+  {
+    if (scheme == "forward Euler")
+      return {0.5, 0.};
+    AssertThrow(false,
+                ExcMessage("The time error of the scheme '" + scheme +
+                           "' is not known."));
+    return {0., 0.};
+  }
+
+
+
+  template <int dim>
+  ErrorBar<dim>::ErrorBar(const Scene<dim> &scene)
+    : scene(scene)
+    , solver(scene.parameters.solver)
+    , algebraic_fraction(scene.parameters.error_control.algebraic_fraction)
+    , defect(time_defect(scene.parameters.time.scheme))
+  {}
+
+
+
+  template <int dim>
+  unsigned int
+  ErrorBar<dim>::n_sample_fields(const Scene<dim> &scene)
+  {
+    if (!scene.has_irreversible_stress())
+      return 0;
+    if (!scene.parameters.error_control.error_bar || !scene.has_viscosity())
+      return 1;
+    return time_defect(scene.parameters.time.scheme).second != 0. ? 3 : 2;
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorBar<dim>::begin(const StressSampling<dim> &sampling, State<dim> &state)
+  {
+    present.initial = initial_data_error(sampling, state);
+    if (n_sample_fields(scene) > 1)
+      state.time_error.assign(state.z.size(), SymmetricTensor<2, 3>());
+    if (n_sample_fields(scene) > 2)
+      state.rate_slope.assign(state.z.size(), SymmetricTensor<2, 3>());
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorBar<dim>::assess_equilibrium(const Forces<dim>   &forces,
+                                    const ContactReport &report,
+                                    const double         residual)
+  {
+    ErrorLedger ledger;
+    ledger.initial     = present.initial;
+    ledger.energy_norm = energy_norm(forces);
+    ledger.space       = space_calibration * residual;
+    ledger.algebraic   = report.error;
+    accept(ledger, 0.);
+  }
+
+
+
+  template <int dim>
+  const FlowRate &
+  ErrorBar<dim>::rate(const FlowLaws<dim> &laws, const State<dim> &accepted)
+  {
+    if (!accepted_rate)
+      accepted_rate = evaluate_flow(laws, accepted.u, accepted.z, accepted.t);
+    return *accepted_rate;
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorBar<dim>::evaluate_rate(const FlowLaws<dim> &laws,
+                               const State<dim>    &accepted,
+                               const State<dim>    &state)
+  {
+    rate(laws, accepted);
+    assessed_rate = evaluate_flow(laws, state.u, state.z, state.t);
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorBar<dim>::forget_rate()
+  {
+    accepted_rate.reset();
+  }
+
+
+
+  template <int dim>
+  double
+  ErrorBar<dim>::tolerance() const
+  {
+    const double discretisation = present.space + present.time;
+    if (solver.contact_tolerance > 0. || present.energy_norm == 0. ||
+        discretisation == 0.)
+      return solver.strict_tolerance();
+    return std::clamp(algebraic_fraction * discretisation / present.energy_norm,
+                      least_tolerance,
+                      largest_tolerance);
+  }
+
+
+
+  template <int dim>
+  std::pair<double, double>
+  ErrorBar<dim>::add_defect(const StressSampling<dim> &sampling,
+                            const State<dim>          &accepted,
+                            State<dim>                &state) const
+  {
+    const bool   is_second = n_sample_fields(scene) > 2;
+    const double k         = state.k;
+    state.time_error       = accepted.time_error;
+    if (is_second)
+      state.rate_slope.resize(accepted.rate_slope.size());
+    std::vector<double> sums(2, 0.);
+    std::size_t         i = 0;
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      {
+        const Stiffness &stiffness = sampling.moduli(c);
+        const auto       square    = [&](const SymmetricTensor<2, 3> &tensor) {
+          return stiffness.strain(tensor) * tensor;
+        };
+        for (unsigned int s = 0; s < sampling.n_samples; ++s, ++i)
+          {
+            const SymmetricTensor<2, 3> change =
+              assessed_rate->rate[i] - accepted_rate->rate[i];
+            SymmetricTensor<2, 3> step = defect.first * k * change;
+            if (is_second)
+              {
+                state.rate_slope[i] = change / k;
+                // There is no second derivative before the second step.
+                if (accepted.k > 0.)
+                  step += defect.second * k * k * k * 2. / (k + accepted.k) *
+                          (state.rate_slope[i] - accepted.rate_slope[i]);
+              }
+            state.time_error[i] += step;
+            sums[0] += sampling.weight(c, s) * square(step);
+            sums[1] += sampling.weight(c, s) * square(state.time_error[i]);
+          }
+      }
+    Utilities::MPI::sum(sums, sampling.space.communicator, sums);
+    return {sums[0], sums[1]};
+  }
+
+
+
+  template <int dim>
+  ErrorLedger
+  ErrorBar<dim>::assess(const StressSampling<dim> &sampling,
+                        const DistributedMatrix   &matrix,
+                        const State<dim>          &accepted,
+                        const Forces<dim>         &forces,
+                        const ContactReport       &report,
+                        const double               residual,
+                        State<dim>                &state)
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    ErrorLedger                 ledger;
+    ledger.initial     = present.initial;
+    ledger.energy_norm = energy_norm(forces);
+    ledger.space       = space_calibration * residual;
+    ledger.algebraic   = report.error;
+
+    if (scene.has_viscosity())
+      {
+        Assert(accepted_rate && assessed_rate,
+               ExcMessage("The rates have not been evaluated."));
+        const auto [step, all] = add_defect(sampling, accepted, state);
+        ledger.time_indicator  = std::sqrt(step);
+        ledger.time            = std::sqrt(all);
+      }
+
+    DistributedVector change = space.owned_vector(), old = change;
+    space.to_frames(state.velocity, change);
+    space.to_frames(accepted.velocity, old);
+    change -= old;
+    matrix.vmult(old, change);
+    ledger.velocity_variation =
+      std::sqrt(Utilities::fixed_power<2>(present.velocity_variation) +
+                state.k / 3. * std::max(0., change * old));
+    return ledger;
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorBar<dim>::accept(const ErrorLedger &ledger, const double t)
+  {
+    present = ledger;
+    if (assessed_rate)
+      accepted_rate = std::move(assessed_rate);
+    assessed_rate.reset();
+    if (present.total() > run.largest.total())
+      {
+        run.largest = present;
+        run.t       = t;
+      }
+    run.largest_energy_norm =
+      std::max(run.largest_energy_norm, present.energy_norm);
+  }
+
+
+
+  template class ErrorBar<2>;
+  template class ErrorBar<3>;
+} // namespace Viscoplastic

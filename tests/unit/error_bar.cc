@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// The residual estimator against its plain form, and the ledger of errors.
+// Every test holds on any number of ranks.
+
+#include <deal.II/grid/grid_tools.h>
+
+#include "body.h"
+#include "plain_estimator.h"
+#include <viscoplastic_contact/error_bar.h>
+#include <viscoplastic_contact/residual_estimator.h>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+
+
+  template <typename Dimension>
+  class ErrorBars : public testing::Test
+  {};
+  TYPED_TEST_SUITE(ErrorBars, Dimensions);
+
+
+
+  /// All roles and both friction laws, with data of every kind.
+  template <int dim>
+  std::string
+  many_boundaries(const std::string &material)
+  {
+    const std::string zero = dim == 3 ? "; 0" : "";
+    std::string       text =
+      box<dim>(2) + subsection("Material", material) +
+      subsection("Loads", "set Body force = x*t; y - t" + zero) +
+      boundary(0,
+               "set Role = displacement\nset Displacement = 0; free" + zero) +
+      boundary(1, "set Role = traction\nset Traction = x + t; y*t" + zero) +
+      boundary(2,
+               "set Role = contact\nset Friction law = tresca\n"
+               "set Friction bound = 0.1 + if(x < 1, 0, t)") +
+      boundary(3,
+               "set Role = contact\nset Friction law = coulomb\n"
+               "set Friction coefficient = 0.3\n"
+               "set Normal stress = -1 - x*t");
+    if (dim == 3)
+      text +=
+        boundary(4, "set Role = symmetry") + boundary(5, "set Role = clamped");
+    return text;
+  }
+
+
+
+  TYPED_TEST(ErrorBars, FastEstimatorIsThePlainOne)
+  {
+    constexpr int     dim = TypeParam::value;
+    const std::string anisotropic =
+      "set Law = maxwell\nset Voigt matrix = 3, 1, 1, 0, 0, 0; "
+      "1, 4, 1, 0, 0, 0.2; 1, 1, 5, 0, 0, 0; 0, 0, 0, 1, 0.1, 0; "
+      "0, 0, 0, 0.1, 1, 0; 0, 0.2, 0, 0, 0, 1";
+    const std::string isotropic =
+      "set Law = maxwell\nset Young's modulus = 1 + x";
+    for (const bool distorted : {false, true})
+      for (const bool mean_dilatation : {false, true})
+        for (const std::string &material : {isotropic, anisotropic})
+          {
+            Body<dim> body(many_boundaries<dim>(material),
+                           /* at_quadrature_points = */ distorted,
+                           mean_dilatation);
+            body.refine_where([](const Point<dim> &x) {
+              return x[0] > 0.6 && x[dim - 1] < 0.5;
+            });
+            if (distorted)
+              GridTools::transform(
+                [](Point<dim> x) {
+                  // Flat faces stay where they are.
+                  const double bump = 0.3 * x[0] * (2. - x[0]) * x[1] *
+                                      (1. - x[1]) *
+                                      (dim == 3 ? x[2] * (1. - x[2]) * 4. : 1.);
+                  x[0] += bump;
+                  x[1] -= 0.5 * bump;
+                  return x;
+                },
+                body.triangulation);
+            body.set_up();
+            IrreversibleStress z;
+            for (std::size_t c = 0; c < body.sampling->n_cells(); ++c)
+              for (unsigned int s = 0; s < body.sampling->n_samples; ++s)
+                {
+                  SymmetricTensor<2, 3> sample;
+                  for (unsigned int i = 0; i < 6; ++i)
+                    sample.access_raw_entry(i) =
+                      std::sin(i + 5. * body.sampling->position(c, s)[0] +
+                               9. * body.sampling->position(c, s)[1]);
+                  z.push_back(sample);
+                }
+            const DistributedVector u       = body.rough_vector(),
+                                    density = body.rough_vector(0.7);
+            const ResidualEstimator<dim> estimator(*body.sampling);
+            for (const double t : {0., 0.4})
+              {
+                const Vector<double> plain = plain_residual_estimate(
+                                       *body.sampling, u, z, t, &density),
+                                     fast =
+                                       estimator.estimate(u, z, t, &density);
+                ASSERT_EQ(plain.size(), fast.size());
+                double difference = 0.;
+                for (unsigned int i = 0; i < plain.size(); ++i)
+                  difference =
+                    std::max(difference, std::abs(plain[i] - fast[i]));
+                EXPECT_GT(Utilities::MPI::max(plain.linfty_norm(),
+                                              MPI_COMM_WORLD),
+                          1.);
+                EXPECT_LT(difference,
+                          1e-10 * Utilities::MPI::max(plain.linfty_norm(),
+                                                      MPI_COMM_WORLD));
+              }
+          }
+  }
+} // namespace

@@ -166,6 +166,26 @@ namespace Viscoplastic
 
 
 
+  TwoPowers
+  fit_measure(const Records     &records,
+              const std::string &measure,
+              const RunRecord   *reference)
+  {
+    const auto samples = error_samples(records, measure, reference);
+    if (measure != "estimate_total")
+      return fit_error(samples);
+    std::vector<double> space, time;
+    for (const RunRecord *record : records)
+      {
+        space.push_back(record->number("estimate_space") +
+                        record->number("estimate_initial"));
+        time.push_back(record->number("estimate_time"));
+      }
+    return fit_error_parts(samples, space, time);
+  }
+
+
+
   CostModel
   cost_of(const Records &records, const unsigned int dim)
   {
@@ -189,7 +209,7 @@ namespace Viscoplastic
               const RunRecord   *reference)
   {
     Market market;
-    market.error  = fit_error(error_samples(records, measure, reference));
+    market.error  = fit_measure(records, measure, reference);
     market.dim    = runs.scene.dimension;
     market.cost   = cost_of(records, market.dim);
     market.h      = runs.h;

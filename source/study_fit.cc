@@ -326,7 +326,7 @@ namespace Viscoplastic
                        n_2 = n_distinct(problem, 1), n = index.size();
     Unknowns x{{0., prior.p, 0., prior.q}};
     double   slope = 1.;
-    if (n_1 > 1 && n_2 > 1 && is_one_path(problem, slope))
+    if (!prior.is_one_term && n_1 > 1 && n_2 > 1 && is_one_path(problem, slope))
       {
         // Half of one power each: this is all that the samples say.
         result.is_separable = false;
@@ -346,6 +346,8 @@ namespace Viscoplastic
                        n_1 > 1 && !prior.p_is_fixed,
                        n_2 > 1 || n_1 > 1,
                        n_2 > 1 && !prior.q_is_fixed}};
+        if (prior.is_one_term)
+          choice[2] = choice[3] = false;
         if (!choice[2])
           x[2] = -60.;
         const auto n_free = [&choice] {
@@ -424,6 +426,47 @@ namespace Viscoplastic
   fit_error(const std::vector<Sample> &errors_at_h_and_k)
   {
     return fit_two_powers(errors_at_h_and_k, Prior(), 1e-13);
+  }
+
+
+
+  TwoPowers
+  fit_error_parts(const std::vector<Sample> &errors_at_h_and_k,
+                  const std::vector<double> &parts_of_h,
+                  const std::vector<double> &parts_of_k)
+  {
+    Prior prior;
+    prior.is_one_term = true;
+    std::vector<Sample> space, time;
+    for (std::size_t i = 0; i < errors_at_h_and_k.size(); ++i)
+      {
+        space.push_back({errors_at_h_and_k[i].x_1, 1., parts_of_h[i]});
+        time.push_back({errors_at_h_and_k[i].x_2, 1., parts_of_k[i]});
+      }
+    TwoPowers       result = fit_two_powers(space, prior, 1e-13);
+    const TwoPowers of_k   = fit_two_powers(time, prior, 1e-13);
+    result.c_2             = of_k.c_1;
+    result.q               = of_k.p;
+    result.q_is_fitted     = of_k.p_is_fitted;
+    result.n_samples       = 0;
+    result.worst_factor    = 1.;
+    double square          = 0.;
+    for (std::size_t i = 0; i < errors_at_h_and_k.size(); ++i)
+      {
+        const Sample &sample = errors_at_h_and_k[i];
+        const double  r = std::log(result(sample.x_1, sample.x_2) / sample.y);
+        if (!std::isfinite(r))
+          continue;
+        ++result.n_samples;
+        square += r * r;
+        if (std::exp(std::abs(r)) > result.worst_factor)
+          {
+            result.worst_factor = std::exp(std::abs(r));
+            result.worst_sample = static_cast<unsigned int>(i);
+          }
+      }
+    result.rms = std::sqrt(square / result.n_samples); // nan for none
+    return result;
   }
 
 

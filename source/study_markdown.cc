@@ -246,6 +246,11 @@ namespace Viscoplastic
       if (study.has_exact_solution)
         text << "Errors of fields are those to the exact solution of the "
                 "scene. ";
+      else if (study.runs.reference)
+        text << "Errors of fields are differences to those of the run `"
+             << study.runs.name(*study.runs.reference)
+             << "` at the ends of the phases of time; its own error, unknown, "
+                "is part of them. ";
       if (reference != nullptr)
         text << "Quantities of interest are compared with those of the run `"
              << reference->name << "`.\n";

@@ -137,8 +137,8 @@ namespace Viscoplastic
             measures.push_back(name + "_error");
           for (const std::string &measure : measures)
             {
-              const TwoPowers fit = fit_error(
-                error_samples(way.records, measure, study.reference()));
+              const TwoPowers fit =
+                fit_measure(way.records, measure, study.reference());
               if (fit.n_samples < 3)
                 continue;
               text << separator << "\n    " << way_json(way.way)

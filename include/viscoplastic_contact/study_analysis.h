@@ -49,6 +49,12 @@ namespace Viscoplastic
                 const std::string &measure,
                 const RunRecord   *reference);
 
+  /// The fit of errors; that of estimates is by their parts.
+  TwoPowers
+  fit_measure(const Records     &records,
+              const std::string &measure,
+              const RunRecord   *reference);
+
   CostModel
   cost_of(const Records &records, const unsigned int dim);
 

@@ -55,6 +55,8 @@ namespace Viscoplastic
     double weight = 1e-3;
     /// Exponents that are not to be fitted at all.
     bool p_is_fixed = false, q_is_fixed = false;
+    /// Whether there is no second term.
+    bool is_one_term = false;
   };
 
 
@@ -75,6 +77,16 @@ namespace Viscoplastic
   /// as in (5.14) and (5.20). What is below 1e-13 is rounding.
   TwoPowers
   fit_error(const std::vector<Sample> &errors_at_h_and_k);
+
+
+  /**
+   * The same where each part is known by itself, as those of an error bar are:
+   * two fits of one power each. The misfit is that of the sum to the samples.
+   */
+  TwoPowers
+  fit_error_parts(const std::vector<Sample> &errors_at_h_and_k,
+                  const std::vector<double> &parts_of_h,
+                  const std::vector<double> &parts_of_k);
 
 
   /// What one run has cost.

@@ -145,6 +145,30 @@ namespace
 
 
 
+  TEST(StudyFit, KnownParts)
+  {
+    const Truth         truth{2., 1., 0.03, 2.}; // steps hardly show
+    const auto          samples = ladders(truth);
+    std::vector<double> space, time;
+    for (const Sample &sample : samples)
+      {
+        space.push_back(2. * sample.x_1);
+        time.push_back(0.03 * sample.x_2 * sample.x_2);
+      }
+    const TwoPowers fit = fit_error_parts(samples, space, time);
+    EXPECT_NEAR(fit.c_1, 2., 1e-3);
+    EXPECT_NEAR(fit.q, 2., 1e-3);
+    EXPECT_NEAR(fit.c_2, 0.03, 1e-4);
+    EXPECT_LT(fit.rms, 1e-4);
+    // An elastic body has no error of the steps.
+    const TwoPowers elastic =
+      fit_error_parts(samples, space, std::vector<double>(samples.size(), 0.));
+    EXPECT_EQ(elastic.c_2, 0.);
+    EXPECT_EQ(elastic.n_samples, samples.size());
+  }
+
+
+
   TEST(StudyFit, UnusableSamples)
   {
     EXPECT_EQ(fit_error({}).n_samples, 0u);

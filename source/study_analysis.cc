@@ -173,7 +173,18 @@ namespace Viscoplastic
   {
     const auto samples = error_samples(records, measure, reference);
     if (measure != "estimate_total")
-      return fit_error(samples);
+      {
+        const bool is_norm =
+          std::find(field_errors.begin(), field_errors.end(), measure) !=
+          field_errors.end();
+        if (reference == nullptr ||
+            (is_norm && records[0]->numbers.count("is_difference") == 0))
+          return fit_error(samples);
+        return fit_error(samples,
+                         Finer{reference->number("h"),
+                               reference->number("k"),
+                               is_norm});
+      }
     std::vector<double> space, time;
     for (const RunRecord *record : records)
       {

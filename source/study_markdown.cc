@@ -161,6 +161,11 @@ namespace Viscoplastic
         if (!is_fitted)
           text << "The exponent " << name
                << " does not show in these runs and is the theoretical 1. ";
+      if (way.records[0]->numbers.count("is_difference") > 0 &&
+          way.measure.compare(0, 6, "error_") == 0)
+        text << "This is the law of the errors themselves; what was measured "
+                "are differences to the reference, whose own error the fit "
+                "subtracts. ";
       text << "The fit misses " << error.n_samples << " runs by a factor of "
            << digits(std::exp(error.rms), 3) << " (root mean square) and "
            << digits(error.worst_factor, 3) << " at worst (`"

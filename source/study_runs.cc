@@ -478,7 +478,9 @@ namespace Viscoplastic
                 make_record(key,
                             read_table(place + "statistics.csv"),
                             measurements);
-              record.name         = name(key);
+              record.name = name(key);
+              if (reference)
+                record.numbers["is_difference"] = 1.;
               record.numbers["h"] = mesh_width(record.number("cells"));
               const double every  = parameters.refinement.strategy == "none" ?
                                       0. :

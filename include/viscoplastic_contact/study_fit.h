@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace Viscoplastic
@@ -46,6 +47,17 @@ namespace Viscoplastic
   };
 
 
+  /// Of a run that has been taken for the truth: samples are differences to it.
+  struct Finer
+  {
+    double x_1, x_2;
+    /// Whether its error in the first direction is orthogonal to differences,
+    /// as those of Galerkin methods in their norm: the squares subtract, not
+    /// the errors themselves.
+    bool is_orthogonal;
+  };
+
+
   /// What is believed of the exponents without samples.
   struct Prior
   {
@@ -65,18 +77,21 @@ namespace Viscoplastic
    * deviations count in full, outliers by their sign. Samples that are not
    * finite, or not above @p smallest, are left out. An exponent that the
    * samples do not determine to 0.3 (one standard deviation) has the value of
-   * the prior.
+   * the prior. With @p finer the terms are those of both runs subtracted; the
+   * result is the law of the errors themselves.
    */
   TwoPowers
-  fit_two_powers(const std::vector<Sample> &samples,
-                 const Prior               &prior    = Prior(),
-                 const double               smallest = 0.);
+  fit_two_powers(const std::vector<Sample>  &samples,
+                 const Prior                &prior    = Prior(),
+                 const double                smallest = 0.,
+                 const std::optional<Finer> &finer    = {});
 
 
   /// Relative errors: C_h h^p + C_k k^q, where nothing else is known p = q = 1
   /// as in (5.14) and (5.20). What is below 1e-13 is rounding.
   TwoPowers
-  fit_error(const std::vector<Sample> &errors_at_h_and_k);
+  fit_error(const std::vector<Sample>  &errors_at_h_and_k,
+            const std::optional<Finer> &finer = {});
 
 
   /**

@@ -145,6 +145,38 @@ namespace
 
 
 
+  TEST(StudyFit, DifferencesToAFinerRun)
+  {
+    const Truth truth{2., 1., 3., 1.};
+    const Finer finer{0.125 / 16, 0.05 / 16, true};
+    auto        samples = ladders(truth);
+    for (Sample &sample : samples)
+      sample.y =
+        2. * std::sqrt(std::pow(sample.x_1, 2) - std::pow(finer.x_1, 2)) +
+        3. * (sample.x_2 - finer.x_2);
+    const TwoPowers fit = fit_error(samples, finer);
+    EXPECT_NEAR(fit.p, 1., 1e-3);
+    EXPECT_NEAR(fit.q, 1., 1e-3);
+    EXPECT_NEAR(fit.c_1, 2., 0.01);
+    EXPECT_NEAR(fit.c_2, 3., 0.01);
+    EXPECT_LT(fit.rms, 1e-4);
+    // The finest of the ladders in its place: its steps are those of the ladder
+    // in space, and do not count there.
+    const Finer corner{0.125 / 8, 0.05 / 8, false};
+    samples = ladders(truth);
+    for (Sample &sample : samples)
+      sample.y =
+        2. * (sample.x_1 - corner.x_1) + 3. * (sample.x_2 - corner.x_2);
+    const TwoPowers of_corner = fit_error(samples, corner);
+    EXPECT_EQ(of_corner.n_samples, 9u);
+    EXPECT_NEAR(of_corner.c_1, 2., 0.01);
+    EXPECT_NEAR(of_corner.c_2, 3., 0.01);
+    // Taken for errors, they seem to fall faster.
+    EXPECT_GT(fit_error(samples).q, 1.1);
+  }
+
+
+
   TEST(StudyFit, KnownParts)
   {
     const Truth         truth{2., 1., 0.03, 2.}; // steps hardly show
@@ -226,7 +258,7 @@ namespace
     EXPECT_GT(model.simple.worst_factor, 1.1);
     // One run: what is believed of sparse solvers.
     const CostModel one = fit_cost({costs()[0]}, 3);
-    EXPECT_NEAR(one.seconds(8e3, 20.) / one.seconds(1e3, 20.), 16., 1.);
+    EXPECT_NEAR(one.step(8e3, 1.) / one.step(1e3, 1.), 16., 1e-3);
     EXPECT_EQ(fit_cost({}, 2).n_samples, 0u);
   }
 

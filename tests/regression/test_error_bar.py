@@ -1,0 +1,378 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The error bar of a run, the tolerance that goes with it, and the comparison
+of two levels."""
+
+import csv
+import unittest
+
+import numpy as np
+
+from harness import SOURCE, TestCase, main, run
+from test_restart import EVERY_STEP, Job, without_wall_times
+from test_shear_layer import MU, THETA, tau
+
+PARTS = ("space", "time", "algebraic", "initial")
+LEDGER = {
+    "energy_norm",
+    "estimate_total",
+    "time_indicator",
+    "velocity_variation",
+    "wall_estimate",
+    *(f"estimate_{part}" for part in PARTS),
+}
+SLAB = {
+    "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
+    "Time/Phases": "1: 8, 2: 8",
+    "Output/Fields every": 0,
+}
+ADAPTIVE = {
+    **SLAB,
+    "Mesh refinement/Strategy": "residual",
+    "Mesh refinement/Maximal level": 2,
+    "Solver/Linear solver": "multigrid",
+}
+
+
+def manufactured(name, law=None, **overrides):
+    """A scene of prm/verification/manufactured, perhaps with another law."""
+    folder = SOURCE / "prm" / "verification" / "manufactured"
+    text = (folder / f"{name}.prm").read_text()
+    if law is not None:
+        text = text.replace(
+            text[text.index("  set Law ") : text.index("end\n\n# the sides")],
+            "",
+        )
+        text += (folder / f"law_{law}.prm").read_text()
+    return run(name, {"Output/Fields every": 0, **overrides}, text=text)
+
+
+class Ledger(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.result = run("slab", SLAB)
+
+    def test_parts_add_up(self):
+        result = self.result
+        self.assertLessEqual(LEDGER, set(result.statistics))
+        total = sum(result[f"estimate_{part}"] for part in PARTS)
+        self.assertClose(result["estimate_total"], total, relative=1e-10)
+        self.assertClose(
+            result["energy_norm"] ** 2, 2 * result["strain_energy"], relative=1e-9
+        )
+        for part in PARTS:
+            self.assertGreaterEqual(result[f"estimate_{part}"].min(), 0, part)
+        self.assertGreater(result["estimate_space"][1:].min(), 0)
+        # no initial data, and iterations far below the rest
+        self.assertEqual(result["estimate_initial"].max(), 0)
+        self.assertLess(
+            result["estimate_algebraic"].max(), 1e-6 * result["estimate_space"].max()
+        )
+        # the time error telescopes: at most the sum of what steps contribute
+        self.assertLessEqual(
+            result["estimate_time"].max(), result["time_indicator"].sum()
+        )
+
+    def test_summary_and_record(self):
+        result = self.result
+        self.assertIn("Estimated error in the energy norm", result.stdout)
+        self.assertIn("memory z", result.stdout)
+        record = result.info["estimated_error"]
+        worst = np.argmax(result["estimate_total"])
+        self.assertClose(record["total"], result["estimate_total"][worst], 1e-4)
+        self.assertClose(record["t"], result["t"][worst], 1e-4)
+        self.assertClose(
+            record["relative"],
+            result["estimate_total"].max() / result["energy_norm"].max(),
+            1e-4,
+        )
+
+    def test_without_error_bar_the_same_results(self):
+        """And nothing else."""
+        plain = run("slab", {**SLAB, "Error control/Error bar": "false"})
+        self.assertEqual(set(plain.statistics) & LEDGER, set())
+        self.assertNotIn("Estimated error", plain.stdout)
+        self.assertNotIn("estimated_error", plain.info)
+        for name, column in plain.statistics.items():
+            if not name.startswith("wall_"):
+                np.testing.assert_array_equal(self.result[name], column, name)
+
+    def test_elastic_scene_has_no_time_error(self):
+        result = run("elastic_frictionless")
+        self.assertEqual(result["estimate_time"].max(), 0)
+        # strains are uniform, and so is the stress
+        self.assertLess(result["estimate_space"].max(), 1e-10)
+
+    def test_initial_data(self):
+        """A linear stress in cells of width h: its cell means miss it by
+        a h/sqrt(12) in each direction."""
+        n, a = 8, 0.1
+        scene = {
+            "Geometry/Arguments": f"{n}, {n} : 0, 0 : 1, 1 : true",
+            "Initial state/Stress": f"0; 0; 0; {a}*y",
+            "Initial state/Equilibrate": "true",
+            "Time/Phases": "0.1: 1",
+        }
+        result = run("shear_layer_2d", scene)
+        # int E^-1 s : s = int s_xy^2/mu
+        expected = a / n / np.sqrt(12) / np.sqrt(MU)
+        self.assertClose(result["estimate_initial"], expected, relative=1e-8)
+
+
+class TimePart(TestCase):
+    """Shear layer: the stress follows from the loads, so that the time error
+    of z is that of the left Riemann sum of tau, with nothing to damp it."""
+
+    def check(self, n_steps, **more):
+        n = 8
+        result = run(
+            "shear_layer_2d",
+            {
+                "Geometry/Arguments": f"{n}, {n} : 0, 0 : 1, 1 : true",
+                "Time/Phases": f"1: {n_steps}",
+                **more,
+            },
+        )
+        y = (np.arange(n) + 0.5) / n
+        for t, estimate in zip(result["t"], result["estimate_time"]):
+            # tau is linear in t in every step: k/2 (tau_n - tau_0)/theta
+            error = tau(y, t) / (2 * n_steps * THETA)
+            self.assertClose(
+                estimate,
+                np.sqrt(np.mean(error**2) / MU),
+                relative=1e-6,
+                absolute=1e-12,
+                what=f"t = {t}",
+            )
+
+    def test_exact_for_cell_means(self):
+        self.check(10)
+        self.check(40)
+
+    def test_telescopes_over_unequal_steps(self):
+        result = run("shear_layer_2d", {"Time/Phases": "0.5: 4, 1: 16"})
+        fine = run("shear_layer_2d", {"Time/Phases": "0.5: 16, 1: 16"})
+        # After t* only the difference of the first phases is left.
+        self.assertGreater(
+            result["estimate_time"][-1], 2 * fine["estimate_time"][-1]
+        )
+
+
+class SpacePart(TestCase):
+    def test_halves_with_the_mesh_width(self):
+        coarse, fine = (
+            manufactured(
+                "tresca_2d", **{"Geometry/Global refinements": n}
+            )["estimate_space"].max()
+            for n in (2, 3)
+        )
+        self.assertGreater(coarse / fine, 1.8)
+        self.assertLess(coarse / fine, 2.2)
+
+    def test_effectivity(self):
+        """Estimate over true error, largest in the run, from 0.5 to 5."""
+        for name, law, refinements, steps in (
+            ("tresca_2d", None, 2, 20),
+            ("tresca_2d", None, 3, 10),
+            ("tresca_2d", "zener", 2, 20),
+            ("coulomb_2d", None, 2, 20),
+            ("tresca_3d", None, 1, 10),
+        ):
+            with self.subTest(scene=name, law=law, level=refinements):
+                result = manufactured(
+                    name,
+                    law,
+                    **{
+                        "Geometry/Global refinements": refinements,
+                        "Time/Phases": f"1: {steps}",
+                    },
+                )
+                effectivity = (
+                    result["estimate_total"].max() / result["error_energy"].max()
+                )
+                self.assertGreater(effectivity, 0.5)
+                self.assertLess(effectivity, 5)
+
+
+class CoupledTolerance(TestCase):
+    """Iterations that stop at a twentieth of the discretisation error."""
+
+    def compare(self, scene, overrides):
+        strict = run(scene, {**overrides, "Solver/Contact tolerance": 1e-10})
+        coupled = run(scene, {**overrides, "Solver/Contact tolerance": 0})
+        self.assertLess(
+            coupled["linear_iterations"].sum(), strict["linear_iterations"].sum()
+        )
+        # The algebraic error is the stated fraction of the estimate of the
+        # step before, or below; the first step has none.
+        estimate = coupled["estimate_space"] + coupled["estimate_time"]
+        self.assertLessEqual(
+            np.max(
+                coupled["algebraic_error"][2:]
+                * coupled["energy_norm"][1:-1]
+                / estimate[1:-1]
+            ),
+            0.05,
+        )
+        self.assertLessEqual(coupled["algebraic_error"].max(), 1e-4)
+        return strict, coupled
+
+    def check(self, scene, overrides, coarser):
+        """No quantity moves by more than 5 % of its error, which the
+        difference from a coarser run stands for."""
+        strict, coupled = self.compare(scene, overrides)
+        other = run(scene, {**overrides, **coarser, "Solver/Contact tolerance": 1e-10})
+        for name in (
+            "friction_force_x",
+            "friction_dissipation",
+            "viscous_dissipation",
+            "stored_energy",
+            "point0_x",
+        ):
+            with self.subTest(name):
+                self.assertLessEqual(
+                    abs(coupled[name][-1] - strict[name][-1]),
+                    0.05 * abs(strict[name][-1] - other[name][-1]),
+                )
+
+    def test_slab_with_multigrid(self):
+        self.check(
+            "slab",
+            {"Solver/Linear solver": "multigrid"},
+            {
+                "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
+                "Time/Phases": "1: 8, 2: 8",
+            },
+        )
+
+    def test_pad_with_multigrid(self):
+        self.check(
+            "pad",
+            {"Solver/Linear solver": "multigrid"},
+            {
+                "Geometry/Arguments": "4, 4, 4 : 0, 0, 0 : 1, 1, 1 : true",
+                "Time/Phases": "1.5: 10",
+            },
+        )
+
+    def test_below_rounding_is_refused(self):
+        result = run("slab", {"Solver/Contact tolerance": 1e-15}, check=False)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("'Solver/Contact tolerance' = 1e-15", result.stderr)
+        self.assertIn("between 1e-14 and 0.1", result.stderr)
+
+
+class Ranks(TestCase):
+    def test_ledger_on_1_2_3_ranks(self):
+        alone = run("slab", ADAPTIVE)
+        for ranks in 2, 3:
+            several = run("slab", ADAPTIVE, ranks=ranks)
+            for name in ("energy_norm", "estimate_space", "estimate_time",
+                         "estimate_total", "time_indicator", "velocity_variation"):
+                self.assertClose(
+                    several[name],
+                    alone[name],
+                    relative=1e-6,
+                    absolute=1e-9,
+                    what=f"{name} on {ranks} ranks",
+                )
+
+
+class Restart(TestCase):
+    """The ledger is part of the state: the tolerance of a step depends on it."""
+
+    def check(self, ranks, **overrides):
+        scene = {**ADAPTIVE, "Solver/Contact tolerance": 0, **overrides}
+        with Job("slab", {**scene, **EVERY_STEP}) as job:
+            reference = job.run(ranks=ranks)
+            rows = without_wall_times(reference.directory / "statistics.csv")
+            record = {**reference.info, "date": ""}
+            for n in 5, 11:
+                with Job("slab", {**scene, **EVERY_STEP}, copy_of=job) as again:
+                    again.forget_after(n)
+                    result = again.run("--restart", ranks=ranks)
+                    self.assertEqual(
+                        without_wall_times(result.directory / "statistics.csv"),
+                        rows,
+                    )
+                    self.assertEqual({**result.info, "date": ""}, record)
+
+    def test_bit_by_bit(self):
+        self.check(1)
+        self.check(1, **{"Material/Stress history": "quadrature points"})
+
+    def test_bit_by_bit_on_two_ranks(self):
+        self.check(2)
+
+    def test_the_error_bar_cannot_change(self):
+        with Job("slab", {**SLAB, **EVERY_STEP}) as job:
+            job.run()
+            job.forget_after(5)
+            refusal = job.run(
+                "--restart",
+                code=1,
+                overrides={"Error control__Error bar": "false"},
+            )
+            self.assertIn("'Error control/Error bar'", refusal.stderr)
+
+
+class TwoLevels(TestCase):
+    def test_uncertainties_are_the_differences(self):
+        scene = {
+            "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+            "Geometry/Global refinements": 1,
+            "Time/Phases": "1: 8, 2: 7",
+            "Output/Fields every": 0,
+        }
+        result = run("slab", {**scene, "Error control/Two-level comparison": "true"})
+        coarser = run(
+            "slab",
+            {**scene, "Geometry/Global refinements": 0, "Time/Phases": "1: 4, 2: 3"},
+        )
+        self.assertIn(" +- ", result.stdout)
+        with open(result.directory / "uncertainty.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        names = [row["quantity"] for row in rows]
+        for name in ("friction_force_x", "slip_area", "friction_dissipation",
+                     "viscous_dissipation", "reaction_3_x", "point0_y"):
+            self.assertIn(name, names)
+        for row in rows:
+            name = row["quantity"]
+            self.assertClose(float(row["value"]), result[name][-1], 1e-9, 1e-12)
+            self.assertClose(
+                float(row["uncertainty"]),
+                abs(result[name][-1] - coarser[name][-1]),
+                relative=1e-5,
+                absolute=1e-8,
+                what=name,
+            )
+        # The run itself is what it would be without.
+        alone = run("slab", scene)
+        self.assertClose(result["stored_energy"], alone["stored_energy"])
+
+    def test_refused_without_a_coarser_mesh(self):
+        result = run(
+            "slab", {"Error control/Two-level comparison": "true"}, check=False
+        )
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("'Geometry/Global refinements' is 0", result.stderr)
+        self.assertFalse((result.directory / "statistics.csv").exists())
+
+    def test_a_coarser_run_that_fails_is_named(self):
+        """Twice the time step is beyond the stability limit."""
+        result = run(
+            "slab",
+            {
+                "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+                "Geometry/Global refinements": 1,
+                "Time/Phases": "4: 2",
+                "Error control/Two-level comparison": "true",
+            },
+            check=False,
+        )
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("Two-level comparison", result.stderr)
+        self.assertIn("stability limit", result.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -355,7 +355,7 @@ namespace Viscoplastic
 
     if (finer)
       {
-        problem.finer = {
+        problem.finer = std::array<double, 2>{
           {std::log(finer->x_1) - centre[0], std::log(finer->x_2) - centre[1]}};
         problem.is_orthogonal = finer->is_orthogonal;
       }

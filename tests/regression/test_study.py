@@ -382,10 +382,9 @@ class Refused(TestCase):
             self.assertFalse(folder.results.exists())
         with Folder(
             MANUFACTURED / "tresca_2d.prm",
-            Geometry__Generator="hyper_cube",
-            Geometry__Arguments="0 : 1 : true",
-            Geometry__Global_refinements=1,
-            Geometry__Boundary_refinements="2: 8",
+            Geometry__Generator="subdivided_hyper_cube",
+            Geometry__Arguments="40 : 0 : 1 : true",
+            Geometry__Global_refinements=0,
         ) as folder:
             self.assertIn("cannot be halved twice", self.refuse(folder, "--price=0.1"))
 

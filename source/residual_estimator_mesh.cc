@@ -34,9 +34,8 @@ namespace Viscoplastic
 
 
 
-    constexpr UpdateFlags on_faces = update_gradients | update_normal_vectors |
-                                     update_quadrature_points |
-                                     update_JxW_values;
+    const UpdateFlags on_faces = update_gradients | update_normal_vectors |
+                                 update_quadrature_points | update_JxW_values;
 
 
 
@@ -235,7 +234,9 @@ namespace Viscoplastic
     // Faces between owned cells are visited once: from the finer side, or from
     // the cell that comes first.
     for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
+      {
+        if (!cell->is_locally_owned())
+          continue;
         for (const unsigned int f : cell->face_indices())
           if (cell->at_boundary(f))
             {
@@ -295,6 +296,7 @@ namespace Viscoplastic
                            traction_of(n, neighbor_f));
                 }
             }
+      }
 
     const QGauss<dim - 1> points(2);
     for (unsigned int f = 0; f < n_faces; ++f)

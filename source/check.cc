@@ -46,11 +46,19 @@ namespace Viscoplastic
   {
     if (!scene.has_viscosity())
       return;
+    const TimeStep first = scene.schedule.step(1);
+    // Of backward Euler it is no limit, but what it would have been.
     const double rate =
-      flow(state, scene.schedule.step(1)).relaxation_rate; // throws
+      is_implicit() ?
+        evaluate_flow(discretisation->laws, state.u, state.z, first.t_old)
+          .relaxation_rate :
+        flow(state, first).relaxation_rate; // throws
     if (rate == 0.)
       return;
-    out << "Stability limit 2/r of the initial state: " << 2. / rate << '\n';
+    out << "Stability limit 2/r of the initial state: " << 2. / rate
+        << (is_implicit() ? " of explicit schemes\n" : "\n");
+    if (is_implicit())
+      return;
     const TimeStep largest = scene.schedule.largest_step();
     if (largest.k * rate > 2. * (1. + 1e-10))
       {
@@ -59,7 +67,7 @@ namespace Viscoplastic
                 << largest.n << " (t = " << largest.t
                 << ") exceeds this limit; the run will end there unless the "
                    "limit has grown by then. Take more steps in "
-                   "'Time/Phases'.";
+                   "'Time/Phases', or set 'Time/Scheme' = backward Euler.";
         console.remark(message.str());
       }
   }
@@ -78,6 +86,7 @@ namespace Viscoplastic
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(d.space, x);
 
+    check_references();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(d.space);
     // The initial data, and where they need no solution, the first step.

@@ -41,6 +41,12 @@ namespace Viscoplastic
   {
     if (scheme == "forward Euler")
       return {0.5, 0.};
+    if (scheme == "backward Euler")
+      return {-0.5, 0.};
+    // The trapezoidal rule; what the predictor adds where G depends on it is
+    // left out.
+    if (scheme == "Heun")
+      return {0., -1. / 12.};
     AssertThrow(false,
                 ExcMessage("The time error of the scheme '" + scheme +
                            "' is not known."));

@@ -179,6 +179,12 @@ namespace Viscoplastic
       "which also add the source sigma' - E eps(u') - G to G. Materials, "
       "friction bounds and coefficients remain those of the scene.",
       Patterns::Selection("scene|solution"));
+    prm.add_parameter("Reference directory",
+                      reference_directory,
+                      "Results of a finer run of the same scene with `Output/"
+                      "Reference fields': the run reports its differences from "
+                      "them at the ends of the phases of time, in the place "
+                      "of errors.");
   }
 
 
@@ -248,9 +254,15 @@ namespace Viscoplastic
     prm.add_parameter("Scheme",
                       scheme,
                       "How z' = G is integrated. `forward Euler': G at the "
-                      "beginning of the step, the scheme of the paper, stable "
-                      "for steps up to 2/r with the relaxation rate r.",
-                      Patterns::Selection("forward Euler"));
+                      "beginning of the step, the scheme of the paper, first "
+                      "order, stable for steps up to 2/r with the relaxation "
+                      "rate r. `backward Euler': G at the end of the step, "
+                      "first order, stable for all steps; steps cost more "
+                      "where G is not linear. `Heun': the mean of G at the "
+                      "beginning and at what forward Euler predicts for the "
+                      "end, second order, stable up to 2/r, twice the price of "
+                      "forward Euler.",
+                      Patterns::Selection("forward Euler|backward Euler|Heun"));
   }
 
 
@@ -315,7 +327,8 @@ namespace Viscoplastic
     prm.add_parameter("Ladders",
                       ladders,
                       "What is refined: the mesh alone, the time steps alone, "
-                      "or both.",
+                      "or both; what a ladder leaves alone has the finest "
+                      "level.",
                       Patterns::List(Patterns::Selection("space|time|both"),
                                      1,
                                      3));
@@ -342,7 +355,8 @@ namespace Viscoplastic
     prm.add_parameter("Budget",
                       budget,
                       "The study begins no run that is not expected to end "
-                      "within this time. Unit: seconds.",
+                      "within this time, and --price no run that is expected "
+                      "to take longer. Unit: seconds.",
                       Patterns::Double(1.));
   }
 
@@ -419,6 +433,11 @@ namespace Viscoplastic
                       "Time between outputs of fields; where positive, it "
                       "replaces the entry above. Unit: time.",
                       Patterns::Double(0.));
+    prm.add_parameter("Reference fields",
+                      reference_fields,
+                      "At the end of each phase of time, write the fields at "
+                      "all quadrature points for coarser runs to be compared "
+                      "with, see `Exact solution/Reference directory'.");
     prm.add_parameter("Points",
                       points,
                       "Points of the body, coordinates separated by commas and "

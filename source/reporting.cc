@@ -4,12 +4,14 @@
 #include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
 #include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/reference_fields.h>
 #include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/version.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -64,6 +66,19 @@ namespace Viscoplastic
       out << ", " << discretisation->face->layout().points.size()
           << " friction points";
     out << (discretisation->mean_dilatation ? ", mean dilatation\n" : "\n");
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::announce_solver()
+  {
+    if (!discretisation->solver ||
+        discretisation->solver->name() == announced_solver)
+      return;
+    announced_solver = discretisation->solver->name();
+    out << "Linear solver: " << announced_solver << std::endl;
   }
 
 
@@ -151,6 +166,7 @@ namespace Viscoplastic
       }
     accounts.contact_iterations += step.report.iterations;
     accounts.linear_iterations += step.report.linear_iterations;
+    accounts.newton_iterations += step.newton_iterations;
     const double defect =
       accounts.external_work -
       (stored_energy - accounts.initial_energy - accounts.adaptation_energy) -
@@ -163,18 +179,9 @@ namespace Viscoplastic
                               total_estimate(squared_estimate, communicator) :
                               0.;
     phase.stop();
-    SolutionErrors errors;
-    if (scene.exact_solution)
-      {
-        TimerOutput::Scope errors_phase(timer, "errors");
-        DistributedVector  density;
-        if (d.face)
-          density = d.face->density(step.state.friction);
-        errors =
-          solution_errors(d.sampling, step.state, d.face ? &density : nullptr);
-        summary.largest_error.update(errors.error);
-        summary.largest_exact.update(errors.exact);
-      }
+    const SolutionErrors errors = measure_errors(step.state);
+    summary.largest_error.update(errors.error);
+    summary.largest_exact.update(errors.exact);
 
     if (statistics)
       {
@@ -190,6 +197,8 @@ namespace Viscoplastic
           row.add("tension_area", tension_area);
         if (d.laws.any_cap)
           row.add("capped_volume", step.capped_volume);
+        if (is_implicit())
+          row.add("newton_iterations", step.newton_iterations);
         if (d.face)
           {
             row.add("contact_iterations", step.report.iterations);
@@ -242,14 +251,20 @@ namespace Viscoplastic
             row.add("time_indicator", ledger.time_indicator);
             row.add("velocity_variation", ledger.velocity_variation);
           }
-        if (scene.exact_solution)
+        if (measures_errors())
           add_errors(errors, row);
 
         const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
-        for (const char *name :
-             {"rate", "load", "contact", "balance", "estimate", "output"})
+        for (const char *name : {"rate",
+                                 "tangent",
+                                 "load",
+                                 "contact",
+                                 "balance",
+                                 "estimate",
+                                 "output"})
           {
-            if (!error_bar && name == std::string("estimate"))
+            if ((!error_bar && name == std::string("estimate")) ||
+                (!is_implicit() && name == std::string("tangent")))
               continue;
             const auto   entry = total.find(name);
             const double now   = entry == total.end() ? 0. : entry->second;
@@ -307,21 +322,90 @@ namespace Viscoplastic
           progress_of_step.relative_error =
             step.errors.total() / step.errors.energy_norm;
       }
+    // The rate of an explicit step is that of its beginning.
+    const double rate_time = is_implicit() ? time_step.t : time_step.t_old;
     if (summary.capped_volume.value == 0. && step.capped_volume > 0.)
       {
         std::ostringstream volume;
-        volume << step.capped_volume << " at t = " << time_step.t_old;
+        volume << step.capped_volume << " at t = " << rate_time;
         console.remark("Warning: the stress has passed the cap of a law, in "
                        "the volume " +
                        volume.str() +
                        "; beyond it the law is continued linearly.");
       }
-    // The rate of a step is that of its beginning.
-    summary.capped_volume.update(step.capped_volume, time_step.t_old);
+    summary.capped_volume.update(step.capped_volume, rate_time);
     if (is_initial)
       first_set_up_seconds =
         timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
     progress.report(progress_of_step, elapsed);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_references() const
+  {
+    const std::string &directory =
+      parameters.exact_solution.reference_directory;
+    if (directory.empty())
+      return;
+    AssertThrow(!scene.exact_solution,
+                ExcMessage("'Exact solution/Reference directory' and 'Exact "
+                           "solution/Displacement' are both given; errors "
+                           "can be measured against one of them."));
+    for (unsigned int i = 1; i <= scene.schedule.n_phases(); ++i)
+      read_samples<dim>(samples_file(directory, i), communicator);
+  }
+
+
+
+  template <int dim>
+  SolutionErrors
+  ViscoplasticContact<dim>::measure_errors(const State<dim> &of)
+  {
+    const unsigned int phase = scene.schedule.phase_ending_with(of.n);
+    const std::string &reference =
+      parameters.exact_solution.reference_directory;
+    SolutionErrors result;
+    result.error.fill(std::numeric_limits<double>::quiet_NaN());
+    result.exact      = result.error;
+    result.memory     = result.error.energy;
+    const bool writes = parameters.output.reference_fields && phase > 0;
+    if (!writes && !scene.exact_solution && (reference.empty() || phase == 0))
+      return result;
+
+    TimerOutput::Scope       scope(timer, "errors");
+    const Discretisation    &d = *discretisation;
+    DistributedVector        multipliers;
+    const DistributedVector *density = nullptr;
+    if (d.face)
+      {
+        multipliers = d.face->density(of.friction);
+        density     = &multipliers;
+      }
+    if (writes)
+      write_samples(sample_fields(d.sampling, of, density),
+                    samples_file(output->directory(), phase),
+                    communicator);
+    if (scene.exact_solution)
+      result = solution_errors(d.sampling, of, density);
+    else if (!reference.empty() && phase > 0)
+      {
+        const auto samples =
+          read_samples<dim>(samples_file(reference, phase), communicator);
+        std::ostringstream message;
+        message << "'Exact solution/Reference directory': phase " << phase
+                << " of the reference ends at t = " << samples.t
+                << ", that of this run at t = " << of.t
+                << "; 'Time/Phases' must have the same end times.";
+        AssertThrow(std::abs(samples.t - of.t) <= 1e-10 * std::abs(of.t),
+                    ExcMessage(message.str()));
+        const double nothing = result.memory;
+        result               = differences(samples, d.sampling, of, density);
+        result.memory        = nothing;
+      }
+    return result;
   }
 
 
@@ -373,6 +457,9 @@ namespace Viscoplastic
     if (error_bar)
       output->record_errors(error_bar->summary());
     out << std::setprecision(3) << "Iterations per step: ";
+    if (is_implicit())
+      out << static_cast<double>(accounts.newton_iterations) / n
+          << " of Newton's method, ";
     if (discretisation->face)
       out << static_cast<double>(accounts.contact_iterations) / n
           << " of the active set, ";

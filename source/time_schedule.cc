@@ -90,6 +90,21 @@ namespace Viscoplastic
 
 
 
+  unsigned int
+  TimeSchedule::phase_ending_with(const unsigned int n) const
+  {
+    unsigned int last = 0;
+    for (unsigned int i = 0; i < phases.size(); ++i)
+      {
+        last += phases[i].n_steps;
+        if (n <= last)
+          return n == last ? i + 1 : 0;
+      }
+    return 0;
+  }
+
+
+
   TimeStep
   TimeSchedule::largest_step() const
   {

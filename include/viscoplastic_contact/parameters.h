@@ -75,6 +75,7 @@ namespace Viscoplastic
   {
     std::string displacement, stress;
     std::string data = "scene";
+    std::string reference_directory;
 
     void
     declare(ParameterHandler &prm);
@@ -178,8 +179,9 @@ namespace Viscoplastic
   struct OutputParameters
   {
     std::string  directory;
-    unsigned int fields_every    = 1;
-    double       fields_interval = 0.;
+    unsigned int fields_every     = 1;
+    bool         reference_fields = false;
+    double       fields_interval  = 0.;
     std::string  points;
 
     void

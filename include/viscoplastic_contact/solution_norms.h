@@ -17,7 +17,13 @@ namespace Viscoplastic
     /// (int_Gamma3 |lambda|^2)^(1/2).
     double multiplier = 0.;
 
-    /// Let each be the larger one.
+    void
+    fill(const double value)
+    {
+      energy = h1 = stress = multiplier = value;
+    }
+
+    /// Let each be the larger one; what is not a number does not count.
     void
     update(const SolutionNorms &other)
     {

@@ -31,6 +31,16 @@ namespace Viscoplastic
     TimeStep
     step(const unsigned int n) const;
 
+    unsigned int
+    n_phases() const
+    {
+      return phases.size();
+    }
+
+    /// The phase, counted from 1, of which step n is the last; 0 if none.
+    unsigned int
+    phase_ending_with(const unsigned int n) const;
+
     /// The first step of the phase with the longest ones.
     TimeStep
     largest_step() const;

@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Manufactured solutions: the orders of the theorems, for every law.
+
+The scenes of prm/verification/manufactured give u and sigma, and the program
+makes the data that they solve.  Errors are what the theorems bound: the largest
+over the times t_n, of u in the energy and the H1 norm, of the stress in L2 and
+of the multiplier on Gamma_3.  (5.14) and (5.20) promise first order for
+solutions as smooth as these; the h^(3/4) of (5.13) is a lower bound for less
+smooth ones, and shows nowhere.
+
+The measured orders are printed: run the file by itself to see them.
+"""
+
+import sys
+import unittest
+
+import numpy as np
+
+from harness import SOURCE, TestCase, main, run
+
+LAWS = ("maxwell", "zener", "perzyna", "perzyna_hardening", "norton", "parsed")
+NORMS = ("energy", "h1", "stress", "multiplier")
+MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
+
+
+def errors(scene, law, level, n_steps, overrides=None, ranks=1):
+    """Largest errors over the run, relative to the largest norms."""
+    text = (MANUFACTURED / f"{scene}.prm").read_text()
+    if law != "maxwell":  # which the scenes have themselves
+        text = text.replace("set Law             = maxwell", "")
+        text += (MANUFACTURED / f"law_{law}.prm").read_text()
+    overrides = {
+        "Geometry/Global refinements": level,
+        "Time/Phases": f"1: {n_steps}",
+        "Output/Fields every": 0,
+        **(overrides or {}),
+    }
+    result = run(scene, overrides, text=text, ranks=ranks)
+    return {
+        norm: result[f"error_{norm}"].max() / result[f"exact_{norm}"].max()
+        for norm in NORMS
+    }
+
+
+class Ladders(TestCase):
+    def ladder(self, name, runs, expected):
+        """Errors of runs of which each halves what is refined; the order
+        between the last two is at least what is expected."""
+        for norm, least in expected.items():
+            values = np.array([run[norm] for run in runs])
+            orders = np.log2(values[:-1] / values[1:])
+            print(
+                f"{name}, {norm}: errors",
+                " ".join(f"{v:.2e}" for v in values),
+                "orders",
+                " ".join(f"{v:.2f}" for v in orders),
+                file=sys.stderr,
+            )
+            self.assertGreater(orders[-1], least, f"{name}: order in {norm}")
+
+
+# First order is reached from either side: 0.9 leaves room for what is left of
+# the coarse meshes.  The multiplier is a trace, for which the theory has no
+# rate; 0.5 is that of a trace of an H1 function.
+BOTH = {"energy": 0.9, "h1": 0.9, "stress": 0.9, "multiplier": 0.5}
+
+
+class MeshAndSteps2D(Ladders):
+    """h and k halved together, all laws, both laws of friction."""
+
+    def check(self, scene, law):
+        runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
+        self.ladder(f"{scene} {law}", runs, BOTH)
+
+    def test_tresca(self):
+        for law in (*LAWS, "elastic"):
+            with self.subTest(law):
+                self.check("tresca_2d", law)
+
+    def test_coulomb(self):
+        for law in (*LAWS, "elastic"):
+            with self.subTest(law):
+                self.check("coulomb_2d", law)
+
+
+class MeshAndSteps3D(Ladders):
+    """The front moves and the slip behind it turns."""
+
+    # From 2^3 to 8^3 cells the orders still grow.
+    EXPECTED = {"energy": 0.85, "h1": 0.85, "stress": 0.85, "multiplier": 0.5}
+
+    def test_all_laws(self):
+        for number, law in enumerate(LAWS):
+            scene = ("tresca_3d", "coulomb_3d")[number % 2]
+            with self.subTest(law):
+                runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
+                self.ladder(f"{scene} {law}", runs, self.EXPECTED)
+
+    def test_other_friction(self):
+        for scene, law in (("tresca_3d", "zener"), ("coulomb_3d", "maxwell")):
+            with self.subTest(scene):
+                runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
+                self.ladder(f"{scene} {law}", runs, self.EXPECTED)
+
+
+class OneAtATime(Ladders):
+    """h alone with small steps, k alone on a fine mesh."""
+
+    def test_mesh(self):
+        # Steps so small that halving h still halves the error.
+        for scene in ("tresca_2d", "coulomb_2d"):
+            with self.subTest(scene):
+                runs = [errors(scene, "maxwell", g, 512) for g in range(3)]
+                expected = {"energy": 0.9, "h1": 0.9, "stress": 0.9}
+                self.ladder(f"{scene} h", runs, expected)
+
+    def test_steps(self):
+        # The error of the mesh is what the last order lacks.
+        for scene in ("tresca_2d", "coulomb_2d"):
+            with self.subTest(scene):
+                runs = [errors(scene, "maxwell", 4, n) for n in (3, 6, 12)]
+                self.ladder(f"{scene} k", runs, {"energy": 0.9, "h1": 0.9})
+
+
+class Meshes(Ladders):
+    """Distorted and locally refined meshes, hanging nodes on Gamma_3, and
+    both stress histories."""
+
+    def check(self, name, scene, overrides, expected=BOTH):
+        runs = [
+            errors(scene, "perzyna", g, 14 * 2**g, overrides) for g in range(3)
+        ]
+        self.ladder(f"{scene} {name}", runs, expected)
+
+    def test_distorted(self):
+        self.check(
+            "distorted",
+            "tresca_2d",
+            {"Geometry/File": MANUFACTURED / "distorted_2d.msh"},
+        )
+        self.check(
+            "distorted",
+            "coulomb_3d",
+            {"Geometry/File": MANUFACTURED / "distorted_3d.msh"},
+            MeshAndSteps3D.EXPECTED,
+        )
+
+    def test_locally_refined(self):
+        self.check("refined", "tresca_2d", {"Geometry/Boundary refinements": "0: 1"})
+        self.check(
+            "refined",
+            "tresca_3d",
+            {"Geometry/Boundary refinements": "0: 1"},
+            MeshAndSteps3D.EXPECTED,
+        )
+
+    def test_histories(self):
+        for integration in ("full", "mean dilatation"):
+            self.check(
+                f"history at quadrature points, {integration}",
+                "coulomb_2d",
+                {
+                    "Material/Stress history": "quadrature points",
+                    "Material/Volumetric integration": integration,
+                },
+            )
+
+
+class Ranks(Ladders):
+    def test_ranks(self):
+        for scene, level in (("tresca_2d", 2), ("coulomb_3d", 1)):
+            alone = errors(scene, "norton", level, 20)
+            for ranks in (2, 3):
+                together = errors(scene, "norton", level, 20, ranks=ranks)
+                for norm in NORMS:
+                    # The tolerance of the scene is 1e-10.
+                    self.assertClose(together[norm], alone[norm], 1e-7, what=norm)
+
+
+SLAB = {
+    "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
+    "Geometry/Global refinements": 1,
+    "Time/Phases": "1: 8, 2: 8",
+    "Output/Fields every": 0,
+}
+
+
+class ReferenceRuns(TestCase):
+    """Differences to a finer run where nothing exact is known."""
+
+    def compare(self, scene, reference, overrides, ranks=1):
+        directory = reference.directory
+        return run(
+            scene,
+            {**overrides, "Exact solution/Reference directory": directory},
+            ranks=ranks,
+        )
+
+    def test_a_run_does_not_differ_from_itself(self):
+        # Also on other numbers of ranks, and where the mesh has hanging nodes
+        # on Gamma_3; the fields go through files in double precision.
+        pad = {
+            "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true",
+            "Geometry/Global refinements": 1,
+            "Geometry/Boundary refinements": "0: 1",
+            "Time/Phases": "1: 4, 1.5: 2",
+            "Output/Fields every": 0,
+        }
+        for scene, overrides in (("slab", SLAB), ("pad", pad)):
+            for ranks in (1, 2):
+                fields = {**overrides, "Output/Reference fields": "true"}
+                reference = run(scene, fields, ranks=3 - ranks)
+                result = self.compare(scene, reference, overrides, ranks)
+                ends = np.flatnonzero(~np.isnan(result["error_energy"]))
+                self.assertEqual(len(ends), 2, "an error at each end of a phase")
+                for norm in NORMS:
+                    # The contact tolerance of both scenes is 1e-10.
+                    error = result[f"error_{norm}"][ends]
+                    exact = result[f"exact_{norm}"][ends]
+                    self.assertGreater(exact.min(), 0)
+                    self.assertLess((error / exact).max(), 1e-7, norm)
+
+    def test_differences_fall_like_errors(self):
+        fine = {
+            **SLAB,
+            "Geometry/Global refinements": 5,
+            "Time/Phases": "1: 64, 2: 64",
+            "Output/Reference fields": "true",
+        }
+        reference = run("slab", fine)
+        errors = []
+        for level in (1, 2, 3):
+            result = self.compare(
+                "slab",
+                reference,
+                {
+                    **SLAB,
+                    "Geometry/Global refinements": level,
+                    "Time/Phases": f"1: {4 * 2**level}, 2: {4 * 2**level}",
+                },
+            )
+            errors.append(np.nanmax(result["error_energy"]))
+        orders = np.log2(np.divide(errors[:-1], errors[1:]))
+        # Tangential stress is singular where clamped and free sides meet.
+        self.assertGreater(orders.min(), 0.6)
+        self.assertLess(orders.max(), 1.2)
+
+
+class Refused(TestCase):
+    def refused(self, scene, overrides, *words):
+        file = MANUFACTURED / f"{scene}.prm"
+        text = file.read_text() if file.exists() else None
+        result = run(scene, overrides, text=text, check=False)
+        self.assertNotEqual(result.returncode, 0, "the run was accepted")
+        lines = result.stderr.strip().splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+    def test_what_follows_must_not_be_given(self):
+        for path in ("Boundary 0/Traction", "Loads/Body force"):
+            self.refused("tresca_2d", {path: "1; 0"}, path, "Exact solution/Data")
+        self.refused("coulomb_2d", {"Boundary 2/Normal stress": -1}, "Normal stress")
+        self.refused("tresca_2d", {"Initial state/Equilibrate": "true"}, "Equilibrate")
+
+    def test_solutions_that_are_none(self):
+        self.refused(
+            "tresca_2d",
+            {"Boundary 2/Friction bound": "0.07"},
+            "'Boundary 2'",
+            "friction bound",
+            "tangential stress",
+        )
+        self.refused("tresca_2d", {"Boundary 2/Friction bound": "0.2"}, "oppose")
+        self.refused("tresca_2d", {"Boundary 0/Role": "clamped"}, "'Boundary 0'", "clamped")
+        self.refused("tresca_2d", {"Boundary 0/Role": "symmetry"}, "'Boundary 0'")
+        self.refused("tresca_2d", {"Boundary 2/Friction law": "none"}, "no friction")
+
+    def test_expressions(self):
+        self.refused(
+            "tresca_2d", {"Exact solution/Displacement": ""}, "Displacement' is missing"
+        )
+        self.refused("tresca_2d", {"Exact solution/Stress": ""}, "Stress' is missing")
+        self.refused("tresca_2d", {"Exact solution/Stress": "1; 2; 3"}, "4 components")
+        self.refused(
+            "tresca_2d",
+            {"Exact solution/Displacement": "sqrt(t)*(1-y)*0.1; 0"},
+            "no time derivative",
+        )
+        self.refused(
+            "tresca_2d",
+            {"Exact solution/Displacement": "y*(1-y)/(x-0.4375); 0"},
+            "Exact solution/Displacement",
+        )
+
+    def test_references(self):
+        missing = {"Exact solution/Reference directory": "nowhere"}
+        self.refused("slab", {**SLAB, **missing}, "nowhere", "Reference fields")
+        self.refused("tresca_2d", missing, "both given")
+        reference = run("slab", {**SLAB, "Output/Reference fields": "true"})
+        there = {"Exact solution/Reference directory": reference.directory}
+        other = {**SLAB, "Time/Phases": "0.5: 4, 1: 4", **there}
+        self.refused("slab", other, "phase 1", "t = 1", "t = 0.5")
+        file = reference.directory / "reference_2.bin"
+        file.write_bytes(file.read_bytes()[:1000])
+        self.refused("slab", {**SLAB, **there}, "reference_2.bin")
+
+
+if __name__ == "__main__":
+    main()

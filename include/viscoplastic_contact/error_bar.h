@@ -52,10 +52,10 @@ namespace Viscoplastic
      * From residual estimator to error in the energy norm: one number for all
      * scenes. How it was found: doc/method.md, section 12.
      */
-    static constexpr double space_calibration = 0.25;
+    static constexpr double space_calibration = 0.3;
 
     /// Bounds of the relative tolerance of coupled iterations.
-    static constexpr double least_tolerance = 1e-10, largest_tolerance = 1e-4;
+    static constexpr double least_tolerance = 1e-10, largest_tolerance = 1e-5;
 
     explicit ErrorBar(const Scene<dim> &scene);
 

@@ -146,9 +146,9 @@ namespace Viscoplastic
     find_shape(const Cell &cell);
 
     StressTerms
-    stress_terms(const std::size_t                         cell,
-                 const double                             *u,
-                 const std::vector<SymmetricTensor<2, 3>> &mean_z) const;
+    stress_terms(const std::size_t            cell,
+                 const double                *u,
+                 const SymmetricTensor<2, 3> *mean_z) const;
 
     /// sigma_h nu at the points of a face.
     void
@@ -168,9 +168,11 @@ namespace Viscoplastic
                       const Tensor<1, dim>    *tractions,
                       const DistributedVector *multiplier_density) const;
 
-    /// Means of z of owned cells and ghosts; empty without z. Collective.
-    std::vector<SymmetricTensor<2, 3>>
-    mean_irreversible_stress(const IrreversibleStress &z) const;
+    /// Means of z of owned cells and ghosts, kept in @p means if z is not them
+    /// itself; null without z. Collective.
+    const SymmetricTensor<2, 3> *
+    mean_irreversible_stress(const IrreversibleStress &z,
+                             IrreversibleStress       &means) const;
 
     const StressSampling<dim> &sampling;
     /// Whether b is the same in the whole body.

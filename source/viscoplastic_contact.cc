@@ -600,6 +600,7 @@ namespace Viscoplastic
                                        const DistributedVector   &right_side,
                                        const std::vector<double> &bounds,
                                        const Vector<double> &foundation_step,
+                                       const double          tolerance,
                                        DistributedVector    &u,
                                        FrictionState        &friction)
   {

@@ -183,7 +183,8 @@ namespace Viscoplastic
         return fit_error(samples,
                          Finer{reference->number("h"),
                                reference->number("k"),
-                               is_norm});
+                               is_norm ? 2. : 1.,
+                               1.});
       }
     std::vector<double> space, time;
     for (const RunRecord *record : records)

@@ -394,7 +394,7 @@ class Refused(TestCase):
             Geometry__Arguments="40 : 0 : 1 : true",
             Geometry__Global_refinements=0,
         ) as folder:
-            self.assertIn("cannot be halved twice", self.refuse(folder, "--price=0.1"))
+            self.assertIn("cannot be halved", self.refuse(folder, "--price=0.1"))
 
 
 class Price(TestCase):

@@ -169,7 +169,7 @@ class Ladders(TestCase):
             self.assertGreater(prices[0.1]["seconds"], 0)
             self.assertFalse(prices[1e-5]["in_budget"])
             self.assertRegex(
-                process.stdout, r"Error 1e-05: not within 3 min, .* smallest error"
+                process.stdout, r"Error 1e-05: not within 3 min[;,].* smallest error"
             )
             text = (folder.study / "study.md").read_text()
             for part in ("Observed orders", "error = ", "Price list", "Left out"):

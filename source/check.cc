@@ -127,7 +127,13 @@ namespace Viscoplastic
     const double bytes =
       Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
                           communicator) +
-      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct);
+      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct) +
+      (is_implicit() ?
+         // A second matrix, and two tensors of rank 4 a sample.
+         dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
+           2. * sizeof(SymmetricTensor<4, 3>) * d.sampling.n_samples *
+             triangulation.n_global_active_cells() :
+         0.);
     out << "Linear solver: "
         << (direct ? "direct (CHOLMOD)" : "conjugate gradients, multigrid (ML)")
         << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()

@@ -5,7 +5,6 @@
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
-#include <iostream>
 #include <limits>
 #include <sstream>
 
@@ -95,7 +94,7 @@ namespace Viscoplastic
     const bool          is_new = matrix.linearise(ghosted_u, z, t, k);
     // A preconditioner that has seen other solves is not a function of what
     // is given.
-    if (is_new || !d.solver || (!matrix.is_constant && d.solver->memory()))
+    if (is_new || !d.solver || (!matrix.is_constant && !d.solver->is_exact()))
       {
         d.make_solver(matrix.matrix(), matrix.max_poissons_ratio());
         announce_solver();
@@ -219,10 +218,6 @@ namespace Viscoplastic
             step.report.tolerance = 2. * tolerance;
             break;
           }
-        if (getenv("VPTRACE"))
-          std::cerr << step.newton_iterations << " err " << error / size
-                    << " size " << size << " new " << tangent_is_new << " ci "
-                    << step.report.iterations << std::endl;
         best_error = std::min(best_error, error / size);
         if (step.newton_iterations == parameters.solver.maximal_iterations)
           {
@@ -258,7 +253,7 @@ namespace Viscoplastic
           error < last_error ?
             std::log(tolerance * size / error) / std::log(error / last_error) :
             std::numeric_limits<double>::infinity();
-        const double price = d.solver->memory() ? 1. : dim == 2 ? 5. : 12.;
+        const double price = !d.solver->is_exact() ? 1. : dim == 2 ? 5. : 12.;
         is_outdated =
           length < 1. ||
           (tangent_is_new && step.newton_iterations == 1 ? price == 1. :
@@ -327,8 +322,6 @@ namespace Viscoplastic
       return 1.;
     DistributedVector  there = space.ghosted_vector();
     IrreversibleStress z_there(z);
-    if (getenv("VPTRACE"))
-      std::cerr << "line search " << at_0 << " " << at_1 << std::endl;
     return find_root(
       [&](const double s) {
         DistributedVector between(base);

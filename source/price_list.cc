@@ -153,8 +153,8 @@ namespace Viscoplastic
       return best;
     for (int level = -market.coarsest_level; level <= finest_level; ++level)
       {
-        const double rest =
-          tolerance - market.error.first(market.h * std::pow(0.5, level));
+        const double rest = market.error.rest(
+          tolerance, market.error.first(market.h * std::pow(0.5, level)));
         if (rest <= 0.)
           continue;
         const double k = step_for(market, rest);
@@ -210,8 +210,11 @@ namespace Viscoplastic
                                std::pow(share * tolerance / market.error.c_1,
                                     1. / market.error.p) :
                                market.h * std::pow(2., market.coarsest_level);
-        const double k     = step_for(
-          market, market.error.c_1 > 0. ? (1. - share) * tolerance : tolerance);
+        const double k =
+          step_for(market,
+                   market.error.c_1 > 0. ?
+                     market.error.rest(tolerance, share * tolerance) :
+                     tolerance);
         const double steps =
           std::max<double>(market.phases.size(),
                            n_steps(market.phases) * market.k / k);

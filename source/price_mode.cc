@@ -150,18 +150,19 @@ namespace Viscoplastic
                 ExcMessage("--price needs an error to go by: set 'Error "
                            "control/Error bar = true', or give an 'Exact "
                            "solution'."));
-    const bool is_small = runs.n_cells <= small_mesh;
-    AssertThrow(is_small || runs.n_coarser_meshes() >= 2,
+    const bool is_small  = runs.n_cells <= small_mesh;
+    const int  n_coarser = runs.n_coarser_meshes();
+    AssertThrow(is_small || n_coarser >= 1,
                 ExcMessage(
                   "--price needs pilot runs on coarser meshes, but the mesh "
                   "of " +
                   digits(runs.n_cells) +
-                  " cells cannot be halved twice: 'Geometry/Global "
-                  "refinements' = " +
+                  " cells cannot be halved: 'Geometry/Global refinements' = " +
                   std::to_string(scene.geometry.global_refinements) +
-                  "; give a mesh four times as coarse and refine it twice "
-                  "globally."));
-    const int          mesh_level = is_small ? 1 : -1;
+                  "; give a mesh twice or four times as coarse and refine it "
+                  "once or twice globally."));
+    // Where the finer pilots are.
+    const int          mesh_level = is_small ? 1 : n_coarser >= 2 ? -1 : 0;
     const unsigned int n          = n_steps(runs.phases);
     const int          time_level = n >= 8 * runs.phases.size() ? -1 :
                                     n >= 4 * runs.phases.size() ? 0 :

@@ -183,7 +183,8 @@ namespace Viscoplastic
         return fit_error(samples,
                          Finer{reference->number("h"),
                                reference->number("k"),
-                               is_norm});
+                               is_norm ? 2. : 1.,
+                               1.});
       }
     std::vector<double> space, time;
     for (const RunRecord *record : records)
@@ -220,17 +221,20 @@ namespace Viscoplastic
               const RunRecord   *reference)
   {
     Market market;
-    market.error  = fit_measure(records, measure, reference);
-    market.dim    = runs.scene.dimension;
-    market.cost   = cost_of(records, market.dim);
-    market.h      = runs.h;
-    market.phases = runs.phases;
-    market.k      = TimeSchedule(runs.scene.time.phases).largest_step().k;
-    market.coarsest_level = runs.n_coarser_meshes();
-    market.smallest_h     = market.smallest_k =
+    market.error      = fit_measure(records, measure, reference);
+    market.dim        = runs.scene.dimension;
+    market.cost       = cost_of(records, market.dim);
+    market.h          = runs.h;
+    market.phases     = runs.phases;
+    market.k          = TimeSchedule(runs.scene.time.phases).largest_step().k;
+    market.smallest_h = market.smallest_k =
       std::numeric_limits<double>::infinity();
+    int    coarsest_mesh = std::numeric_limits<int>::max();
+    double largest_k     = 0.;
     for (const RunRecord *record : records)
       {
+        coarsest_mesh = std::min(coarsest_mesh, record->key.mesh_level);
+        largest_k     = std::max(largest_k, record->number("k"));
         // From the finest mesh, whose boundary counts least.
         if (record->number("h") < market.smallest_h)
           {
@@ -244,6 +248,9 @@ namespace Viscoplastic
         if (std::isfinite(limit)) // which stresses may still lower
           market.largest_k = std::min(market.largest_k, 0.95 * limit);
       }
+    // Nothing coarser than what was measured: there errors obey no law.
+    market.coarsest_level = -coarsest_mesh;
+    market.largest_k      = std::min(market.largest_k, largest_k);
     if (records[0]->key.strategy == "adaptive")
       market.steps_per_mesh = runs.scene.refinement.strategy != "none" ?
                                 runs.scene.refinement.every_n_steps :

@@ -31,7 +31,7 @@ namespace Viscoplastic
       std::vector<std::array<double, 3>>   samples;
       Prior                                prior;
       std::optional<std::array<double, 2>> finer;
-      bool                                 is_orthogonal = false;
+      std::array<double, 2>                finer_m{{1., 1.}};
 
       struct Term
       {
@@ -49,8 +49,7 @@ namespace Viscoplastic
       {
         if (!finer || (*finer)[coordinate] > l - 1e-6)
           return {std::exp(log_c + p * l), l};
-        const double m    = coordinate == 0 && is_orthogonal ? 2. : 1.,
-                     f    = (*finer)[coordinate],
+        const double m = finer_m[coordinate], f = (*finer)[coordinate],
                      rest = -std::expm1(m * p * (f - l)); // 1 - (x_f/x)^(mp)
         return {std::exp(log_c + p * l) * std::pow(rest, 1. / m),
                 (l - (1. - rest) * f) / rest};
@@ -321,6 +320,24 @@ namespace Viscoplastic
 
 
 
+  double
+  TwoPowers::operator()(const double x_1, const double x_2) const
+  {
+    return m == 1. ? first(x_1) + second(x_2) :
+                     std::hypot(first(x_1), second(x_2));
+  }
+
+
+
+  double
+  TwoPowers::rest(const double sum, const double first_part) const
+  {
+    const double power = std::pow(sum, m) - std::pow(first_part, m);
+    return power > 0. ? std::pow(power, 1. / m) : 0.;
+  }
+
+
+
   TwoPowers
   fit_two_powers(const std::vector<Sample>  &samples,
                  const Prior                &prior,
@@ -331,7 +348,7 @@ namespace Viscoplastic
     result.p = prior.p;
     result.q = prior.q;
 
-    Problem                   problem{{}, prior, {}, false};
+    Problem                   problem{{}, prior, {}, {{1., 1.}}};
     std::vector<unsigned int> index;
     std::array<double, 2>     centre{{0., 0.}};
     for (unsigned int i = 0; i < samples.size(); ++i)
@@ -357,7 +374,7 @@ namespace Viscoplastic
       {
         problem.finer = std::array<double, 2>{
           {std::log(finer->x_1) - centre[0], std::log(finer->x_2) - centre[1]}};
-        problem.is_orthogonal = finer->is_orthogonal;
+        problem.finer_m = {{finer->m_1, finer->m_2}};
       }
 
     const unsigned int n_1 = n_distinct(problem, 0),
@@ -442,18 +459,22 @@ namespace Viscoplastic
         result.q_is_fitted = false;
       }
 
-    double square = 0., worst = -1.;
+    double              square = 0., worst = -1.;
+    std::vector<double> sizes;
     for (unsigned int i = 0; i < n; ++i)
       {
         const double r = problem.residual(x, i);
         square += r * r;
+        sizes.push_back(std::abs(r));
         if (std::abs(r) > worst)
           {
             worst               = std::abs(r);
             result.worst_sample = index[i];
           }
       }
-    result.rms          = std::sqrt(square / n);
+    result.rms = std::sqrt(square / n);
+    std::nth_element(sizes.begin(), sizes.begin() + n / 2, sizes.end());
+    result.median       = sizes[n / 2];
     result.worst_factor = std::exp(worst);
     return result;
   }
@@ -464,7 +485,38 @@ namespace Viscoplastic
   fit_error(const std::vector<Sample>  &errors_at_h_and_k,
             const std::optional<Finer> &finer)
   {
-    return fit_two_powers(errors_at_h_and_k, Prior(), 1e-13, finer);
+    constexpr double rounding = 1e-13;
+    const TwoPowers  sum =
+      fit_two_powers(errors_at_h_and_k, Prior(), rounding, finer);
+    if (!sum.is_separable || sum.c_1 == 0. || sum.c_2 == 0. ||
+        sum.n_samples < 4)
+      return sum;
+
+    // The same for the squares.
+    std::vector<Sample> squares = errors_at_h_and_k;
+    for (Sample &sample : squares)
+      sample.y *= sample.y;
+    std::optional<Finer> of_squares = finer;
+    if (finer)
+      {
+        of_squares->m_1 /= 2.;
+        of_squares->m_2 /= 2.;
+      }
+    Prior prior;
+    prior.p = prior.q = 2.;
+    TwoPowers root =
+      fit_two_powers(squares, prior, rounding * rounding, of_squares);
+    if (!(root.median / 2. < 0.8 * sum.median - 1e-5))
+      return sum;
+    root.m = 2.;
+    root.p /= 2.;
+    root.q /= 2.;
+    root.c_1          = std::sqrt(root.c_1);
+    root.c_2          = std::sqrt(root.c_2);
+    root.rms          = root.rms / 2.;
+    root.median       = root.median / 2.;
+    root.worst_factor = std::sqrt(root.worst_factor);
+    return root;
   }
 
 

@@ -149,9 +149,15 @@ namespace Viscoplastic
       const TwoPowers   &error = way.market->error;
       const CostModel   &cost  = way.market->cost;
       text << "Fit to the " << measure_in_words(way.measure)
-           << ", relative:\n\n    error = " << digits(error.c_1) << " h^"
-           << digits(error.p) << " + " << digits(error.c_2) << " k^"
-           << digits(error.q) << "\n\n";
+           << ", relative:\n\n    error = ";
+      if (error.m == 1.)
+        text << digits(error.c_1) << " h^" << digits(error.p) << " + "
+             << digits(error.c_2) << " k^" << digits(error.q) << "\n\n";
+      else
+        text << "((" << digits(error.c_1) << " h^" << digits(error.p)
+             << ")^2 + (" << digits(error.c_2) << " k^" << digits(error.q)
+             << ")^2)^(1/2)\n\nThe parts add up in squares, as orthogonal "
+                "ones do: this fits better than their sum. ";
       if (!error.is_separable)
         text << "The runs refine h and k together, so that their parts cannot "
                 "be told apart; half of the error is given to each. ";
@@ -173,8 +179,9 @@ namespace Viscoplastic
       const RunRecord *finest = way.records.back();
       const double     h = finest->number("h"), k = finest->number("k");
       text << "At the finest run `" << finest->name << "` the mesh has "
-           << std::lround(100. * error.first(h) / error(h, k))
-           << " % of the error and the steps have the rest.\n\n";
+           << std::lround(100. * error.first(h) /
+                          (error.first(h) + error.second(k)))
+           << " % of the sum of both parts, the steps have the rest.\n\n";
       const auto power = [](const TwoPowers &fit) {
         std::string formula = digits(fit.c_1) + " dofs^" + digits(fit.p, 3);
         if (fit.c_2 > 0.)

@@ -149,6 +149,7 @@ namespace Viscoplastic
                    << ", \"C_k\": " << json_number(fit.c_2)
                    << ", \"q\": " << json_number(fit.q) << ", \"q_is_fitted\": "
                    << (fit.q_is_fitted ? "true" : "false")
+                   << ", \"m\": " << json_number(fit.m)
                    << ", \"rms_of_log\": " << json_number(fit.rms)
                    << ", \"worst_factor\": " << json_number(fit.worst_factor)
                    << ", \"worst_run\": "

@@ -41,9 +41,9 @@ namespace Viscoplastic
     /// Of the scene as it is: mesh level 0 and its own steps.
     double                  h = 1., k = 1., dofs = 1.;
     std::vector<StepsUntil> phases;
-    /// How many levels the mesh can be coarsened; finer ones always exist.
+    /// How many levels the mesh may be coarsened.
     int coarsest_level = 0;
-    /// Forward Euler is unstable beyond.
+    /// What was measured, or the limit of stability.
     double largest_k = std::numeric_limits<double>::infinity();
     /// Steps between new meshes; 0 for a mesh that stays.
     double steps_per_mesh = 0.;

@@ -10,10 +10,12 @@ namespace Viscoplastic
   // What a ladder of runs says: powers of h and k in errors, powers of the
   // number of unknowns in seconds and memory. Pure functions of numbers.
 
-  /// y(x_1, x_2) = c_1 x_1^p + c_2 x_2^q with c_1, c_2 >= 0.
+  /// y(x_1, x_2)^m = (c_1 x_1^p)^m + (c_2 x_2^q)^m with c_1, c_2 >= 0.
   struct TwoPowers
   {
     double c_1 = 0., p = 1., c_2 = 0., q = 1.;
+    /// 1, or 2 for parts that are orthogonal to each other.
+    double m = 1.;
     /// Whether the exponents come from the samples, not from theory.
     bool p_is_fitted = false, q_is_fitted = false;
     /// Whether the samples can tell the two terms apart: otherwise each has
@@ -21,6 +23,8 @@ namespace Viscoplastic
     bool is_separable = true;
     /// Of log(fit/sample), over the samples that were used.
     double rms = std::numeric_limits<double>::quiet_NaN();
+    /// The median of its absolute value, which outliers do not move.
+    double median = std::numeric_limits<double>::quiet_NaN();
     /// The largest of fit/sample and sample/fit, and the index of that sample.
     double       worst_factor = 1.;
     unsigned int worst_sample = 0;
@@ -34,10 +38,12 @@ namespace Viscoplastic
     second(const double x_2) const;
 
     double
-    operator()(const double x_1, const double x_2) const
-    {
-      return first(x_1) + second(x_2);
-    }
+    operator()(const double x_1, const double x_2) const;
+
+    /// What the second term may be where the first one is @p first_part and
+    /// both @p sum; 0 or less if nothing.
+    double
+    rest(const double sum, const double first_part) const;
   };
 
 
@@ -47,14 +53,16 @@ namespace Viscoplastic
   };
 
 
-  /// Of a run that has been taken for the truth: samples are differences to it.
+  /**
+   * Of a run that has been taken for the truth: samples are differences to it.
+   * Where its errors are orthogonal to differences, as those of Galerkin
+   * methods in their norm, squares subtract (2), otherwise the errors
+   * themselves (1).
+   */
   struct Finer
   {
     double x_1, x_2;
-    /// Whether its error in the first direction is orthogonal to differences,
-    /// as those of Galerkin methods in their norm: the squares subtract, not
-    /// the errors themselves.
-    bool is_orthogonal;
+    double m_1 = 1., m_2 = 1.;
   };
 
 
@@ -87,8 +95,9 @@ namespace Viscoplastic
                  const std::optional<Finer> &finer    = {});
 
 
-  /// Relative errors: C_h h^p + C_k k^q, where nothing else is known p = q = 1
-  /// as in (5.14) and (5.20). What is below 1e-13 is rounding.
+  /// Relative errors: C_h h^p + C_k k^q, or the root of the sum of squares if
+  /// that fits better; where nothing else is known p = q = 1 as in (5.14) and
+  /// (5.20). What is below 1e-13 is rounding.
   TwoPowers
   fit_error(const std::vector<Sample>  &errors_at_h_and_k,
             const std::optional<Finer> &finer = {});

@@ -144,26 +144,32 @@ class Ladders(TestCase):
             space = orders(folder.ladder("space"), "error_energy", "h")
             both = orders(folder.ladder("both"), "error_energy", "h")
             print("orders of u, energy norm:", space, both)
-            # The steps are fine enough for the mesh to show, nearly.
-            self.assertGreater(both.min(), 0.8)
-            self.assertGreater(space.min(), 0.6)
+            self.assertGreater(both.min(), 0.9)
+            # The steps of the finest level still have most of the error: only
+            # the fit below knows the order of the mesh.
+            self.assertGreater(space.min(), 0.3)
 
             about = json.loads((folder.study / "study.json").read_text())
             self.assertEqual(about["reference"], "exact")
             self.assertTrue(about["finished"])
             fit = next(f for f in about["fits"] if f["error"] == "error_energy")
+            print("fit:", {k: fit[k] for k in ("C_h", "p", "C_k", "q", "m")})
+            self.assertClose(fit["p"], 1, absolute=0.2)
+            self.assertClose(fit["q"], 1, absolute=0.1)
             for row in rows:
-                value = (
-                    fit["C_h"] * row["h"] ** fit["p"] + fit["C_k"] * row["k"] ** fit["q"]
-                )
-                self.assertClose(value, row["error_energy"], 0.3)
+                parts = [
+                    fit["C_h"] * row["h"] ** fit["p"],
+                    fit["C_k"] * row["k"] ** fit["q"],
+                ]
+                value = np.linalg.norm(parts, ord=fit["m"])
+                self.assertClose(value, row["error_energy"], 0.1)
             # What the price list promises holds where a run can be compared.
             prices = {p["tolerance"]: p for p in about["prices"]}
             self.assertLess(prices[0.1]["predicted_error"], 0.1001)
             self.assertGreater(prices[0.1]["seconds"], 0)
             self.assertFalse(prices[1e-5]["in_budget"])
             self.assertRegex(
-                process.stdout, r"Error 1e-05: not within 3 min, .* smallest error"
+                process.stdout, r"Error 1e-05: not within 3 min[;,].* smallest error"
             )
             text = (folder.study / "study.md").read_text()
             for part in ("Observed orders", "error = ", "Price list", "Left out"):
@@ -215,9 +221,9 @@ class Ladders(TestCase):
             rows = folder.ladder("both")
             self.assertEqual(rows[-1]["run"], "uniform_h3_k3")
             self.assertTrue(np.isnan(rows[-1]["point0_x_error"]))
-            # The foot has moved by 0.31 - k/20, with which the reference agrees.
+            # The foot has moved by 0.31 - k/10 in the discrete solution.
             for row in rows:
-                self.assertClose(row["point0_x"], 0.31 - 0.05 * row["k"], 1e-6)
+                self.assertClose(row["point0_x"], 0.31 - 0.1 * row["k"], 1e-6)
             reference = rows[-1]["point0_x"]
             self.assertClose(
                 rows[0]["point0_x_error"], 1 - rows[0]["point0_x"] / reference, 1e-4
@@ -317,10 +323,12 @@ class Resumed(TestCase):
             time.sleep(0.1)
             process.send_signal(signal.SIGTERM)
             _, stderr = process.communicate()
-            if process.returncode == 0:
-                self.skipTest("the study was faster than the signal")
-            self.assertEqual(process.returncode, 3, stderr)
-            self.assertRegex(stderr, "SIGTERM has ended the study in the run uniform_")
+            # 3 in the steps of a run; between runs a signal just ends it.
+            self.assertIn(process.returncode, (3, -signal.SIGTERM), stderr)
+            if process.returncode == 3:
+                self.assertRegex(
+                    stderr, "SIGTERM has ended the study in the run uniform_"
+                )
             self.assertEqual(folder.run("study").returncode, 0)
             self.assertEqual(len(folder.finished()), 7)
 
@@ -386,7 +394,7 @@ class Refused(TestCase):
             Geometry__Arguments="40 : 0 : 1 : true",
             Geometry__Global_refinements=0,
         ) as folder:
-            self.assertIn("cannot be halved twice", self.refuse(folder, "--price=0.1"))
+            self.assertIn("cannot be halved", self.refuse(folder, "--price=0.1"))
 
 
 class Price(TestCase):

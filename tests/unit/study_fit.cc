@@ -63,6 +63,7 @@ namespace
                                Truth{0.1, 0.5, 0.3, 1.}})
       {
         const TwoPowers fit = fit_error(ladders(truth));
+        EXPECT_EQ(fit.m, 1.);
         EXPECT_TRUE(fit.p_is_fitted);
         EXPECT_TRUE(fit.q_is_fitted);
         // The weak belief in 1 is all that is between.
@@ -148,7 +149,7 @@ namespace
   TEST(StudyFit, DifferencesToAFinerRun)
   {
     const Truth truth{2., 1., 3., 1.};
-    const Finer finer{0.125 / 16, 0.05 / 16, true};
+    const Finer finer{0.125 / 16, 0.05 / 16, 2., 1.};
     auto        samples = ladders(truth);
     for (Sample &sample : samples)
       sample.y =
@@ -164,7 +165,7 @@ namespace
     EXPECT_GT(fit_error(samples).q, 1.1);
     // The finest of the ladders in its place: its steps are those of the ladder
     // in space, and do not count there.
-    const Finer corner{0.125 / 8, 0.05 / 8, false};
+    const Finer corner{0.125 / 8, 0.05 / 8, 1., 1.};
     samples = ladders(truth);
     for (Sample &sample : samples)
       sample.y =
@@ -173,6 +174,32 @@ namespace
     EXPECT_EQ(of_corner.n_samples, 9u);
     EXPECT_NEAR(of_corner.c_1, 2., 0.01);
     EXPECT_NEAR(of_corner.c_2, 3., 0.01);
+  }
+
+
+
+  TEST(StudyFit, OrthogonalParts)
+  {
+    auto samples = ladders({2., 1., 3., 1.});
+    for (Sample &sample : samples)
+      sample.y = std::hypot(2. * sample.x_1, 3. * sample.x_2);
+    const TwoPowers fit = fit_error(samples);
+    EXPECT_EQ(fit.m, 2.);
+    EXPECT_NEAR(fit.p, 1., 1e-3);
+    EXPECT_NEAR(fit.q, 1., 1e-3);
+    EXPECT_NEAR(fit(0.01, 0.01), std::hypot(0.02, 0.03), 1e-4);
+    EXPECT_NEAR(fit.rest(0.05, 0.03), 0.04, 1e-12);
+    EXPECT_EQ(fit.rest(0.03, 0.05), 0.);
+    // Against a finer run.
+    const Finer finer{0.125 / 16, 0.05 / 16, 2., 1.};
+    for (Sample &sample : samples)
+      sample.y = std::hypot(2. * std::sqrt(std::pow(sample.x_1, 2) -
+                                           std::pow(finer.x_1, 2)),
+                            3. * (sample.x_2 - finer.x_2));
+    const TwoPowers of_differences = fit_error(samples, finer);
+    EXPECT_EQ(of_differences.m, 2.);
+    EXPECT_NEAR(of_differences.c_1, 2., 0.02);
+    EXPECT_NEAR(of_differences.c_2, 3., 0.03);
   }
 
 

@@ -2,6 +2,7 @@
 #include <deal.II/base/config.h>
 
 #include <deal.II/base/exceptions.h>
+#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/spelling.h>
@@ -41,7 +42,7 @@ namespace Viscoplastic
     using Task = CommandLine::Task;
     const std::vector<std::string> flags{
       "--help", "--version", "--describe", "--check", "--quiet", "--restart"};
-    const std::vector<std::string> with_value{"--set", "--log"};
+    const std::vector<std::string> with_value{"--set", "--log", "--price"};
     const auto contains = [](const std::vector<std::string> &list,
                              const std::string              &item) {
       return std::find(list.begin(), list.end(), item) != list.end();
@@ -55,6 +56,12 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < arguments.size(); ++i)
       {
         const std::string &argument = arguments[i];
+        if (!only_files && argument == "study" && result.files.empty())
+          {
+            result.task = Task::study;
+            task_option = "study";
+            continue;
+          }
         if (only_files || argument.empty() || argument[0] != '-')
           {
             std::error_code error;
@@ -87,12 +94,30 @@ namespace Viscoplastic
                             ExcMessage("The option " + option +
                                        (option == "--set" ?
                                           " needs 'Section/Entry=value'" :
+                                        option == "--price" ?
+                                          " needs a relative error" :
                                           " needs the name of a file") +
                                        " after it."));
                 value = arguments[++i];
               }
             if (option == "--set")
               result.overrides.push_back(value);
+            else if (option == "--price")
+              {
+                try
+                  {
+                    result.price = Utilities::string_to_double(value);
+                  }
+                catch (const std::exception &)
+                  {
+                    result.price = 0.; // refused below
+                  }
+                AssertThrow(result.price >= 1e-6 && result.price <= 0.5,
+                            ExcMessage("The option --price needs a relative "
+                                       "error from 1e-6 to 0.5 after it, such "
+                                       "as 0.01, not '" +
+                                       excerpt(value) + "'."));
+              }
             else
               {
                 AssertThrow(!value.empty(),
@@ -151,15 +176,22 @@ namespace Viscoplastic
                       excerpt(value) + "'."));
       }
 
-    const bool reads_scene =
-      result.task == Task::run || result.task == Task::check;
+    const bool reads_scene = result.task == Task::run ||
+                             result.task == Task::check ||
+                             result.task == Task::study;
+    AssertThrow(result.price == 0. || result.task == Task::run ||
+                  result.task == Task::check,
+                ExcMessage("The options " + task_option +
+                           " and --price exclude each other."));
     AssertThrow(!reads_scene || !result.files.empty(),
                 ExcMessage("There is no parameter file among the arguments; "
                            "write viscoplastic_contact [options] scene.prm."));
-    AssertThrow(result.task == Task::run ||
-                  result.restart == CommandLine::Restart::no,
-                ExcMessage("The options " + task_option +
-                           " and --restart exclude each other."));
+    AssertThrow(
+      result.task == Task::run || result.restart == CommandLine::Restart::no,
+      ExcMessage(result.task == Task::study ?
+                   "A study finds its finished runs without --restart." :
+                   "The options " + task_option +
+                     " and --restart exclude each other."));
     AssertThrow(reads_scene ||
                   (result.files.empty() && result.overrides.empty()),
                 ExcMessage("The option " + task_option +
@@ -173,10 +205,16 @@ namespace Viscoplastic
   help_text()
   {
     return "Usage: viscoplastic_contact [options] scene.prm [more.prm ...]\n"
+           "       viscoplastic_contact study [options] scene.prm [more.prm "
+           "...]\n"
            "\n"
            "Computes the scene that the parameter file describes. Further "
            "files override\n"
-           "entries of the earlier ones.\n"
+           "entries of the earlier ones. `study' computes it on several "
+           "meshes and with\n"
+           "several steps, as 'Study' describes, and says what accuracy costs. "
+           "What is\n"
+           "finished is not computed again.\n"
            "\n"
            "  --set 'SECTION/ENTRY=VALUE'  override an entry of the files; may "
            "be repeated\n"
@@ -184,6 +222,11 @@ namespace Viscoplastic
            "effects, size,\n"
            "                               solver and memory, without "
            "computing it\n"
+           "  --price ERROR                find the cheapest mesh and steps "
+           "for this relative\n"
+           "                               error by a few short runs, say what "
+           "they cost, and\n"
+           "                               run them; with --check say it only\n"
            "  --describe[=markdown]        print a parameter file with every "
            "entry, its\n"
            "                               meaning, unit, default and allowed "

@@ -4,7 +4,9 @@
 #include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/parameter_description.h>
+#include <viscoplastic_contact/price_mode.h>
 #include <viscoplastic_contact/signals.h>
+#include <viscoplastic_contact/study.h>
 #include <viscoplastic_contact/two_level.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
@@ -54,6 +56,11 @@ namespace
                     has_terminal);
     try
       {
+        if (command_line.task == CommandLine::Task::study)
+          return Study(command_line.files, command_line.overrides, console)
+            .run();
+        if (command_line.price > 0.)
+          return run_at_price(command_line, console);
         const Parameters parameters(command_line.files, command_line.overrides);
         return parameters.dimension == 2 ?
                  run<2>(parameters, command_line, console) :

@@ -327,7 +327,8 @@ namespace Viscoplastic
     prm.add_parameter("Ladders",
                       ladders,
                       "What is refined: the mesh alone, the time steps alone, "
-                      "or both.",
+                      "or both; what a ladder leaves alone has the finest "
+                      "level.",
                       Patterns::List(Patterns::Selection("space|time|both"),
                                      1,
                                      3));
@@ -354,7 +355,8 @@ namespace Viscoplastic
     prm.add_parameter("Budget",
                       budget,
                       "The study begins no run that is not expected to end "
-                      "within this time. Unit: seconds.",
+                      "within this time, and --price no run that is expected "
+                      "to take longer. Unit: seconds.",
                       Patterns::Double(1.));
   }
 

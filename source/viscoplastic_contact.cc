@@ -214,8 +214,8 @@ namespace Viscoplastic
           }
         TimerOutput::Scope phase(timer, "estimate");
         step.errors = error_bar->assess(discretisation->sampling,
-                                        discretisation->matrix,
                                         state,
+                                        forces,
                                         step.forces,
                                         step.report,
                                         residual,
@@ -286,8 +286,6 @@ namespace Viscoplastic
     dof_handler.distribute_dofs(fe);
     // The old one goes first: matrices and factors are what fills memory.
     is_solved_on_mesh = false;
-    if (error_bar)
-      error_bar->forget_rate();
     discretisation.reset();
     discretisation = std::make_unique<Discretisation>(dof_handler, scene);
     discretisation->make_matrix();
@@ -752,6 +750,8 @@ namespace Viscoplastic
       }
     forces =
       evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
+    if (error_bar)
+      error_bar->change_mesh(d.space, d.matrix, state);
     accounts.adaptation_energy += stored_energy(state, forces) - energy;
   }
 

@@ -17,7 +17,8 @@ namespace Viscoplastic
       describe,
       describe_as_markdown,
       check,
-      run
+      run,
+      study
     };
 
     Task                     task = Task::run;
@@ -36,6 +37,9 @@ namespace Viscoplastic
     Restart restart = Restart::no;
     /// Name of the log file; empty for none.
     std::string log;
+    /// The relative error whose price is asked for, before a run or, with the
+    /// task check, instead of it; 0 for none.
+    double price = 0.;
   };
 
   /**

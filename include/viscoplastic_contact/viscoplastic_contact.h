@@ -76,6 +76,17 @@ namespace Viscoplastic
     void
     check();
 
+    /// Wall time of a run by phase, as the timer names them; `set-up' is that
+    /// of all meshes.
+    std::map<std::string, double>
+    seconds() const
+    {
+      auto result = timer.get_summary_data(TimerOutput::total_wall_time);
+      // Further set-ups are part of the adaptation.
+      result["set-up"] = first_set_up_seconds + result["adaptation"];
+      return result;
+    }
+
   private:
     /// Everything that depends on the mesh, in the order of dependence.
     struct Discretisation

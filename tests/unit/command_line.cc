@@ -39,6 +39,14 @@ namespace
     EXPECT_EQ(line.overrides, (std::vector<std::string>{"A/B=c=d", "C=1"}));
     EXPECT_TRUE(line.quiet);
     EXPECT_EQ(line.log, "x");
+
+    const CommandLine study = read_command_line({"--quiet", "study", "a.prm"});
+    EXPECT_EQ(study.task, Task::study);
+    EXPECT_EQ(study.files, (std::vector<std::string>{"a.prm"}));
+    const CommandLine price =
+      read_command_line({"--price", "0.01", "--check", "a.prm"});
+    EXPECT_EQ(price.task, Task::check);
+    EXPECT_EQ(price.price, 0.01);
   }
 
 
@@ -61,6 +69,17 @@ namespace
     refused({"--describe", "a.prm"}, "goes without parameter files");
     refused({"--describe=html"}, "the values prm and markdown, not 'html'.");
     refused({"--quiet=yes", "a.prm"}, "--quiet has no value");
+    refused({"study"}, "There is no parameter file among the arguments");
+    refused({"study", "--check", "a.prm"},
+            "study and --check exclude each other.");
+    refused({"study", "--restart", "a.prm"},
+            "A study finds its finished runs without --restart.");
+    refused({"study", "--price=0.1", "a.prm"},
+            "study and --price exclude each other.");
+    refused({"--price", "few", "a.prm"},
+            "needs a relative error from 1e-6 to 0.5 after it, such as 0.01, "
+            "not 'few'.");
+    refused({"--price=2", "a.prm"}, "not '2'.");
     refused({"a.prm", "Time/Phases=1: 2"}, "write --set 'Time/Phases=1: 2'.");
   }
 

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace Viscoplastic
+{
+  // What a ladder of runs says: powers of h and k in errors, powers of the
+  // number of unknowns in seconds and memory. Pure functions of numbers.
+
+  /// y(x_1, x_2)^m = (c_1 x_1^p)^m + (c_2 x_2^q)^m with c_1, c_2 >= 0.
+  struct TwoPowers
+  {
+    double c_1 = 0., p = 1., c_2 = 0., q = 1.;
+    /// 1, or 2 for parts that are orthogonal to each other.
+    double m = 1.;
+    /// Whether the exponents come from the samples, not from theory.
+    bool p_is_fitted = false, q_is_fitted = false;
+    /// Whether the samples can tell the two terms apart: otherwise each has
+    /// half of the sum.
+    bool is_separable = true;
+    /// Of log(fit/sample), over the samples that were used.
+    double rms = std::numeric_limits<double>::quiet_NaN();
+    /// The median of its absolute value, which outliers do not move.
+    double median = std::numeric_limits<double>::quiet_NaN();
+    /// The largest of fit/sample and sample/fit, and the index of that sample.
+    double       worst_factor = 1.;
+    unsigned int worst_sample = 0;
+    /// Those that are finite and positive; without any there is no fit.
+    unsigned int n_samples = 0;
+
+    double
+    first(const double x_1) const;
+
+    double
+    second(const double x_2) const;
+
+    double
+    operator()(const double x_1, const double x_2) const;
+
+    /// What the second term may be where the first one is @p first_part and
+    /// both @p sum; 0 or less if nothing.
+    double
+    rest(const double sum, const double first_part) const;
+  };
+
+
+  struct Sample
+  {
+    double x_1, x_2, y;
+  };
+
+
+  /**
+   * Of a run that has been taken for the truth: samples are differences to it.
+   * Where its errors are orthogonal to differences, as those of Galerkin
+   * methods in their norm, squares subtract (2), otherwise the errors
+   * themselves (1).
+   */
+  struct Finer
+  {
+    double x_1, x_2;
+    double m_1 = 1., m_2 = 1.;
+  };
+
+
+  /// What is believed of the exponents without samples.
+  struct Prior
+  {
+    double p = 1., q = 1.;
+    /// Residual per unit of deviation, next to those of log y: small values
+    /// leave all to the samples, and decide where these say nothing.
+    double weight = 1e-3;
+    /// Exponents that are not to be fitted at all.
+    bool p_is_fixed = false, q_is_fixed = false;
+    /// Whether there is no second term.
+    bool is_one_term = false;
+  };
+
+
+  /**
+   * Robust (Huber) least squares for log y: samples within some 1.5 median
+   * deviations count in full, outliers by their sign. Samples that are not
+   * finite, or not above @p smallest, are left out. An exponent that the
+   * samples do not determine to 0.3 (one standard deviation) has the value of
+   * the prior. With @p finer the terms are those of both runs subtracted; the
+   * result is the law of the errors themselves.
+   */
+  TwoPowers
+  fit_two_powers(const std::vector<Sample>  &samples,
+                 const Prior                &prior    = Prior(),
+                 const double                smallest = 0.,
+                 const std::optional<Finer> &finer    = {});
+
+
+  /// Relative errors: C_h h^p + C_k k^q, or the root of the sum of squares if
+  /// that fits better; where nothing else is known p = q = 1 as in (5.14) and
+  /// (5.20). What is below 1e-13 is rounding.
+  TwoPowers
+  fit_error(const std::vector<Sample>  &errors_at_h_and_k,
+            const std::optional<Finer> &finer = {});
+
+
+  /**
+   * The same where each part is known by itself, as those of an error bar are:
+   * two fits of one power each. The misfit is that of the sum to the samples.
+   */
+  TwoPowers
+  fit_error_parts(const std::vector<Sample> &errors_at_h_and_k,
+                  const std::vector<double> &parts_of_h,
+                  const std::vector<double> &parts_of_k);
+
+
+  /// What one run has cost.
+  struct CostSample
+  {
+    double dofs, steps, n_set_ups;
+    /// Of all set-ups, and of all.
+    double set_up_seconds, seconds;
+    double memory; // MB
+  };
+
+
+  /**
+   * seconds = n_set_ups s(dofs) + steps r(dofs), memory = m(dofs), where s, r
+   * and m have the form c_1 dofs^a + c_2.
+   */
+  struct CostModel
+  {
+    TwoPowers set_up, step, memory_model;
+    /// seconds = c dofs^a steps, for comparison.
+    TwoPowers simple;
+    /// Of log(predicted/measured seconds), and the largest factor between.
+    double       rms          = std::numeric_limits<double>::quiet_NaN();
+    double       worst_factor = 1.;
+    unsigned int worst_sample = 0;
+    unsigned int n_samples    = 0;
+
+    double
+    seconds(const double dofs,
+            const double steps,
+            const double n_set_ups = 1.) const;
+
+    double
+    memory(const double dofs) const
+    {
+      return memory_model(dofs, 1.);
+    }
+  };
+
+  /// @p dim decides what is believed of sparse factors: dofs log(dofs) entries
+  /// in 2D, dofs^(4/3) in 3D.
+  CostModel
+  fit_cost(const std::vector<CostSample> &samples, const unsigned int dim);
+} // namespace Viscoplastic

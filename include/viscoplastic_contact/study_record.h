@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// Which run of a study.
+  struct RunKey
+  {
+    std::string strategy = "uniform"; // or adaptive
+    std::string scheme, history;
+    /// Halvings of h and k from those of the scene; negative: doublings.
+    int mesh_level = 0, time_level = 0;
+
+    /// The way to compute, without the levels.
+    std::string
+    way() const
+    {
+      return strategy + ", " + scheme + ", " + history;
+    }
+
+    bool
+    operator==(const RunKey &other) const
+    {
+      return way() == other.way() && mesh_level == other.mesh_level &&
+             time_level == other.time_level;
+    }
+  };
+
+
+  /// A table with a header line, as Statistics writes it.
+  struct Table
+  {
+    std::vector<std::string>                   names;
+    std::map<std::string, std::vector<double>> columns;
+
+    bool
+    has(const std::string &name) const
+    {
+      return columns.count(name) > 0;
+    }
+  };
+
+  /// Throws ExcMessage if there is no table in @p file.
+  Table
+  read_table(const std::string &file);
+
+
+  /// What a run tells beside its table.
+  struct RunMeasurements
+  {
+    /// Wall time by phase, see ViscoplasticContact::seconds().
+    std::map<std::string, double> seconds;
+    double                        peak_memory = 0.; // MB, of all ranks
+  };
+
+
+  /// A finished run in numbers.
+  struct RunRecord
+  {
+    RunKey      key;
+    std::string name;
+    /// By the name of their column in study.csv.
+    std::map<std::string, double> numbers;
+    /// Quantities of interest at the end, by name, in the order of the table.
+    std::vector<std::pair<std::string, double>> quantities;
+
+    /// Not a number if there is none of this name.
+    double
+    number(const std::string &column) const;
+
+    double
+    quantity(const std::string &column) const;
+  };
+
+
+  /**
+   * The numbers of a finished run. Errors are relative: the largest of all
+   * steps over the largest norm of the exact solution; estimates are relative
+   * to the largest energy norm. Numbers of unknowns and cells are means over
+   * the steps.
+   */
+  RunRecord
+  make_record(const RunKey          &key,
+              const Table           &statistics,
+              const RunMeasurements &measurements);
+
+
+  /// The errors of a run as norms of fields, relative to the largest norms.
+  extern const std::vector<std::string> field_errors;
+
+  /// The parts of the error bar.
+  extern const std::vector<std::string> estimate_parts;
+
+
+  /// A record as JSON; @p stamp are further entries, texts.
+  std::string
+  to_json(const RunRecord                          &record,
+          const std::map<std::string, std::string> &stamp);
+
+  /// The inverse. Throws std::exception for text that is something else.
+  RunRecord
+  from_json(const std::string &text, std::map<std::string, std::string> &stamp);
+
+  /// A number as JSON has it: null where it is not finite.
+  std::string
+  json_number(const double value);
+} // namespace Viscoplastic

@@ -1,0 +1,442 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Studies: ladders of runs, what follows from them, and how they go on after
+an interruption; prices of errors."""
+
+import csv
+import json
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from harness import EXECUTABLE, MPIRUN, SOURCE, TestCase, as_prm, main
+
+MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
+VERIFICATION = SOURCE / "prm" / "verification"
+
+NUMBERS = (
+    "h,k,cells,dofs,steps,seconds_total,seconds_set_up,seconds_rate,seconds_load,"
+    "seconds_contact,seconds_balance,seconds_estimate,seconds_output,"
+    "peak_memory_MB,contact_iterations,linear_iterations"
+).split(",")
+TEXTS = "run,strategy,scheme,history,ladder".split(",")
+ERRORS = "error_energy,error_h1,error_stress,error_multiplier".split(",")
+ESTIMATES = (
+    "estimate_space,estimate_time,estimate_algebraic,estimate_initial,"
+    "estimate_total,effectivity"
+).split(",")
+
+
+class Folder:
+    """A working directory with a scene and what runs leave there."""
+
+    def __init__(self, scene, **overrides):
+        self.work = Path(tempfile.mkdtemp(prefix="study_"))
+        self.scene = scene
+        self.variant = self.work / "overrides.prm"
+        self.results = self.work / "results"
+        self.study = self.results / "study"
+        self.overrides = {"Output/Directory": self.results}
+        self.set(**overrides)
+
+    def set(self, **overrides):
+        self.overrides.update(
+            {k.replace("__", "/").replace("_", " "): v for k, v in overrides.items()}
+        )
+        self.variant.write_text(as_prm(self.overrides))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.work, ignore_errors=True)
+
+    def command(self, *arguments, ranks=1):
+        launcher = MPIRUN + ["-n", str(ranks)] if ranks > 1 else []
+        return [*launcher, EXECUTABLE, *arguments, str(self.scene), str(self.variant)]
+
+    def run(self, *arguments, ranks=1):
+        return subprocess.run(
+            self.command(*arguments, ranks=ranks),
+            cwd=self.work,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def rows(self):
+        with open(self.study / "study.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        return [
+            {k: v if k in TEXTS else float(v) for k, v in row.items()} for row in rows
+        ]
+
+    def ladder(self, name, **choice):
+        rows = [
+            row
+            for row in self.rows()
+            if row["ladder"] == name and all(row[k] == v for k, v in choice.items())
+        ]
+        return sorted(rows, key=lambda row: row["mesh_level"] + row["time_level"])
+
+    def finished(self):
+        """{run: what tells its result.json from another one}"""
+        return {
+            file.parent.name: (file.stat().st_ino, file.stat().st_mtime_ns)
+            for file in self.study.glob("*/result.json")
+        }
+
+
+def announced(text):
+    """Names of the runs that were made, in their order."""
+    return re.findall(r"^(\w+_h-?\d+_k-?\d+): \d+ cells", text, re.M)
+
+
+def orders(rows, error, size):
+    e = np.array([row[error] for row in rows])
+    s = np.array([row[size] for row in rows])
+    return np.log(e[:-1] / e[1:]) / np.log(s[:-1] / s[1:])
+
+
+class Ladders(TestCase):
+    def test_manufactured_tresca(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Global_refinements=1,
+            Time__Phases="1: 8",
+            Study__Levels=3,
+            Study__Target_errors="0.2, 0.1, 1e-5",
+            Study__Budget=200,
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            rows = folder.rows()
+            names = list(rows[0])
+            expected = (
+                TEXTS + ["mesh_level", "time_level"] + NUMBERS + ERRORS + ESTIMATES
+            )
+            self.assertEqual(names[: len(expected)], expected)
+            for quantity in names[len(expected) :: 2]:
+                self.assertIn(quantity + "_error", names)
+            for quantity in ("friction_force_x", "slip_area", "stored_energy"):
+                self.assertIn(quantity, names)
+
+            # three ladders of three levels that share their last run
+            self.assertEqual(len(rows), 9)
+            self.assertEqual(len({row["run"] for row in rows}), 7)
+            self.assertEqual(sorted(announced(process.stdout)), sorted(folder.finished()))
+            for row in rows:
+                for name in NUMBERS + ERRORS + ESTIMATES[:1] + ESTIMATES[-2:]:
+                    self.assertTrue(np.isfinite(row[name]), (row["run"], name))
+                self.assertEqual(row["cells"], 64 * 4 ** row["mesh_level"])
+                self.assertEqual(row["steps"], 8 * 2 ** row["time_level"])
+                self.assertClose(row["h"], 0.125 / 2 ** row["mesh_level"], 1e-6)
+                self.assertClose(row["k"], 0.125 / 2 ** row["time_level"], 1e-6)
+                self.assertGreater(row["peak_memory_MB"], 20)
+                self.assertLess(row["seconds_contact"], row["seconds_total"])
+
+            space = orders(folder.ladder("space"), "error_energy", "h")
+            both = orders(folder.ladder("both"), "error_energy", "h")
+            print("orders of u, energy norm:", space, both)
+            self.assertGreater(both.min(), 0.9)
+            # The steps of the finest level still have most of the error: only
+            # the fit below knows the order of the mesh.
+            self.assertGreater(space.min(), 0.3)
+
+            about = json.loads((folder.study / "study.json").read_text())
+            self.assertEqual(about["reference"], "exact")
+            self.assertTrue(about["finished"])
+            fit = next(f for f in about["fits"] if f["error"] == "error_energy")
+            print("fit:", {k: fit[k] for k in ("C_h", "p", "C_k", "q", "m")})
+            self.assertClose(fit["p"], 1, absolute=0.2)
+            self.assertClose(fit["q"], 1, absolute=0.1)
+            for row in rows:
+                parts = [
+                    fit["C_h"] * row["h"] ** fit["p"],
+                    fit["C_k"] * row["k"] ** fit["q"],
+                ]
+                value = np.linalg.norm(parts, ord=fit["m"])
+                self.assertClose(value, row["error_energy"], 0.1)
+            # What the price list promises holds where a run can be compared.
+            prices = {p["tolerance"]: p for p in about["prices"]}
+            self.assertLess(prices[0.1]["predicted_error"], 0.1001)
+            self.assertGreater(prices[0.1]["seconds"], 0)
+            self.assertFalse(prices[1e-5]["in_budget"])
+            self.assertRegex(
+                process.stdout, r"Error 1e-05: not within 3 min[;,].* smallest error"
+            )
+            text = (folder.study / "study.md").read_text()
+            for part in ("Observed orders", "error = ", "Price list", "Left out"):
+                self.assertIn(part, text)
+
+    def test_adaptive_with_as_many_cells(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Global_refinements=1,
+            Time__Phases="1: 10",
+            Study__Levels=2,
+            Study__Ladders="both",
+            Study__Strategies="uniform, adaptive",
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            uniform = folder.ladder("both", strategy="uniform")[-1]
+            adaptive = folder.ladder("both", strategy="adaptive")[-1]
+            self.assertLess(adaptive["cells"], 1.3 * uniform["cells"])
+            self.assertGreater(adaptive["cells"], 64)
+            self.assertTrue(np.isfinite(adaptive["error_energy"]))
+            self.assertGreater(adaptive["h"], 0.0625 / 1.2)
+
+    def test_three_dimensions(self):
+        with Folder(
+            MANUFACTURED / "coulomb_3d.prm",
+            Geometry__Arguments="2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true",
+            Geometry__Global_refinements=0,
+            Time__Phases="1: 3",
+            Study__Levels=2,
+            Study__Ladders="both",
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            rows = folder.ladder("both")
+            self.assertEqual([row["cells"] for row in rows], [8, 64])
+            self.assertLess(rows[1]["error_energy"], rows[0]["error_energy"])
+
+    def test_reference_run_and_richardson(self):
+        with Folder(
+            VERIFICATION / "shear_layer_2d.prm",
+            Geometry__Arguments="4, 4 : 0, 0 : 1, 1 : true",
+            Time__Phases="1: 10",
+            Study__Levels=3,
+            Study__Ladders="both",
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            rows = folder.ladder("both")
+            self.assertEqual(rows[-1]["run"], "uniform_h3_k3")
+            self.assertTrue(np.isnan(rows[-1]["point0_x_error"]))
+            # The foot has moved by 0.31 - k/10 in the discrete solution.
+            for row in rows:
+                self.assertClose(row["point0_x"], 0.31 - 0.1 * row["k"], 1e-6)
+            reference = rows[-1]["point0_x"]
+            self.assertClose(
+                rows[0]["point0_x_error"], 1 - rows[0]["point0_x"] / reference, 1e-4
+            )
+            self.assertTrue(
+                all(np.isfinite(row["error_energy"]) for row in rows[:-1]), rows
+            )
+            # Zero but for rounding: no relative error.
+            self.assertTrue(np.isnan(rows[0]["reaction_2_y_error"]))
+            text = (folder.study / "study.md").read_text()
+            row = next(
+                line for line in text.splitlines() if line.startswith("| point0_x ")
+            )
+            cells = [cell.strip() for cell in row.split("|")]
+            self.assertClose(float(cells[3]), 1.0, 1e-3, what="order")
+            self.assertClose(float(cells[4]), 0.31, 1e-4, what="extrapolated")
+            self.assertEqual(cells[6], "good")
+
+    def test_two_ranks(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Global_refinements=1,
+            Time__Phases="1: 4",
+            Study__Levels=2,
+            Study__Ladders="both",
+        ) as folder:
+            process = folder.run("study", ranks=2)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            parallel = folder.ladder("both")
+            again = folder.run("study", ranks=2)
+            self.assertEqual(announced(again.stdout), [])
+            # Seconds of other numbers of ranks do not go together.
+            serial = folder.run("study")
+            self.assertEqual(len(announced(serial.stdout)), 2)
+            for one, two in zip(folder.ladder("both"), parallel):
+                for name in ERRORS + ["friction_force_x", "stored_energy"]:
+                    self.assertClose(two[name], one[name], 1e-5, what=name)
+
+
+class Resumed(TestCase):
+    SMALL = {
+        "Geometry__Global_refinements": 2,
+        "Time__Phases": "1: 16",
+        "Study__Levels": 3,
+    }
+
+    def wait_for(self, folder, process, n):
+        """Until so many runs are finished."""
+        for _ in range(3000):
+            if len(folder.finished()) >= n or process.poll() is not None:
+                break
+            time.sleep(0.01)
+        self.assertIsNone(process.poll(), "the study ended too early")
+
+    def start(self, folder):
+        return subprocess.Popen(
+            folder.command("study"),
+            cwd=folder.work,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def test_after_kill(self):
+        with Folder(MANUFACTURED / "tresca_2d.prm", **self.SMALL) as folder:
+            process = self.start(folder)
+            self.wait_for(folder, process, 3)
+            process.kill()
+            process.communicate()
+            before = folder.finished()
+            self.assertGreaterEqual(len(before), 3)
+            self.assertLess(len(before), 7)
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            after = folder.finished()
+            self.assertEqual(len(after), 7)
+            self.assertEqual({name: after[name] for name in before}, before)
+            self.assertEqual(
+                set(announced(process.stdout)), set(after) - set(before)
+            )
+            # A third time nothing is left to do.
+            self.assertEqual(announced(folder.run("study").stdout), [])
+            self.assertEqual(folder.finished(), after)
+            # One more level costs only the runs that are new.
+            folder.set(Study__Levels=4, Study__Ladders="both")
+            process = folder.run("study")
+            self.assertEqual(announced(process.stdout), ["uniform_h3_k3"])
+            # Of another scene nothing counts.
+            folder.set(Study__Levels=2, Material__maxwell__Viscosity=0.4)
+            process = folder.run("study")
+            self.assertEqual(len(announced(process.stdout)), 2)
+
+    def test_after_signal(self):
+        with Folder(MANUFACTURED / "tresca_2d.prm", **self.SMALL) as folder:
+            process = self.start(folder)
+            self.wait_for(folder, process, 6)
+            time.sleep(0.1)
+            process.send_signal(signal.SIGTERM)
+            _, stderr = process.communicate()
+            # 3 in the steps of a run; between runs a signal just ends it.
+            self.assertIn(process.returncode, (3, -signal.SIGTERM), stderr)
+            if process.returncode == 3:
+                self.assertRegex(
+                    stderr, "SIGTERM has ended the study in the run uniform_"
+                )
+            self.assertEqual(folder.run("study").returncode, 0)
+            self.assertEqual(len(folder.finished()), 7)
+
+
+class Refused(TestCase):
+    def refuse(self, folder, *arguments):
+        process = folder.run(*arguments)
+        self.assertEqual(process.returncode, 1, process.stdout)
+        self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
+        return process.stderr
+
+    def test_two_levels_without_exact_solution(self):
+        with Folder(VERIFICATION / "shear_layer_2d.prm", Study__Levels=2) as folder:
+            self.assertIn("'Study/Levels' = 2 is too few", self.refuse(folder, "study"))
+            self.assertFalse(folder.results.exists())
+
+    def test_unknown_scheme(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm", Study__Time_schemes="forward Oiler"
+        ) as folder:
+            self.assertIn("forward Euler", self.refuse(folder, "study"))
+
+    def test_budget(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Global_refinements=2,
+            Study__Levels=9,
+            Study__Ladders="both",
+            Study__Budget=3,
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertRegex(process.stdout, r"uniform_h8_k8: left out, it would take")
+            text = (folder.study / "study.md").read_text()
+            self.assertRegex(text, r"- `uniform_h8_k8`: would take about ")
+            self.assertGreaterEqual(len(folder.finished()), 2)
+
+    def test_unstable_steps_are_named_and_the_study_goes_on(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Global_refinements=1,
+            Material__maxwell__Viscosity=0.02,
+            Time__Phases="1: 4",
+            Study__Levels=4,
+            Study__Ladders="both",
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            text = (folder.study / "study.md").read_text()
+            self.assertRegex(text, r"`uniform_h0_k0`: failed: The time step")
+            self.assertIn("uniform_h3_k3", folder.finished())
+
+    def test_price(self):
+        with Folder(
+            VERIFICATION / "shear_layer_2d.prm",
+            Error_control__Error_bar="false",
+        ) as folder:
+            self.assertIn("needs an error", self.refuse(folder, "--price=0.1"))
+            self.assertFalse(folder.results.exists())
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Generator="subdivided_hyper_cube",
+            Geometry__Arguments="40 : 0 : 1 : true",
+            Geometry__Global_refinements=0,
+        ) as folder:
+            self.assertIn("cannot be halved", self.refuse(folder, "--price=0.1"))
+
+
+class Price(TestCase):
+    SCENE = {"Geometry__Global_refinements": 3, "Time__Phases": "1: 32"}
+
+    def test_only_the_price(self):
+        with Folder(MANUFACTURED / "tresca_2d.prm", **self.SCENE) as folder:
+            process = folder.run("--price", "0.05", "--check")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
+            self.assertEqual(len(folder.finished()), 4)
+            self.assertFalse((folder.results / "statistics.csv").exists())
+
+    def test_promise_and_truth(self):
+        with Folder(MANUFACTURED / "tresca_2d.prm", **self.SCENE) as folder:
+            process = folder.run("--price=0.05")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            found = re.search(
+                r"error +([\d.e-]+) predicted, ([\d.e-]+) found", process.stdout
+            )
+            self.assertTrue(found, process.stdout)
+            predicted, actual = map(float, found.groups())
+            print("error predicted and found:", predicted, actual)
+            self.assertLessEqual(predicted, 0.0501)
+            self.assertLess(max(predicted / actual, actual / predicted), 2)
+            self.assertRegex(process.stdout, r"seconds +\S+ predicted, \S+ found")
+            self.assertTrue((folder.results / "statistics.csv").exists())
+            # The same again needs no pilots.
+            before = folder.finished()
+            self.assertEqual(folder.run("--price=0.05", "--check").returncode, 0)
+            self.assertEqual(folder.finished(), before)
+
+    def test_beyond_the_budget(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm", Study__Budget=20, **self.SCENE
+        ) as folder:
+            process = folder.run("--price=1e-6")
+            self.assertEqual(process.returncode, 1)
+            self.assertRegex(
+                process.stderr, r"not within 20 s.*smallest error there is about"
+            )
+
+
+if __name__ == "__main__":
+    main()

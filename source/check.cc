@@ -46,11 +46,19 @@ namespace Viscoplastic
   {
     if (!scene.has_viscosity())
       return;
+    const TimeStep first = scene.schedule.step(1);
+    // Of backward Euler it is no limit, but what it would have been.
     const double rate =
-      flow(state, scene.schedule.step(1)).relaxation_rate; // throws
+      is_implicit() ?
+        evaluate_flow(discretisation->laws, state.u, state.z, first.t_old)
+          .relaxation_rate :
+        flow(state, first).relaxation_rate; // throws
     if (rate == 0.)
       return;
-    out << "Stability limit 2/r of the initial state: " << 2. / rate << '\n';
+    out << "Stability limit 2/r of the initial state: " << 2. / rate
+        << (is_implicit() ? " of explicit schemes\n" : "\n");
+    if (is_implicit())
+      return;
     const TimeStep largest = scene.schedule.largest_step();
     if (largest.k * rate > 2. * (1. + 1e-10))
       {
@@ -59,7 +67,7 @@ namespace Viscoplastic
                 << largest.n << " (t = " << largest.t
                 << ") exceeds this limit; the run will end there unless the "
                    "limit has grown by then. Take more steps in "
-                   "'Time/Phases'.";
+                   "'Time/Phases', or set 'Time/Scheme' = backward Euler.";
         console.remark(message.str());
       }
   }
@@ -119,7 +127,13 @@ namespace Viscoplastic
     const double bytes =
       Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
                           communicator) +
-      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct);
+      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct) +
+      (is_implicit() ?
+         // A second matrix, and two tensors of rank 4 a sample.
+         dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
+           2. * sizeof(SymmetricTensor<4, 3>) * d.sampling.n_samples *
+             triangulation.n_global_active_cells() :
+         0.);
     out << "Linear solver: "
         << (direct ? "direct (CHOLMOD)" : "conjugate gradients, multigrid (ML)")
         << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()

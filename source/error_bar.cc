@@ -17,6 +17,21 @@ namespace Viscoplastic
     {
       return std::sqrt(2. * std::max(0., forces.strain_energy));
     }
+
+
+
+    /// E^-1 stress : stress.
+    double
+    complementary_square(const Stiffness             &stiffness,
+                         const SymmetricTensor<2, 3> &stress)
+    {
+      if (!stiffness.is_isotropic())
+        return stiffness.strain(stress) * stress;
+      const double trace_square = Utilities::fixed_power<2>(trace(stress));
+      return (stress * stress - trace_square / 3.) /
+               (2. * stiffness.shear_modulus()) +
+             trace_square / (9. * stiffness.bulk_modulus());
+    }
   } // namespace
 
 
@@ -26,6 +41,12 @@ namespace Viscoplastic
   {
     if (scheme == "forward Euler")
       return {0.5, 0.};
+    if (scheme == "backward Euler")
+      return {-0.5, 0.};
+    // The trapezoidal rule; what the predictor adds where G depends on it is
+    // left out.
+    if (scheme == "Heun")
+      return {0., -1. / 12.};
     AssertThrow(false,
                 ExcMessage("The time error of the scheme '" + scheme +
                            "' is not known."));
@@ -111,8 +132,14 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ErrorBar<dim>::forget_rate()
+  ErrorBar<dim>::change_mesh(const AdmissibleSpace<dim> &space,
+                             const DistributedMatrix    &matrix,
+                             const State<dim>           &state)
   {
+    DistributedVector velocity = space.owned_vector(), force = velocity;
+    space.to_frames(state.velocity, velocity);
+    matrix.vmult(force, velocity);
+    present.velocity_square = velocity * force;
     accepted_rate.reset();
   }
 
@@ -149,9 +176,6 @@ namespace Viscoplastic
     for (std::size_t c = 0; c < sampling.n_cells(); ++c)
       {
         const Stiffness &stiffness = sampling.moduli(c);
-        const auto       square    = [&](const SymmetricTensor<2, 3> &tensor) {
-          return stiffness.strain(tensor) * tensor;
-        };
         for (unsigned int s = 0; s < sampling.n_samples; ++s, ++i)
           {
             const SymmetricTensor<2, 3> change =
@@ -166,8 +190,10 @@ namespace Viscoplastic
                           (state.rate_slope[i] - accepted.rate_slope[i]);
               }
             state.time_error[i] += step;
-            sums[0] += sampling.weight(c, s) * square(step);
-            sums[1] += sampling.weight(c, s) * square(state.time_error[i]);
+            sums[0] +=
+              sampling.weight(c, s) * complementary_square(stiffness, step);
+            sums[1] += sampling.weight(c, s) *
+                       complementary_square(stiffness, state.time_error[i]);
           }
       }
     Utilities::MPI::sum(sums, sampling.space.communicator, sums);
@@ -179,8 +205,8 @@ namespace Viscoplastic
   template <int dim>
   ErrorLedger
   ErrorBar<dim>::assess(const StressSampling<dim> &sampling,
-                        const DistributedMatrix   &matrix,
                         const State<dim>          &accepted,
+                        const Forces<dim>         &old_forces,
                         const Forces<dim>         &forces,
                         const ContactReport       &report,
                         const double               residual,
@@ -202,14 +228,23 @@ namespace Viscoplastic
         ledger.time            = std::sqrt(all);
       }
 
-    DistributedVector change = space.owned_vector(), old = change;
-    space.to_frames(state.velocity, change);
-    space.to_frames(accepted.velocity, old);
-    change -= old;
-    matrix.vmult(old, change);
+    // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:
+    // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).
+    const double      k = state.k;
+    DistributedVector change(forces.u), velocity(forces.u),
+      elastic(forces.elastic);
+    change -= old_forces.u;
+    elastic -= old_forces.elastic;
+    space.to_frames(accepted.velocity, velocity);
+    ledger.velocity_square = (elastic * change) / (k * k);
+    const double jump = ledger.velocity_square - 2. / k * (elastic * velocity) +
+                        present.velocity_square;
+    // Below this it is rounding.
+    const bool is_jump =
+      jump > 1e-12 * (ledger.velocity_square + present.velocity_square);
     ledger.velocity_variation =
       std::sqrt(Utilities::fixed_power<2>(present.velocity_variation) +
-                state.k / 3. * std::max(0., change * old));
+                (is_jump ? k / 3. * jump : 0.));
     return ledger;
   }
 

@@ -81,6 +81,19 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  FlowLaws<dim>::have_constant_tangents() const
+  {
+    return std::all_of(
+      materials.begin(), materials.end(), [](const Entry &entry) {
+        return !entry.law ||
+               (entry.law->has_constant_tangents() && !entry.varies_in_time);
+      });
+  }
+
+
+
+  template <int dim>
   void
   FlowLaws<dim>::check(const double t) const
   {
@@ -160,10 +173,11 @@ namespace Viscoplastic
 
   template <int dim>
   FlowRate
-  evaluate_flow(const FlowLaws<dim>      &laws,
-                const DistributedVector  &ghosted_u,
-                const IrreversibleStress &z,
-                const double              t)
+  evaluate_flow(const FlowLaws<dim>                    &laws,
+                const DistributedVector                &ghosted_u,
+                const IrreversibleStress               &z,
+                const double                            t,
+                const typename ExactSolution<dim>::Side side)
   {
     const StressSampling<dim> &sampling = laws.sampling;
     const auto                 now      = laws.at(t);
@@ -174,7 +188,7 @@ namespace Viscoplastic
         if (laws.source_solution)
           for (unsigned int s = 0; s < sampling.n_samples; ++s)
             result.rate[c * sampling.n_samples + s] =
-              laws.source(now, c, s, ExactSolution<dim>::Side::after);
+              laws.source(now, c, s, side);
         const ViscoplasticLaw *law = now.law(c);
         if (law == nullptr)
           continue;
@@ -237,12 +251,14 @@ namespace Viscoplastic
   evaluate_flow<2>(const FlowLaws<2> &,
                    const DistributedVector &,
                    const IrreversibleStress &,
-                   const double);
+                   const double,
+                   const ExactSolution<2>::Side);
   template FlowRate
   evaluate_flow<3>(const FlowLaws<3> &,
                    const DistributedVector &,
                    const IrreversibleStress &,
-                   const double);
+                   const double,
+                   const ExactSolution<3>::Side);
   template FlowStep<2>
   advance_irreversible_stress<2>(const FlowRate &,
                                  const IrreversibleStress &,

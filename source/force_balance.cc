@@ -53,10 +53,11 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim> &space = sampling.space;
     Forces<dim>                 forces{
-      space.owned_vector(), std::move(load), space.owned_vector(), 0., 0.};
+      space.owned_vector(), std::move(load), space.owned_vector(), {}, 0., 0.};
     space.to_frames(state.u, forces.u);
-    matrix.vmult(forces.internal, forces.u);
-    forces.strain_energy = 0.5 * (forces.u * forces.internal);
+    matrix.vmult(forces.elastic, forces.u);
+    forces.internal      = forces.elastic;
+    forces.strain_energy = 0.5 * (forces.u * forces.elastic);
     if (space.scene.has_irreversible_stress()) // collective
       {
         DistributedVector irreversible = space.owned_vector();

@@ -254,9 +254,15 @@ namespace Viscoplastic
     prm.add_parameter("Scheme",
                       scheme,
                       "How z' = G is integrated. `forward Euler': G at the "
-                      "beginning of the step, the scheme of the paper, stable "
-                      "for steps up to 2/r with the relaxation rate r.",
-                      Patterns::Selection("forward Euler"));
+                      "beginning of the step, the scheme of the paper, first "
+                      "order, stable for steps up to 2/r with the relaxation "
+                      "rate r. `backward Euler': G at the end of the step, "
+                      "first order, stable for all steps; steps cost more "
+                      "where G is not linear. `Heun': the mean of G at the "
+                      "beginning and at what forward Euler predicts for the "
+                      "end, second order, stable up to 2/r, twice the price of "
+                      "forward Euler.",
+                      Patterns::Selection("forward Euler|backward Euler|Heun"));
   }
 
 

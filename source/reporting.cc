@@ -72,6 +72,19 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ViscoplasticContact<dim>::announce_solver()
+  {
+    if (!discretisation->solver ||
+        discretisation->solver->name() == announced_solver)
+      return;
+    announced_solver = discretisation->solver->name();
+    out << "Linear solver: " << announced_solver << std::endl;
+  }
+
+
+
+  template <int dim>
+  void
   ViscoplasticContact<dim>::record(const State<dim> &old_state,
                                    const Step       &step,
                                    const TimeStep   &time_step)
@@ -153,6 +166,7 @@ namespace Viscoplastic
       }
     accounts.contact_iterations += step.report.iterations;
     accounts.linear_iterations += step.report.linear_iterations;
+    accounts.newton_iterations += step.newton_iterations;
     const double defect =
       accounts.external_work -
       (stored_energy - accounts.initial_energy - accounts.adaptation_energy) -
@@ -183,6 +197,8 @@ namespace Viscoplastic
           row.add("tension_area", tension_area);
         if (d.laws.any_cap)
           row.add("capped_volume", step.capped_volume);
+        if (is_implicit())
+          row.add("newton_iterations", step.newton_iterations);
         if (d.face)
           {
             row.add("contact_iterations", step.report.iterations);
@@ -239,10 +255,16 @@ namespace Viscoplastic
           add_errors(errors, row);
 
         const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
-        for (const char *name :
-             {"rate", "load", "contact", "balance", "estimate", "output"})
+        for (const char *name : {"rate",
+                                 "tangent",
+                                 "load",
+                                 "contact",
+                                 "balance",
+                                 "estimate",
+                                 "output"})
           {
-            if (!error_bar && name == std::string("estimate"))
+            if ((!error_bar && name == std::string("estimate")) ||
+                (!is_implicit() && name == std::string("tangent")))
               continue;
             const auto   entry = total.find(name);
             const double now   = entry == total.end() ? 0. : entry->second;
@@ -300,17 +322,18 @@ namespace Viscoplastic
           progress_of_step.relative_error =
             step.errors.total() / step.errors.energy_norm;
       }
+    // The rate of an explicit step is that of its beginning.
+    const double rate_time = is_implicit() ? time_step.t : time_step.t_old;
     if (summary.capped_volume.value == 0. && step.capped_volume > 0.)
       {
         std::ostringstream volume;
-        volume << step.capped_volume << " at t = " << time_step.t_old;
+        volume << step.capped_volume << " at t = " << rate_time;
         console.remark("Warning: the stress has passed the cap of a law, in "
                        "the volume " +
                        volume.str() +
                        "; beyond it the law is continued linearly.");
       }
-    // The rate of a step is that of its beginning.
-    summary.capped_volume.update(step.capped_volume, time_step.t_old);
+    summary.capped_volume.update(step.capped_volume, rate_time);
     if (is_initial)
       first_set_up_seconds =
         timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
@@ -434,6 +457,9 @@ namespace Viscoplastic
     if (error_bar)
       output->record_errors(error_bar->summary());
     out << std::setprecision(3) << "Iterations per step: ";
+    if (is_implicit())
+      out << static_cast<double>(accounts.newton_iterations) / n
+          << " of Newton's method, ";
     if (discretisation->face)
       out << static_cast<double>(accounts.contact_iterations) / n
           << " of the active set, ";

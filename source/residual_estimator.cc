@@ -99,21 +99,25 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::vector<SymmetricTensor<2, 3>>
+  const SymmetricTensor<2, 3> *
   ResidualEstimator<dim>::mean_irreversible_stress(
-    const IrreversibleStress &z) const
+    const IrreversibleStress &z,
+    IrreversibleStress       &means) const
   {
-    const AdmissibleSpace<dim>        &space = sampling.space;
-    std::vector<SymmetricTensor<2, 3>> means;
+    const AdmissibleSpace<dim> &space = sampling.space;
     // A rank without cells has an empty z in every scene.
     if (Utilities::MPI::max(z.empty() ? 0 : 1, space.communicator) == 0)
-      return means;
+      return nullptr;
+    const bool is_alone =
+      Utilities::MPI::n_mpi_processes(space.communicator) == 1;
+    if (is_alone && sampling.n_samples == 1)
+      return z.data();
     means.resize(cells.size());
     const std::size_t n_owned = sampling.n_cells();
     for (std::size_t c = 0; c < n_owned; ++c)
       means[c] = sampling.mean(c, &z[c * sampling.n_samples]);
-    if (Utilities::MPI::n_mpi_processes(space.communicator) == 1)
-      return means;
+    if (is_alone)
+      return means.data();
 
     const auto &triangulation =
       dynamic_cast<const parallel::TriangulationBase<dim> &>(
@@ -130,7 +134,7 @@ namespace Viscoplastic
           means[n_owned + g].access_raw_entry(i) = component(ghosts[g]);
         component.zero_out_ghost_values();
       }
-    return means;
+    return means.data();
   }
 
 
@@ -138,9 +142,9 @@ namespace Viscoplastic
   template <int dim>
   typename ResidualEstimator<dim>::StressTerms
   ResidualEstimator<dim>::stress_terms(
-    const std::size_t                         cell,
-    const double                             *u,
-    const std::vector<SymmetricTensor<2, 3>> &mean_z) const
+    const std::size_t            cell,
+    const double                *u,
+    const SymmetricTensor<2, 3> *mean_z) const
   {
     StressTerms terms;
     for (unsigned int v = 0; v < n_vertices; ++v)
@@ -152,8 +156,10 @@ namespace Viscoplastic
       for (unsigned int v = 0; v < n_vertices; ++v)
         terms.dilatation +=
           terms.u[v] * shapes[cells[cell].shape].mean_gradients[v];
-    if (!mean_z.empty())
-      terms.z = mean_z[cell];
+    if (mean_z != nullptr)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          terms.z[i][j] = mean_z[cell][i][j];
     return terms;
   }
 
@@ -177,7 +183,6 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j)
               gradient[i][j] += terms.u[v][i] * face.gradients[q][v][j];
-        tractions[q] = in_plane(terms.z, normal);
         if (stiffness.is_isotropic())
           {
             const double divergence = trace(gradient);
@@ -185,16 +190,18 @@ namespace Viscoplastic
               mean_dilatation ?
                 bulk * terms.dilatation - 2. / 3. * mu * divergence :
                 (bulk - 2. / 3. * mu) * divergence;
+            Tensor<2, dim> stress = terms.z;
             for (unsigned int i = 0; i < dim; ++i)
               {
-                double shear = 0.;
+                stress[i][i] += pressure;
                 for (unsigned int j = 0; j < dim; ++j)
-                  shear += (gradient[i][j] + gradient[j][i]) * normal[j];
-                tractions[q][i] += mu * shear + pressure * normal[i];
+                  stress[i][j] += mu * (gradient[i][j] + gradient[j][i]);
               }
+            tractions[q] = stress * normal;
           }
         else
-          tractions[q] +=
+          tractions[q] =
+            terms.z * normal +
             in_plane(stiffness.stress(
                        strain(gradient, mean_dilatation, terms.dilatation)),
                      normal);
@@ -217,10 +224,14 @@ namespace Viscoplastic
     const double     mu              = stiffness.shear_modulus(),
                  lambda = (mean_dilatation ? 0. : stiffness.bulk_modulus()) -
                           2. / 3. * mu;
+    // Without a force that varies, one point speaks for all where the second
+    // derivatives are constant.
+    const bool one_point =
+      shape.constant_hessians && (body_force == nullptr || uniform_body_force);
     double square = 0.;
-    for (unsigned int q = 0; q < n_points; ++q)
+    for (unsigned int q = 0; q < (one_point ? 1 : n_points); ++q)
       {
-        std::array<SymmetricTensor<2, dim>, dim> hessian; // of u_i
+        std::array<Tensor<2, dim>, dim> hessian; // of u_i
         for (unsigned int v = 0; v < n_vertices; ++v)
           for (unsigned int i = 0; i < dim; ++i)
             hessian[i] += terms.u[v][i] * shape.hessians[q][v];
@@ -247,7 +258,8 @@ namespace Viscoplastic
               for (unsigned int i = 0; i < dim; ++i)
                 residual[i] += stress[i][j];
             }
-        square += residual.norm_square() * shape.weights[q];
+        square += residual.norm_square() *
+                  (one_point ? shape.volume : shape.weights[q]);
       }
     return square;
   }
@@ -310,15 +322,17 @@ namespace Viscoplastic
     const double              t,
     const DistributedVector  *multiplier_density) const
   {
-    const AdmissibleSpace<dim> &space   = sampling.space;
-    const std::size_t           n_owned = sampling.n_cells();
-    const double               *u       = ghosted_u.begin();
-    const auto                  mean_z  = mean_irreversible_stress(z);
-    std::vector<double>         eta(cells.size()); // squared
+    const AdmissibleSpace<dim>  &space   = sampling.space;
+    const std::size_t            n_owned = sampling.n_cells();
+    const double                *u       = ghosted_u.begin();
+    IrreversibleStress           means;
+    const SymmetricTensor<2, 3> *mean_z = mean_irreversible_stress(z, means);
+    std::vector<double>          eta(cells.size()); // squared
 
     // Tractions on all faces, and what is amiss within the cells.
-    std::vector<Tensor<1, dim>> tractions(
-      (cells.size() * n_faces + subface_sides.size()) * n_face_points);
+    std::vector<Tensor<1, dim>> &tractions = traction_buffer;
+    tractions.resize((cells.size() * n_faces + subface_sides.size()) *
+                     n_face_points);
     const auto                          &b = space.scene.body_force;
     std::array<Tensor<1, dim>, n_points> force;
     if (b && uniform_body_force)

@@ -113,11 +113,18 @@ namespace Viscoplastic
           {
             shape.mean_gradients[v] +=
               values.shape_grad(v * dim, q) * values.JxW(q);
-            shape.hessians[q][v] = symmetrize(values.shape_hessian(v * dim, q));
+            shape.hessians[q][v] = values.shape_hessian(v * dim, q);
           }
       }
     for (auto &gradient : shape.mean_gradients)
       gradient /= volume;
+    shape.volume            = volume;
+    shape.constant_hessians = true;
+    for (unsigned int q = 1; q < n_points; ++q)
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        shape.constant_hessians &=
+          (shape.hessians[q][v] - shape.hessians[0][v]).norm() <=
+          1e-12 * shape.hessians[0][v].norm();
     FEFaceValues<dim> on_face(fe, QGauss<dim - 1>(2), on_faces);
     for (unsigned int f = 0; f < n_faces; ++f)
       {

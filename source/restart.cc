@@ -87,7 +87,8 @@ namespace Viscoplastic
     archive &accounts.initial_energy &accounts.external_work &accounts
       .viscous_dissipation &accounts.friction_dissipation &accounts
       .largest_force &accounts.adaptation_energy &accounts
-      .contact_iterations                        &accounts.linear_iterations;
+      .contact_iterations &accounts.linear_iterations &accounts
+      .newton_iterations;
     if (error_bar)
       error_bar->exchange(archive);
     for (Largest *largest : {&summary.displacement,
@@ -122,7 +123,10 @@ namespace Viscoplastic
     files[mesh_file(rank)] = pack_mesh(triangulation);
     files[fields_file(rank)] =
       pack_fields(discretisation->sampling, state, squared_estimate);
-    auto memory = discretisation->solver->memory(); // collective, as all of it
+    // Where each step makes its own matrix, there is nothing to remember.
+    std::optional<BulkSolver::Memory> memory;
+    if (!discretisation->tangent || discretisation->tangent->is_constant)
+      memory = discretisation->solver->memory(); // collective, as all of it
     if (rank == 0)
       {
         const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
@@ -279,8 +283,10 @@ namespace Viscoplastic
                   state.friction.sticks.size() == n_points &&
                   archive.is_at_end(),
                 ExcMessage(name + "' does not fit the scene."));
-    if (memory)
-      discretisation->solver->recall(*memory);
+    if (d.tangent && d.tangent->is_constant)
+      linearise(state.u, state.z, state.t, state.k);
+    if (memory && d.solver)
+      d.solver->recall(*memory);
     is_solved_on_mesh = is_solved;
     forces =
       evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);

@@ -228,6 +228,7 @@ namespace Viscoplastic
     const std::vector<std::pair<std::string, std::string>> texts{
       {"set-up", "spaces, matrix, factorisation or multigrid"},
       {"rate", "viscosity: flow of the law in all cells"},
+      {"tangent", "backward Euler: matrix of the step with its set-up"},
       {"load", "loads and prescribed displacements"},
       {"contact",
        has_friction ? "friction and elasticity together: all solves" :

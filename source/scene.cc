@@ -369,6 +369,8 @@ namespace Viscoplastic
                          (announcement.empty() ? "" : "; " + announcement) +
                          ")");
       }
+    if (has_viscosity())
+      result.push_back("time integration by " + parameters.time.scheme);
     const auto boundaries = [&](const auto &condition) {
       std::string ids;
       for (const auto &[id, data] : boundary)

@@ -94,6 +94,63 @@ namespace Viscoplastic
                              "; use 'Solver/Linear solver' = multigrid."));
     }
 
+    /// The upper triangle by columns (= the lower one by rows) of the leading n
+    /// unknowns in their present order.
+    cholmod_sparse *
+    to_cholmod(const DistributedMatrix         &matrix,
+               const std::vector<unsigned int> &unknowns,
+               const unsigned int               n,
+               const bool                       with_values)
+    {
+      constexpr unsigned int    none = numbers::invalid_unsigned_int;
+      const Epetra_CrsMatrix   &crs  = matrix.trilinos_matrix();
+      std::vector<unsigned int> position(crs.NumMyRows(), none);
+      for (unsigned int i = 0; i < n; ++i)
+        position[unknowns[i]] = i;
+      std::vector<SuiteSparse_long> begin(n + 1, 0);
+      const auto                    for_each = [&](const auto &visit) {
+        for (unsigned int column = 0; column < n; ++column)
+          {
+            int     length, *indices;
+            double *values;
+            crs.ExtractMyRowView(unknowns[column], length, values, indices);
+            for (int e = 0; e < length; ++e)
+              {
+                const unsigned int row = position[crs.GCID(indices[e])];
+                if (row != none && row <= column)
+                  visit(column, row, values[e]);
+              }
+          }
+      };
+      for_each([&](const unsigned int column,
+                   const unsigned int,
+                   const double) { ++begin[column + 1]; });
+      for (unsigned int i = 0; i < n; ++i)
+        begin[i + 1] += begin[i];
+      cholmod_sparse *A =
+        cholmod_l_allocate_sparse(n,
+                                  n,
+                                  begin[n],
+                                  /* sorted = */ 0,
+                                  /* packed = */ 1,
+                                  /* stype: upper = */ 1,
+                                  with_values ? CHOLMOD_REAL : CHOLMOD_PATTERN,
+                                  &common);
+      check("for want of memory");
+      std::copy(begin.begin(),
+                begin.end(),
+                static_cast<SuiteSparse_long *>(A->p));
+      for_each([&](const unsigned int column,
+                   const unsigned int row,
+                   const double       value) {
+        const auto at                             = begin[column]++;
+        static_cast<SuiteSparse_long *>(A->i)[at] = row;
+        if (with_values)
+          static_cast<double *>(A->x)[at] = value;
+      });
+      return A;
+    }
+
     /// In place: x := L^{-1} x or L^{-T} x.
     void
     solve(const int system, Vector<double> &x)
@@ -128,87 +185,41 @@ namespace Viscoplastic
     , factor(std::make_unique<Factor>())
   {
     AssertDimension(matrix.m(), excluded.size());
-    cholmod_common &common = factor->common;
+    analyse(excluded, face_dofs, dim);
+    factorise();
+  }
 
+
+
+  void
+  SchurSolver::analyse(const std::vector<bool>                    &excluded,
+                       const std::vector<types::global_dof_index> &face_dofs,
+                       const unsigned int                          dim)
+  {
     // Unknowns off the face first.
-    constexpr unsigned int    none = numbers::invalid_unsigned_int;
-    std::vector<unsigned int> position(excluded.size(), none);
-    std::vector<bool>         on_face(excluded.size(), false);
+    std::vector<bool> on_face(excluded.size(), false);
     for (const auto dof : face_dofs)
       on_face[dof] = true;
-    unsigned int n_interior = 0;
     for (unsigned int i = 0; i < excluded.size(); ++i)
       if (!excluded[i] && !on_face[i])
-        {
-          position[i] = n_interior++;
-          unknowns.push_back(i);
-        }
-    for (const auto dof : face_dofs)
-      {
-        position[dof] = unknowns.size();
-        unknowns.push_back(dof);
-      }
+        unknowns.push_back(i);
+    const unsigned int n_interior = unknowns.size();
+    unknowns.insert(unknowns.end(), face_dofs.begin(), face_dofs.end());
     AssertThrow(!unknowns.empty(),
                 ExcMessage(
                   "The boundary conditions prescribe the "
                   "displacement at every node, and nothing is left to "
                   "solve for; refine the mesh or release a boundary."));
 
-    // The upper triangle by columns (= the lower one by rows) of the leading n
-    // unknowns in their present order.
-    const auto to_cholmod = [&](const unsigned int n, const bool with_values) {
-      std::vector<SuiteSparse_long> begin(n + 1, 0);
-      const Epetra_CrsMatrix       &crs      = matrix.trilinos_matrix();
-      const auto                    for_each = [&](const auto &visit) {
-        for (unsigned int column = 0; column < n; ++column)
-          {
-            int     length, *indices;
-            double *values;
-            crs.ExtractMyRowView(unknowns[column], length, values, indices);
-            for (int e = 0; e < length; ++e)
-              {
-                const unsigned int row = position[crs.GCID(indices[e])];
-                if (row != none && row <= column)
-                  visit(column, row, values[e]);
-              }
-          }
-      };
-      for_each([&](const unsigned int column,
-                   const unsigned int,
-                   const double) { ++begin[column + 1]; });
-      for (unsigned int i = 0; i < n; ++i)
-        begin[i + 1] += begin[i];
-      cholmod_sparse *A =
-        cholmod_l_allocate_sparse(n,
-                                  n,
-                                  begin[n],
-                                  /* sorted = */ 0,
-                                  /* packed = */ 1,
-                                  /* stype: upper = */ 1,
-                                  with_values ? CHOLMOD_REAL : CHOLMOD_PATTERN,
-                                  &common);
-      factor->check("for want of memory");
-      std::copy(begin.begin(),
-                begin.end(),
-                static_cast<SuiteSparse_long *>(A->p));
-      for_each([&](const unsigned int column,
-                   const unsigned int row,
-                   const double       value) {
-        const auto at                             = begin[column]++;
-        static_cast<SuiteSparse_long *>(A->i)[at] = row;
-        if (with_values)
-          static_cast<double *>(A->x)[at] = value;
-      });
-      return A;
-    };
-
     // A fill reducing ordering of the interior; the face stays last. AMD is
     // better in 2D, nested dissection in 3D.
+    cholmod_common &common = factor->common;
     if (n_interior > 0)
       {
         common.method[0].ordering = dim == 2 ? CHOLMOD_AMD : CHOLMOD_METIS;
-        cholmod_sparse *A         = to_cholmod(n_interior, false);
-        cholmod_factor *symbolic  = cholmod_l_analyze(A, &common);
+        cholmod_sparse *A =
+          factor->to_cholmod(matrix, unknowns, n_interior, false);
+        cholmod_factor *symbolic = cholmod_l_analyze(A, &common);
         factor->check("to order the unknowns");
         const auto *permutation =
           static_cast<const SuiteSparse_long *>(symbolic->Perm);
@@ -217,22 +228,41 @@ namespace Viscoplastic
           unknowns[i] = old[permutation[i]];
         cholmod_l_free_factor(&symbolic, &common);
         cholmod_l_free_sparse(&A, &common);
-        for (unsigned int i = 0; i < unknowns.size(); ++i)
-          position[unknowns[i]] = i;
       }
 
     common.method[0].ordering = CHOLMOD_NATURAL;
     common.postorder          = 0;
-    cholmod_sparse *A         = to_cholmod(unknowns.size(), true);
-    factor->L                 = cholmod_l_analyze(A, &common);
+    cholmod_sparse *A =
+      factor->to_cholmod(matrix, unknowns, unknowns.size(), false);
+    factor->L = cholmod_l_analyze(A, &common);
     factor->check("to analyse the matrix");
-    cholmod_l_factorize(A, factor->L, &common);
-    factor->check("to factorise the matrix");
     cholmod_l_free_sparse(&A, &common);
-
     y.reinit(unknowns.size());
+  }
+
+
+
+  void
+  SchurSolver::factorise()
+  {
+    cholmod_sparse *A =
+      factor->to_cholmod(matrix, unknowns, unknowns.size(), true);
+    cholmod_l_factorize(A, factor->L, &factor->common);
+    factor->check("to factorise the matrix");
+    cholmod_l_free_sparse(&A, &factor->common);
     if (face.n_dofs() > 0)
       extract_schur_complement();
+  }
+
+
+
+  bool
+  SchurSolver::renew(const DistributedMatrix &of)
+  {
+    if (&of != &matrix)
+      return false;
+    factorise();
+    return true;
   }
 
 

@@ -47,7 +47,7 @@ namespace Viscoplastic
     /// The squares of the norms.
     struct Squares
     {
-      double energy = 0., h1 = 0., stress = 0., multiplier = 0.;
+      double energy = 0., h1 = 0., stress = 0., multiplier = 0., memory = 0.;
     };
 
 
@@ -86,7 +86,8 @@ namespace Viscoplastic
       std::vector<Tensor<1, dim>>        values(n);
       std::vector<Tensor<2, dim>>        gradients(n);
       std::vector<SymmetricTensor<2, 3>> strains(n);
-      const auto stress = sampling.mean_stress(state.u, state.z);
+      const auto stress          = sampling.mean_stress(state.u, state.z);
+      const bool has_mean_memory = sampling.n_samples == 1 && !state.z.empty();
 
       std::size_t index = 0;
       for (const auto &cell : dof_handler.active_cell_iterators())
@@ -119,6 +120,12 @@ namespace Viscoplastic
                   const auto difference = sigma - stress[index];
                   error.stress += w * (difference * difference);
                   exact.stress += w * (sigma * sigma);
+                  if (has_mean_memory)
+                    {
+                      const auto lack =
+                        sigma - stiffness.stress(e) - state.z[index];
+                      error.memory += w * (stiffness.strain(lack) * lack);
+                    }
                 }
             }
           ++index;
@@ -173,8 +180,8 @@ namespace Viscoplastic
 
     template <int dim>
     double
-    squared_memory_error(const StressSampling<dim> &sampling,
-                         const State<dim>          &state)
+    squared_error_at_samples(const StressSampling<dim> &sampling,
+                             const State<dim>          &state)
     {
       const ExactSolution<dim> &solution = *sampling.space.scene.exact_solution;
       double                    sum      = 0.;
@@ -210,9 +217,10 @@ namespace Viscoplastic
     SolutionErrors result;
     result.error = roots(error, comm);
     result.exact = roots(exact, comm);
-    if (scene.has_irreversible_stress() && scene.exact_solution->has_stress())
-      result.memory = std::sqrt(
-        Utilities::MPI::sum(squared_memory_error(sampling, state), comm));
+    if (sampling.n_samples > 1 && scene.has_irreversible_stress() &&
+        scene.exact_solution->has_stress())
+      error.memory = squared_error_at_samples(sampling, state);
+    result.memory = std::sqrt(Utilities::MPI::sum(error.memory, comm));
     return result;
   }
 

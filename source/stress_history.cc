@@ -134,6 +134,52 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  StressSampling<dim>::add_stiffness(const std::size_t            cell,
+                                     const SymmetricTensor<4, 3> *tangent,
+                                     FullMatrix<double> &cell_matrix) const
+  {
+    constexpr unsigned int n             = n_vertices * dim;
+    const bool             mean_pressure = mean_dilatation && n_samples > 1;
+    std::array<double, n>  mean{}; // divergence of each shape function
+    const Tensor<1, dim>  *g = &gradients[cell * n_samples * n_vertices];
+    if (mean_pressure)
+      for (unsigned int s = 0; s < n_samples; ++s)
+        for (unsigned int i = 0; i < n; ++i)
+          mean[i] += g[s * n_vertices + i / dim][i % dim] * weight(cell, s) /
+                     volumes[cell];
+
+    std::array<SymmetricTensor<2, 3>, n> strain;
+    for (unsigned int s = 0; s < n_samples; ++s, g += n_vertices)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const unsigned int c = i % dim;
+            strain[i]            = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              strain[i][c][d] = (c == d ? 1. : 0.5) * g[i / dim][d];
+            if (mean_pressure)
+              for (unsigned int d = 0; d < 3; ++d)
+                strain[i][d][d] += (mean[i] - g[i / dim][c]) / 3.;
+          }
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const SymmetricTensor<2, 3> stress =
+              tangent[s] * strain[j] * weight(cell, s);
+            for (unsigned int i = 0; i < j; ++i)
+              {
+                const double entry = strain[i] * stress;
+                cell_matrix(i, j) += entry;
+                cell_matrix(j, i) += entry;
+              }
+            cell_matrix(j, j) += strain[j] * stress;
+          }
+      }
+  }
+
+
+
+  template <int dim>
   SymmetricTensor<2, 3>
   StressSampling<dim>::mean(const std::size_t            cell,
                             const SymmetricTensor<2, 3> *samples) const

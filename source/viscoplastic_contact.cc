@@ -67,25 +67,45 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::Discretisation::make_solver()
+  ViscoplasticContact<dim>::Discretisation::make_matrix()
   {
-    static const std::vector<types::global_dof_index> no_dofs;
     assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
-    diagonal = space.owned_vector();
-    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
-      diagonal.begin()[i] =
-        matrix.diag_element(space.owned.nth_index_in_set(i));
-    solver                       = make_bulk_solver(space,
-                              matrix,
-                              face ? face->layout() : no_face,
-                              face ? face->dofs() : no_dofs,
-                              space.scene.parameters.solver.linear_solver,
-                              moduli.max_poissons_ratio(),
-                              n_solves);
+    if (space.scene.has_viscosity() &&
+        space.scene.parameters.time.scheme == "backward Euler")
+      tangent = std::make_unique<TangentMatrix<dim>>(laws, matrix);
+    else
+      make_solver(matrix, moduli.max_poissons_ratio());
     const Parameters &parameters = space.scene.parameters;
     if (parameters.error_control.error_bar ||
         parameters.refinement.strategy == "residual")
       estimator = std::make_unique<ResidualEstimator<dim>>(sampling);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::Discretisation::make_solver(
+    const DistributedMatrix &of,
+    const double             max_nu)
+  {
+    static const std::vector<types::global_dof_index> no_dofs;
+    diagonal = space.owned_vector();
+    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+      diagonal.begin()[i] = of.diag_element(space.owned.nth_index_in_set(i));
+    const FrictionFace &layout = face ? face->layout() : no_face;
+    const std::string  &choice = space.scene.parameters.solver.linear_solver;
+    if (solver && is_direct(space, layout.n_dofs(), choice, max_nu, n_solves) &&
+        solver->renew(of))
+      return;
+    solver.reset(); // factors are what fills memory
+    solver = make_bulk_solver(space,
+                              of,
+                              layout,
+                              face ? face->dofs() : no_dofs,
+                              choice,
+                              max_nu,
+                              n_solves);
   }
 
 
@@ -194,8 +214,8 @@ namespace Viscoplastic
           }
         TimerOutput::Scope phase(timer, "estimate");
         step.errors = error_bar->assess(discretisation->sampling,
-                                        discretisation->matrix,
                                         state,
+                                        forces,
                                         step.forces,
                                         step.report,
                                         residual,
@@ -266,16 +286,12 @@ namespace Viscoplastic
     dof_handler.distribute_dofs(fe);
     // The old one goes first: matrices and factors are what fills memory.
     is_solved_on_mesh = false;
-    if (error_bar)
-      error_bar->forget_rate();
     discretisation.reset();
     discretisation = std::make_unique<Discretisation>(dof_handler, scene);
-    discretisation->make_solver();
+    discretisation->make_matrix();
     if (forces.u.size() == 0) // the first time
-      {
-        announce_mesh();
-        out << "Linear solver: " << discretisation->solver->name() << std::endl;
-      }
+      announce_mesh();
+    announce_solver();
     probes.clear();
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(discretisation->space, x);
@@ -301,6 +317,8 @@ namespace Viscoplastic
         forces = evaluate_forces(d.sampling, d.matrix, load, start);
         if (d.face)
           state.friction = FrictionState(bounds.size());
+        if (!d.solver)
+          discretisation->make_solver(d.matrix, d.moduli.max_poissons_ratio());
         initial_report  = solve(start, forces, load, bounds, {}, state);
         state.initial_u = state.u;
       }
@@ -356,14 +374,26 @@ namespace Viscoplastic
                                          time_step.k) :
                advance_irreversible_stress(
           laws, old_state.u, old_state.z, time_step.t_old, time_step.k);
+    check_stability(flow.relaxation_rate, time_step);
+    return flow;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_stability(const double    relaxation_rate,
+                                            const TimeStep &time_step) const
+  {
     std::ostringstream message;
     message << "The time step " << time_step.k << " of step " << time_step.n
-            << " (t = " << time_step.t << ") exceeds the stability limit 2/r = "
-            << 2. / flow.relaxation_rate
-            << " of forward Euler; take more steps in 'Time/Phases'.";
-    AssertThrow(time_step.k * flow.relaxation_rate <= 2. * (1. + 1e-10),
+            << " (t = " << time_step.t
+            << ") exceeds the stability limit 2/r = " << 2. / relaxation_rate
+            << " of " << parameters.time.scheme
+            << "; take more steps in 'Time/Phases', or set 'Time/Scheme' = "
+               "backward Euler.";
+    AssertThrow(time_step.k * relaxation_rate <= 2. * (1. + 1e-10),
                 ExcMessage(message.str()));
-    return flow;
   }
 
 
@@ -382,19 +412,6 @@ namespace Viscoplastic
     step.state.t         = time_step.t;
     step.state.k         = time_step.k;
     step.state.initial_u = old_state.initial_u;
-    {
-      TimerOutput::Scope phase(timer, "rate");
-      if (scene.has_viscosity())
-        {
-          FlowStep<dim> z_step = flow(old_state, time_step);
-          step.state.z         = std::move(z_step.z);
-          step.capped_volume   = z_step.capped_volume;
-          if (z_step.relaxation_rate > 0.)
-            step.step_limit = 2. / z_step.relaxation_rate;
-        }
-      else
-        step.state.z = old_state.z;
-    }
 
     Load<dim> load;
     {
@@ -407,25 +424,20 @@ namespace Viscoplastic
             d.face->foundation_step(time_step.t_old, time_step.t);
         }
     }
-    {
-      TimerOutput::Scope phase(timer, "contact");
-      try
-        {
-          step.report = solve(old_state,
-                              old_forces,
-                              load,
-                              step.bounds,
-                              step.foundation_step,
-                              step.state);
-        }
-      catch (const std::exception &exception)
-        {
-          std::ostringstream message;
-          message << "Step " << time_step.n << " (t = " << time_step.t
-                  << "): " << reason(exception);
-          AssertThrow(false, ExcMessage(message.str()));
-        }
-    }
+    try
+      {
+        if (is_implicit())
+          advance_implicitly(old_state, old_forces, load, time_step, step);
+        else
+          advance_explicitly(old_state, old_forces, load, time_step, step);
+      }
+    catch (const std::exception &exception)
+      {
+        std::ostringstream message;
+        message << "Step " << time_step.n << " (t = " << time_step.t
+                << "): " << reason(exception);
+        AssertThrow(false, ExcMessage(message.str()));
+      }
     TimerOutput::Scope phase(timer, "balance");
     step.forces =
       evaluate_forces(d.sampling, d.matrix, std::move(load), step.state);
@@ -435,33 +447,130 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  ViscoplasticContact<dim>::advance_explicitly(const State<dim>  &old_state,
+                                               const Forces<dim> &old_forces,
+                                               const Load<dim>   &load,
+                                               const TimeStep    &time_step,
+                                               Step              &step)
+  {
+    State<dim> &state     = step.state;
+    state.z               = old_state.z;
+    double     rate       = 0.;
+    const auto solve_with = [&](const State<dim> &guess) {
+      TimerOutput::Scope  phase(timer, "contact");
+      const ContactReport last = step.report;
+      step.report              = solve(
+        guess, old_forces, load, step.bounds, step.foundation_step, state);
+      step.report.iterations += last.iterations;
+      step.report.linear_iterations += last.linear_iterations;
+    };
+
+    const auto note = [&](const double relaxation_rate,
+                          const double capped_volume) {
+      rate               = std::max(rate, relaxation_rate);
+      step.capped_volume = std::max(step.capped_volume, capped_volume);
+    };
+
+    if (scene.has_viscosity())
+      {
+        TimerOutput::Scope phase(timer, "rate");
+        FlowStep<dim>      z_step = flow(old_state, time_step);
+        state.z                   = std::move(z_step.z);
+        note(z_step.relaxation_rate, z_step.capped_volume);
+      }
+    solve_with(old_state);
+    if (scene.has_viscosity() && parameters.time.scheme == "Heun")
+      {
+        // z_{n-1} + k (G_{n-1} + G*)/2 with G* at the state just predicted.
+        const State<dim> predicted = state;
+        {
+          TimerOutput::Scope phase(timer, "rate");
+          const FlowRate     end = evaluate_flow(discretisation->laws,
+                                             predicted.u,
+                                             predicted.z,
+                                             time_step.t,
+                                             ExactSolution<dim>::Side::before);
+          check_stability(end.relaxation_rate, time_step);
+          note(end.relaxation_rate, end.capped_volume);
+          for (std::size_t i = 0; i < state.z.size(); ++i)
+            state.z[i] = 0.5 * (old_state.z[i] + predicted.z[i] +
+                                time_step.k * end.rate[i]);
+        }
+        solve_with(predicted);
+      }
+    if (rate > 0.)
+      step.step_limit = 2. / rate;
+  }
+
+
+
+  template <int dim>
   ContactReport
-  ViscoplasticContact<dim>::solve(const State<dim>          &old_state,
+  ViscoplasticContact<dim>::solve(const State<dim>          &guess,
                                   const Forces<dim>         &old_forces,
                                   const Load<dim>           &load,
                                   const std::vector<double> &bounds,
                                   const Vector<double>      &foundation_step,
                                   State<dim>                &new_state)
   {
-    const double t = new_state.t, k = new_state.k,
-                 tolerance            = error_bar ? error_bar->tolerance() :
-                                                    parameters.solver.strict_tolerance();
     Discretisation             &d     = *discretisation;
     const AdmissibleSpace<dim> &space = d.space;
     DistributedVector           right_side(load.values);
     if (scene.has_irreversible_stress()) // collective, also without cells
       add_irreversible_load(d.sampling, new_state.z, right_side);
 
+    // An elastic body whose data have not changed does not move.
+    if (!d.face && !scene.has_viscosity() && is_solved_on_mesh)
+      {
+        DistributedVector displacement_change(old_forces.u);
+        space.set_prescribed(new_state.t, displacement_change);
+        displacement_change -= old_forces.u;
+        DistributedVector load_change(load.values);
+        load_change -= old_forces.load.values;
+        if (displacement_change.linfty_norm() == 0. &&
+            load_change.linfty_norm() == 0.)
+          {
+            new_state.u        = guess.u;
+            new_state.velocity = space.ghosted_vector();
+            return {};
+          }
+      }
+
+    DistributedVector u = start(guess, old_forces, foundation_step, new_state);
+    const ContactReport report = solve_from(old_forces,
+                                            load,
+                                            right_side,
+                                            bounds,
+                                            foundation_step,
+                                            step_tolerance(),
+                                            u,
+                                            new_state.friction);
+    set_displacement(u, old_forces, new_state);
+    return report;
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  ViscoplasticContact<dim>::start(const State<dim>     &guess,
+                                  const Forces<dim>    &old_forces,
+                                  const Vector<double> &foundation_step,
+                                  State<dim>           &new_state) const
+  {
+    const Discretisation       &d     = *discretisation;
+    const AdmissibleSpace<dim> &space = d.space;
     // Start from the last displacement, moved on by the last velocity, except
     // where points stick: they go with the foundation.
     const DistributedVector &old_u = old_forces.u;
     DistributedVector        u(old_u), velocity(old_u);
-    space.to_frames(old_state.velocity, velocity);
-    u.add(k, velocity);
+    space.to_frames(guess.velocity, velocity);
+    u.add(new_state.k, velocity);
     if (d.face)
       {
         const FrictionFace &face = d.face->layout();
-        new_state.friction       = old_state.friction;
+        new_state.friction       = guess.friction;
         if (new_state.friction.sticks.size() != face.points.size())
           new_state.friction = FrictionState(face.points.size());
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
@@ -478,7 +587,25 @@ namespace Viscoplastic
                     (foundation_step.size() > 0 ? foundation_step[i] : 0.);
                 }
       }
-    space.set_prescribed(t, u);
+    space.set_prescribed(new_state.t, u);
+    return u;
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  ViscoplasticContact<dim>::solve_from(const Forces<dim>         &old_forces,
+                                       const Load<dim>           &load,
+                                       const DistributedVector   &right_side,
+                                       const std::vector<double> &bounds,
+                                       const Vector<double> &foundation_step,
+                                       const double          tolerance,
+                                       DistributedVector    &u,
+                                       FrictionState        &friction)
+  {
+    Discretisation             &d     = *discretisation;
+    const AdmissibleSpace<dim> &space = d.space;
 
     // What rounding leaves of displacements and of loads that cancel.
     double rounding = 0.;
@@ -496,59 +623,57 @@ namespace Viscoplastic
     d.solver->set_rounding_error(100. * std::numeric_limits<double>::epsilon() *
                                  std::sqrt(rounding));
 
-    ContactReport report;
     if (d.face)
       {
         DistributedVector change(u);
-        change -= old_u;
+        change -= old_forces.u;
         Vector<double> increment = d.face->face_vector(change);
         if (foundation_step.size() > 0)
           increment -= foundation_step;
         d.solver->begin(right_side, u);
-        report = contact_solver.solve(*d.solver,
-                                      d.face->layout(),
-                                      bounds,
-                                      tolerance,
-                                      increment,
-                                      new_state.friction);
+        return contact_solver.solve(
+          *d.solver, d.face->layout(), bounds, tolerance, increment, friction);
       }
-    else
-      {
-        // An elastic body whose data have not changed does not move.
-        if (!scene.has_viscosity() && is_solved_on_mesh)
-          {
-            DistributedVector displacement_change(old_u);
-            space.set_prescribed(t, displacement_change);
-            displacement_change -= old_u;
-            DistributedVector load_change(load.values);
-            load_change -= old_forces.load.values;
-            if (displacement_change.linfty_norm() == 0. &&
-                load_change.linfty_norm() == 0.)
-              {
-                new_state.u        = old_state.u;
-                new_state.velocity = space.ghosted_vector();
-                return report;
-              }
-          }
-        report.linear_iterations = d.solver->solve(right_side, u, tolerance);
-        report.tolerance         = tolerance;
-        report.error             = d.solver->rounding_error();
-        if (!d.solver->is_exact())
-          report.error =
-            std::max(report.error, tolerance * d.solver->energy_norm());
-      }
+    ContactReport report;
+    report.linear_iterations = d.solver->solve(right_side, u, tolerance);
+    report.tolerance         = tolerance;
+    report.error             = d.solver->rounding_error();
+    if (!d.solver->is_exact())
+      report.error =
+        std::max(report.error, tolerance * d.solver->energy_norm());
+    return report;
+  }
 
-    new_state.u        = space.ghosted_vector();
-    new_state.velocity = space.ghosted_vector();
+
+
+  template <int dim>
+  double
+  ViscoplasticContact<dim>::step_tolerance() const
+  {
+    return error_bar ? error_bar->tolerance() :
+                       parameters.solver.strict_tolerance();
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::set_displacement(const DistributedVector &u,
+                                             const Forces<dim> &old_forces,
+                                             State<dim>        &new_state)
+  {
+    const AdmissibleSpace<dim> &space = discretisation->space;
+    new_state.u                       = space.ghosted_vector();
+    new_state.velocity                = space.ghosted_vector();
     space.to_cartesian(u, new_state.u);
-    if (k > 0.)
+    if (new_state.k > 0.)
       {
-        u -= old_u;
-        u /= k;
-        space.to_cartesian(u, new_state.velocity);
+        DistributedVector velocity(u);
+        velocity -= old_forces.u;
+        velocity /= new_state.k;
+        space.to_cartesian(velocity, new_state.velocity);
       }
     is_solved_on_mesh = true;
-    return report;
   }
 
 
@@ -625,6 +750,8 @@ namespace Viscoplastic
       }
     forces =
       evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
+    if (error_bar)
+      error_bar->change_mesh(d.space, d.matrix, state);
     accounts.adaptation_energy += stored_energy(state, forces) - energy;
   }
 

@@ -13,10 +13,11 @@ matplotlib.use("Agg")  # draws to files, also without a display
 import matplotlib.pyplot as plt
 
 from . import animation, contact, fields, history, hysteresis, overview, stick_slip
-from . import style
+from . import study_pictures, style
 from .body import VIEW, available_fields
 from .paraview import write_state
 from .results import NoPicture, Results, UserError, number
+from .study_pictures import is_study
 
 DESCRIPTION = """\
 Draw a directory of results.
@@ -34,6 +35,12 @@ pictures:
   stick-slip  map of stick and slip over arc length and time (2D)
 All but the overview go to RESULTS/pictures/.  Numbers are in the units of
 the scene.
+
+pictures of a study (a directory with study.csv), which go to RESULTS/:
+  convergence     the error over mesh width and time step, with orders
+  work-precision  the error over seconds, with the efficient frontier
+  cost            seconds of each run by phase
+Without a name all three; --error chooses another error.
 """
 
 EXAMPLES = """\
@@ -46,6 +53,7 @@ examples:
   contrib/plot output/block von_mises contact --animate
   contrib/plot output/block --all
   contrib/plot output/block --paraview
+  contrib/plot output/study convergence --error error_stress,slip_area
 doc/pictures.md shows what they look like.
 """
 
@@ -133,6 +141,12 @@ def parse(arguments):
     )
     what.add_argument("--force", metavar="F", help="for hysteresis")
     what.add_argument("--displacement", metavar="U", help="for hysteresis")
+    what.add_argument(
+        "--error",
+        type=names,
+        metavar="E,...",
+        help="columns of study.csv for the pictures of a study",
+    )
     how = parser.add_argument_group("how")
     how.add_argument(
         "--format",
@@ -179,6 +193,8 @@ def parse(arguments):
             )
     options.formats = formats or [allowed[0]]
     several = len(options.pictures) > 1 or "fields" in options.pictures
+    if is_study(options.results):
+        several = len(options.pictures) != 1 or len(options.error or [None]) > 1
     if options.output and (several or options.all):
         parser.error("--output is for a single picture")
     if options.magnification is not None and not options.magnification > 0.0:
@@ -288,6 +304,12 @@ def main(arguments=None):
     style.set_up()
     failed = drawn = 0
     try:
+        if is_study(options.results):
+            return study_pictures.main(options)
+        if options.error:
+            raise UserError(
+                f"{options.results} holds no study.csv, so it has no errors to draw"
+            )
         results = Results(options.results)
         if options.list:
             print(describe(results))

@@ -156,7 +156,8 @@ class Results:
         if not solution.exists() and not self.statistics:
             raise UserError(
                 f"{self.directory} holds neither a solution.pvd nor a "
-                "statistics.csv with rows, so it is no directory of results"
+                "statistics.csv with rows, so it is no directory of results "
+                "(nor is it a study: there is no study.csv)"
             )
         self.solution = series(solution) if solution.exists() else []
         contact = self.directory / "contact.pvd"

@@ -15,6 +15,7 @@ import matplotlib.patheffects
 import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, NullFormatter
 
 from .results import UserError
 
@@ -210,3 +211,22 @@ def legend_above(axes, handles, columns=None):
             ncol=columns or len(handles),
             frameon=False,
         )
+
+
+def numbers_on_logarithmic_axis(axis, factor=1.0):
+    """Enough numbers on an axis of any span, with its limits as they are now.
+
+    factor  between the values and the numbers, 100 for percent
+    """
+    low, high = sorted(axis.get_view_interval())
+    decades = math.log10(high / low)
+    steps = (1, 2, 5) if decades < 2.2 else (1, 3) if decades < 3.2 else (1,)
+    first, last = math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 1
+    ticks = [
+        step * 10.0**power / factor
+        for power in range(first + round(math.log10(factor)), last + 4)
+        for step in steps
+    ]
+    axis.set_major_locator(FixedLocator([t for t in ticks if low <= t <= high]))
+    axis.set_major_formatter(lambda value, _: short(value * factor))
+    axis.set_minor_formatter(NullFormatter())

@@ -49,6 +49,17 @@ namespace Viscoplastic
     recall(const Memory &)
     {}
 
+    /**
+     * The matrix has other values in the same pattern: adapt. Returns false if
+     * @p matrix is another object or a new solver is as good; then this one is
+     * of no use any more.
+     */
+    virtual bool
+    renew(const DistributedMatrix & /*matrix*/)
+    {
+      return false;
+    }
+
     /// Whether solve() leaves nothing but rounding, whatever its tolerance.
     virtual bool
     is_exact() const = 0;

@@ -52,10 +52,10 @@ namespace Viscoplastic
      * From residual estimator to error in the energy norm: one number for all
      * scenes. How it was found: doc/method.md, section 12.
      */
-    static constexpr double space_calibration = 0.25;
+    static constexpr double space_calibration = 0.3;
 
     /// Bounds of the relative tolerance of coupled iterations.
-    static constexpr double least_tolerance = 1e-10, largest_tolerance = 1e-4;
+    static constexpr double least_tolerance = 1e-10, largest_tolerance = 1e-5;
 
     explicit ErrorBar(const Scene<dim> &scene);
 
@@ -86,9 +86,11 @@ namespace Viscoplastic
                   const State<dim>    &accepted,
                   const State<dim>    &state);
 
-    /// The mesh has changed.
+    /// The accepted state has moved to a new mesh. Collective.
     void
-    forget_rate();
+    change_mesh(const AdmissibleSpace<dim> &space,
+                const DistributedMatrix    &matrix,
+                const State<dim>           &state);
 
     /**
      * The relative tolerance for the iterations of the next step: `Algebraic
@@ -106,8 +108,8 @@ namespace Viscoplastic
      */
     ErrorLedger
     assess(const StressSampling<dim> &sampling,
-           const DistributedMatrix   &matrix,
            const State<dim>          &accepted,
+           const Forces<dim>         &old_forces,
            const Forces<dim>         &forces,
            const ContactReport       &report,
            const double               residual,

@@ -26,6 +26,8 @@ namespace Viscoplastic
     double velocity_variation = 0.;
     /// a(u_h, u_h)^{1/2}.
     double energy_norm = 0.;
+    /// a(du_n, du_n).
+    double velocity_square = 0.;
 
     /// By the triangle inequality.
     double

@@ -29,6 +29,10 @@ namespace Viscoplastic
     /// Known on all ranks.
     bool any, any_cap, any_own_energy;
 
+    /// Whether the derivatives of G are the same at all times and states.
+    bool
+    have_constant_tangents() const;
+
     /// Null unless a manufactured solution has a source.
     const ExactSolution<dim> *const source_solution;
 
@@ -111,13 +115,16 @@ namespace Viscoplastic
     double capped_volume;
   };
 
-  /// One evaluation a sample. Collective.
+  /// One evaluation a sample; a source is that of the step on this side of t.
+  /// Collective.
   template <int dim>
   FlowRate
-  evaluate_flow(const FlowLaws<dim>      &laws,
-                const DistributedVector  &ghosted_u,
-                const IrreversibleStress &z,
-                const double              t);
+  evaluate_flow(const FlowLaws<dim>                    &laws,
+                const DistributedVector                &ghosted_u,
+                const IrreversibleStress               &z,
+                const double                            t,
+                const typename ExactSolution<dim>::Side side =
+                  ExactSolution<dim>::Side::after);
 
 
   /// Forward Euler for z, (3.19), and what the step meant.

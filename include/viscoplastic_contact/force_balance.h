@@ -18,8 +18,8 @@ namespace Viscoplastic
     DistributedVector u;
     /// L(t, .), and its resultant.
     Load<dim> load;
-    /// a(u, .) + (z, eps(.)).
-    DistributedVector internal;
+    /// a(u, .), and with (z, eps(.)) added.
+    DistributedVector elastic, internal;
     /// 1/2 a(u, u), and (z, eps(u)).
     double strain_energy, irreversible_work;
   };

@@ -78,13 +78,14 @@ namespace Viscoplastic
 
     struct Shape
     {
-      double                               diameter;
+      double diameter, volume;
+      /// Whether they are the same at all points.
+      bool                                 constant_hessians;
       NodalValues                          mean_gradients;
       std::array<double, n_points>         weights;
       std::array<FaceShape, n_faces>       faces;
       std::array<Tensor<1, dim>, n_points> positions; // from vertex 0
-      std::array<std::array<SymmetricTensor<2, dim>, n_vertices>, n_points>
-        hessians;
+      std::array<std::array<Tensor<2, dim>, n_vertices>, n_points> hessians;
     };
 
     /// A cell of this rank or a ghost: the owned ones first, in the order of
@@ -129,10 +130,10 @@ namespace Viscoplastic
     /// What makes the stress at points of one cell.
     struct StressTerms
     {
-      NodalValues           u;
-      const Stiffness      *stiffness;
-      double                dilatation; // cell mean of div u_h
-      SymmetricTensor<2, 3> z;
+      NodalValues      u;
+      const Stiffness *stiffness;
+      double           dilatation; // cell mean of div u_h
+      Tensor<2, dim>   z;          // in the plane
     };
 
     void
@@ -145,9 +146,9 @@ namespace Viscoplastic
     find_shape(const Cell &cell);
 
     StressTerms
-    stress_terms(const std::size_t                         cell,
-                 const double                             *u,
-                 const std::vector<SymmetricTensor<2, 3>> &mean_z) const;
+    stress_terms(const std::size_t            cell,
+                 const double                *u,
+                 const SymmetricTensor<2, 3> *mean_z) const;
 
     /// sigma_h nu at the points of a face.
     void
@@ -167,9 +168,11 @@ namespace Viscoplastic
                       const Tensor<1, dim>    *tractions,
                       const DistributedVector *multiplier_density) const;
 
-    /// Means of z of owned cells and ghosts; empty without z. Collective.
-    std::vector<SymmetricTensor<2, 3>>
-    mean_irreversible_stress(const IrreversibleStress &z) const;
+    /// Means of z of owned cells and ghosts, kept in @p means if z is not them
+    /// itself; null without z. Collective.
+    const SymmetricTensor<2, 3> *
+    mean_irreversible_stress(const IrreversibleStress &z,
+                             IrreversibleStress       &means) const;
 
     const StressSampling<dim> &sampling;
     /// Whether b is the same in the whole body.
@@ -189,6 +192,10 @@ namespace Viscoplastic
       face_values;
     /// b at the points of owned cells if it does not depend on time.
     std::vector<Tensor<1, dim>> body_force;
+
+    /// sigma nu at all faces: kept, since a new array for each step costs as
+    /// much as to fill it.
+    mutable std::vector<Tensor<1, dim>> traction_buffer;
 
     /// Only for the construction.
     static constexpr unsigned int key_size = dim * (n_vertices - 1) + 2;

@@ -35,6 +35,10 @@ namespace Viscoplastic
                 const unsigned int                          dim);
     ~SchurSolver() override;
 
+    /// Keeps the ordering of the unknowns.
+    bool
+    renew(const DistributedMatrix &matrix) override;
+
     bool
     is_exact() const override
     {
@@ -92,6 +96,15 @@ namespace Viscoplastic
   private:
     /// CHOLMOD's data, hidden from those who include this file.
     struct Factor;
+
+    /// Order the unknowns, interior first, and analyse the pattern.
+    void
+    analyse(const std::vector<bool>                    &excluded,
+            const std::vector<types::global_dof_index> &face_dofs,
+            const unsigned int                          dim);
+
+    void
+    factorise();
 
     void
     extract_schur_complement();

@@ -14,8 +14,9 @@ namespace Viscoplastic
     /// u - u_h; sigma - sigma_h with the cell means sigma_h; lambda - lambda_h
     /// with lambda = -sigma_tau and the nodal densities lambda_h.
     SolutionNorms error, exact;
-    /// (int E^-1 (z - z_h) : (z - z_h))^(1/2) by the samples of the stress
-    /// history: what the steps before this one have left.
+    /// (int E^-1 (z - z_h) : (z - z_h))^(1/2): what the steps before this one
+    /// have left, and what cell means cannot hold. A history at quadrature
+    /// points is compared at these points only.
     double memory = 0.;
   };
 

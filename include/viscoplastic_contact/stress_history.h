@@ -77,6 +77,14 @@ namespace Viscoplastic
                      const double                 factor,
                      double                      *load) const;
 
+    /// Add int C eps(u) : eps(v) with C at each sample to the matrix of a cell,
+    /// Cartesian, in the order of the cell's degrees of freedom. Strains and
+    /// virtual work are those of the functions above. @p tangent: symmetric.
+    void
+    add_stiffness(const std::size_t            cell,
+                  const SymmetricTensor<4, 3> *tangent,
+                  FullMatrix<double>          &cell_matrix) const;
+
     /// Mean of a cell's samples.
     SymmetricTensor<2, 3>
     mean(const std::size_t cell, const SymmetricTensor<2, 3> *samples) const;

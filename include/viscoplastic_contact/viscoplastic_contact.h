@@ -26,7 +26,9 @@
 #include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
+#include <viscoplastic_contact/tangent_matrix.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -92,9 +94,14 @@ namespace Viscoplastic
       Discretisation(const DoFHandler<dim> &dof_handler,
                      const Scene<dim>      &scene);
 
-      /// The costly rest: what solves need.
+      /// The costly rest: what solves need. Steps of backward Euler have
+      /// matrices of their own and make the solver then.
       void
-      make_solver();
+      make_matrix();
+
+      /// For a matrix that stays in use; the elastic one, or of a tangent.
+      void
+      make_solver(const DistributedMatrix &of, const double max_nu);
 
       AdmissibleSpace<dim> space;
       ElasticModuli<dim>   moduli;
@@ -110,11 +117,13 @@ namespace Viscoplastic
       std::unique_ptr<ResidualEstimator<dim>> estimator;
 
       /// How often a solver will be used at least.
-      unsigned int                n_solves;
-      DistributedMatrix           matrix;
-      DistributedVector           diagonal; // of the matrix
-      FrictionFace                no_face;
-      std::unique_ptr<BulkSolver> solver;
+      unsigned int      n_solves;
+      DistributedMatrix matrix;
+      FrictionFace      no_face;
+      /// Null unless backward Euler has something to do.
+      std::unique_ptr<TangentMatrix<dim>> tangent;
+      std::unique_ptr<BulkSolver>         solver;
+      DistributedVector                   diagonal; // of the solver's matrix
     };
 
     /// What a step gives.
@@ -124,7 +133,8 @@ namespace Viscoplastic
       Forces<dim>         forces;
       ContactReport       report;
       std::vector<double> bounds;
-      /// 2/r; infinite without viscosity.
+      /// 2/r; infinite without viscosity. Backward Euler, which may pass it,
+      /// reports that of the end of the step.
       double step_limit;
       /// Volume beyond the cap of a law.
       double capped_volume;
@@ -132,6 +142,8 @@ namespace Viscoplastic
       Vector<double> foundation_step;
       /// Zero without error bar.
       ErrorLedger errors;
+      /// Of backward Euler; 0 in other schemes.
+      unsigned int newton_iterations = 0;
     };
 
     /// What adds up over the steps.
@@ -144,7 +156,8 @@ namespace Viscoplastic
       double largest_force = 0.;
       /// What changes of the mesh did to the stored energy.
       double       adaptation_energy  = 0.;
-      unsigned int contact_iterations = 0, linear_iterations = 0;
+      unsigned int contact_iterations = 0, linear_iterations = 0,
+                   newton_iterations = 0;
     };
 
     /// From the start: everything up to the initial state.
@@ -177,9 +190,21 @@ namespace Viscoplastic
     void
     check_compatibility(const Load<dim> &load);
 
-    /// z at the end of a step. Throws ExcMessage beyond the stability limit.
+    bool
+    is_implicit() const
+    {
+      return parameters.time.scheme == "backward Euler" &&
+             scene.has_viscosity();
+    }
+
+    /// z at the end of a step of forward Euler. Throws ExcMessage beyond the
+    /// stability limit.
     FlowStep<dim>
     flow(const State<dim> &old_state, const TimeStep &time_step) const;
+
+    void
+    check_stability(const double    relaxation_rate,
+                    const TimeStep &time_step) const;
 
     /// One step: a function of the state, its forces and the time step. It
     /// keeps nothing but what a linear solver knows of its preconditioner.
@@ -188,15 +213,90 @@ namespace Viscoplastic
             const Forces<dim> &old_forces,
             const TimeStep    &time_step);
 
+    /// Forward Euler, Heun: z by G at known states, then the rest.
+    void
+    advance_explicitly(const State<dim>  &old_state,
+                       const Forces<dim> &old_forces,
+                       const Load<dim>   &load,
+                       const TimeStep    &time_step,
+                       Step              &step);
+
+    /// Backward Euler: z and the rest together. Source:
+    /// source/implicit_step.cc.
+    void
+    advance_implicitly(const State<dim>  &old_state,
+                       const Forces<dim> &old_forces,
+                       const Load<dim>   &load,
+                       const TimeStep    &time_step,
+                       Step              &step);
+
+    /// The matrix and the solver of backward Euler for tangents at a strain, as
+    /// a function of what is given and the mesh alone.
+    void
+    linearise(const DistributedVector  &ghosted_u,
+              const IrreversibleStress &z,
+              const double              t,
+              const double              k);
+
+    /// z at the end of a step for the strains of a ghosted displacement, from a
+    /// guess of it.
+    using StressForStrain =
+      std::function<IrreversibleStress(const DistributedVector &,
+                                       const IrreversibleStress &)>;
+
+    /**
+     * How far to go from @p base, with the stress @p z, to @p u, whose stress
+     * is that of the step: 1 unless the energy of the step increases before.
+     * All in frames.
+     */
+    double
+    step_length(const Forces<dim>        &old_forces,
+                const Load<dim>          &load,
+                const Step               &step,
+                const DistributedVector  &base,
+                const IrreversibleStress &z,
+                const DistributedVector  &u,
+                const StressForStrain    &z_for) const;
+
     /// u, multipliers and sets for a given z, at the time of @p state and
-    /// for its step size.
+    /// for its step size; the start is what @p guess says of velocities and
+    /// sets.
     ContactReport
-    solve(const State<dim>          &old_state,
+    solve(const State<dim>          &guess,
           const Forces<dim>         &old_forces,
           const Load<dim>           &load,
           const std::vector<double> &bounds,
           const Vector<double>      &foundation_step,
           State<dim>                &state);
+
+    /// The start of a solve: u in frames, and the sets of @p state.
+    DistributedVector
+    start(const State<dim>     &guess,
+          const Forces<dim>    &old_forces,
+          const Vector<double> &foundation_step,
+          State<dim>           &state) const;
+
+    /// Solve with the present matrix from a start to a relative tolerance.
+    /// @p right_side is the load less what does not depend on u.
+    ContactReport
+    solve_from(const Forces<dim>         &old_forces,
+               const Load<dim>           &load,
+               const DistributedVector   &right_side,
+               const std::vector<double> &bounds,
+               const Vector<double>      &foundation_step,
+               const double               tolerance,
+               DistributedVector         &u,
+               FrictionState             &friction);
+
+    /// u and velocity of @p state.
+    void
+    set_displacement(const DistributedVector &u,
+                     const Forces<dim>       &old_forces,
+                     State<dim>              &state);
+
+    /// At which the iterations of a step stop, relative to the solution.
+    double
+    step_tolerance() const;
 
     /// Estimate the error of a state: squared_estimate in adaptive scenes.
     /// Returns the residual estimate; zero in scenes that do not use it.
@@ -249,6 +349,10 @@ namespace Viscoplastic
     void
     announce_mesh() const;
 
+    /// Name the linear solver if it is another one.
+    void
+    announce_solver();
+
     /// Add a row to statistics.csv. Time step 0 is the initial state.
     void
     record(const State<dim> &old_state,
@@ -297,6 +401,8 @@ namespace Viscoplastic
     Vector<double> squared_estimate; // eta_K^2, only in adaptive scenes
     /// Whether the state is a solution on the present mesh.
     bool is_solved_on_mesh = false;
+    /// The linear solver that the user has been told of.
+    std::string announced_solver;
     /// Whether the user has been told that forces do not balance well.
     bool balance_is_doubtful = false;
 

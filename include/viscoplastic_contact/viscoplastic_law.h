@@ -172,6 +172,14 @@ namespace Viscoplastic
              const Stiffness             &stiffness,
              const LawPoint              &point) const = 0;
 
+    /// Whether the derivatives depend on the point alone: G is linear in stress
+    /// and strain, up to a constant.
+    virtual bool
+    has_constant_tangents() const
+    {
+      return false;
+    }
+
     /**
      * The rate r, 1/time, at which stress relaxes at fixed strain: at least
      * the largest eigenvalue of -dG/dsigma at this stress. Forward Euler is

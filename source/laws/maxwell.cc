@@ -43,6 +43,12 @@ namespace Viscoplastic
         return tangents;
       }
 
+      bool
+      has_constant_tangents() const override
+      {
+        return true;
+      }
+
       double
       relaxation_rate(const SymmetricTensor<2, 3> & /*stress*/,
                       const SymmetricTensor<2, 3> & /*strain*/,

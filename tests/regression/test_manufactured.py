@@ -69,7 +69,7 @@ class MeshAndSteps2D(Ladders):
     """h and k halved together, all laws, both laws of friction."""
 
     def check(self, scene, law):
-        runs = [errors(scene, law, g, 12 * 2**g) for g in range(3)]
+        runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
         self.ladder(f"{scene} {law}", runs, BOTH)
 
     def test_tresca(self):
@@ -93,13 +93,13 @@ class MeshAndSteps3D(Ladders):
         for number, law in enumerate(LAWS):
             scene = ("tresca_3d", "coulomb_3d")[number % 2]
             with self.subTest(law):
-                runs = [errors(scene, law, g, 12 * 2**g) for g in range(3)]
+                runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
                 self.ladder(f"{scene} {law}", runs, self.EXPECTED)
 
     def test_other_friction(self):
         for scene, law in (("tresca_3d", "zener"), ("coulomb_3d", "maxwell")):
             with self.subTest(scene):
-                runs = [errors(scene, law, g, 12 * 2**g) for g in range(3)]
+                runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
                 self.ladder(f"{scene} {law}", runs, self.EXPECTED)
 
 
@@ -128,7 +128,7 @@ class Meshes(Ladders):
 
     def check(self, name, scene, overrides, expected=BOTH):
         runs = [
-            errors(scene, "perzyna", g, 12 * 2**g, overrides) for g in range(3)
+            errors(scene, "perzyna", g, 14 * 2**g, overrides) for g in range(3)
         ]
         self.ladder(f"{scene} {name}", runs, expected)
 

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The error over mesh width and time step, with observed orders."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.lines import Line2D
+
+from . import rates, style
+from .results import NoPicture
+from .study import LADDERS, error_label
+
+# What is refined along each axis; "both" belongs to both.
+AXES = {
+    "h": ("space", "mesh width $h$"),
+    "k": ("time", "time step $k$"),
+}
+ALONE = {"lw": 1.7, "marker": "o"}
+BOTH = {"lw": 1.0, "marker": "s", "mfc": "white"}
+
+
+def draw(study, error):
+    ways = study.ways()
+    panels = []
+    for axis, (alone, label) in AXES.items():
+        ladders = [
+            ladder
+            for ladder in study.ladders()
+            if ladder.name in (alone, "both")
+            and rates.known(ladder.sizes(axis), study[error][ladder.rows]).any()
+        ]
+        if ladders:
+            panels.append((axis, label, ladders))
+    if not panels:
+        raise NoPicture(f"no run of {study.directory} has a known {error}")
+    figure, all_axes = plt.subplots(
+        1,
+        len(panels),
+        figsize=(5.9 * len(panels) + 0.6, 4.9 + 0.22 * len(ways)),
+        sharey=True,
+        squeeze=False,
+        layout="constrained",
+    )
+    for axes, (axis, label, ladders) in zip(all_axes[0], panels):
+        draw_panel(axes, study, error, axis, ladders)
+        axes.set_xlabel(label)
+    for axes in all_axes[0]:
+        style.numbers_on_logarithmic_axis(axes.xaxis)
+        style.numbers_on_logarithmic_axis(axes.yaxis, 100)
+    all_axes[0, 0].set_ylabel(f"{error_label(error)} [%]")
+    heading = f"{style.plain(study.name)}: convergence"
+    figure.suptitle(heading, fontsize="large")
+    return figure
+
+
+def curve(study, error, axis, ladder):
+    """Sizes and errors of the runs of a ladder whose error is known."""
+    sizes, errors = ladder.sizes(axis), study[error][ladder.rows]
+    usable = rates.known(sizes, errors)
+    return sizes[usable], errors[usable], ladder.rows[usable]
+
+
+def draw_panel(axes, study, error, axis, ladders):
+    curves, orders, fitted = [], {}, False
+    looks = study.looks()
+    for ladder in ladders:
+        sizes, errors, rows = curve(study, error, axis, ladder)
+        look = looks[ladder.way]
+        kind = BOTH if ladder.name == "both" else ALONE
+        axes.plot(sizes, errors, ms=6, **look, **kind)
+        fit = study.fit(ladder.way, error)
+        if fit and len(rows) > 1:
+            draw_fit(axes, fit, axis, study, rows, look["color"])
+            fitted = True
+        curves.append((sizes, errors))
+        orders.setdefault(ladder.way, {})[ladder.name] = rates.final_order(
+            sizes, errors
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    draw_triangles(axes, curves)
+    legend(axes, study, ladders, orders, fitted)
+    axes.grid(True, which="major", color="#dddddd", lw=0.6)
+    axes.set_axisbelow(True)
+    axes.margins(0.08)
+
+
+def draw_fit(axes, fit, axis, study, rows, colour):
+    """The fit between the coarsest and the finest run, at their h and k."""
+    share = np.linspace(0.0, 1.0, 60)
+    h, k = (
+        np.exp(np.interp(share * (len(rows) - 1), range(len(rows)), np.log(sizes)))
+        for sizes in (study["h"][rows], study["k"][rows])
+    )
+    axes.plot(
+        h if axis == "h" else k,
+        rates.predicted_error(fit, h, k),
+        color=colour,
+        ls=":",
+        lw=2.2,
+        alpha=0.65,
+        zorder=1.5,
+    )
+
+
+def draw_triangles(axes, curves):
+    """The order at the fine end of the lowest curve, and of the highest where
+    it differs."""
+    segments = [
+        list(zip(sizes[-2:], errors[-2:]))
+        for sizes, errors in curves
+        if len(sizes) > 1 and rates.differ(sizes[-1], sizes[-2])
+    ]
+    if not segments:
+        return
+    lowest = min(segments, key=lambda segment: segment[-1][1])
+    highest = max(segments, key=lambda segment: segment[-1][1])
+    _, order = draw_triangle(axes, lowest, curves, above=False)
+    other = rates.slope_triangle(highest, curves, above=True)[1]
+    if highest is not lowest and abs(other - order) > 0.1:
+        draw_triangle(axes, highest, curves, above=True)
+
+
+def order_text(order):
+    return f"{round(order, 2) + 0.0:.2f}"  # no -0.00
+
+
+def draw_triangle(axes, segment, curves, above):
+    corners, order = rates.slope_triangle(segment, curves, above)
+    axes.fill(*corners.T, facecolor="#eeeeee", edgecolor="#444444", lw=0.9)
+    (x0, y0), (x1, y1), (xr, yr) = corners
+    middle = np.sqrt(x0 * x1), np.sqrt(y0 * y1)
+    small = {"fontsize": 8.5, "color": "#222222", "textcoords": "offset points"}
+    right, up = xr == x1, yr == max(y0, y1)
+    axes.annotate(
+        "1",
+        (middle[0], yr),
+        (0, 3 if up else -3),
+        ha="center",
+        va="bottom" if up else "top",
+        **small,
+    )
+    axes.annotate(
+        order_text(order),
+        (xr, middle[1]),
+        (3 if right else -3, 0),
+        ha="left" if right else "right",
+        va="center",
+        **small,
+    )
+    # Room for the numbers, which autoscaling does not see.
+    axes.plot([x0, x1], [min(y0, y1) / 1.3, max(y0, y1) * 1.3], ls="none")
+    return corners, order
+
+
+def legend(axes, study, ladders, orders, fitted):
+    """Below the panel: a line for each way with its orders, then the looks."""
+    handles, looks = [], study.looks()
+    for way, found in orders.items():
+        texts = [
+            f"{order_text(order)} ({LADDERS[name]})"
+            for name, order in found.items()
+            if order is not None
+        ]
+        text = study.way_label(way)
+        if texts:
+            text += ": order " + ", ".join(texts)
+        handles.append(Line2D([], [], lw=2.5, label=text, **looks[way]))
+    names = list(dict.fromkeys(ladder.name for ladder in ladders))
+    for name in names:
+        kind = BOTH if name == "both" else ALONE
+        text = LADDERS[name] + fixed_size(ladders, name)
+        handles.append(
+            Line2D([], [], color=style.OUTLINE, ms=6, label=text, **kind)
+        )
+    if fitted:
+        handles.append(
+            Line2D([], [], color=style.OUTLINE, ls=":", lw=2.2, label="fit")
+        )
+    axes.legend(
+        handles=handles,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.15),
+        frameon=False,
+        handlelength=2.6,
+    )
+
+
+def fixed_size(ladders, name):
+    """The size that a ladder keeps, if all of that name keep the same."""
+    axis = {"space": "k", "time": "h"}.get(name)
+    if axis is None:
+        return ""
+    sizes = np.concatenate(
+        [ladder.sizes(axis) for ladder in ladders if ladder.name == name]
+    )
+    if np.ptp(sizes) > 1e-9 * sizes.max():
+        return ""
+    return f", ${axis}$ = {style.short(sizes[0])}"

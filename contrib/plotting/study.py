@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a study wrote: study.csv, one row a run, and study.json."""
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+
+from . import rates, style
+from .results import UserError
+
+TEXT = ("run", "strategy", "scheme", "history", "ladder")
+LEVELS = ("mesh_level", "time_level")
+NEEDED = (*TEXT[1:], *LEVELS, "h", "k", "seconds_total")
+WAY = ("strategy", "scheme", "history")  # what tells one way to compute
+
+LADDERS = {"space": "$h$ alone", "time": "$k$ alone", "both": "$h$ and $k$"}
+ERRORS = {
+    "error_energy": r"error of $u$ in the energy norm",
+    "error_h1": r"error of $u$ in $H^1$",
+    "error_stress": r"error of $\sigma$ in $L^2$",
+    "error_multiplier": r"error of $\lambda$ on $\Gamma_3$",
+    "estimate_total": r"estimated error of $u$ in the energy norm",
+    "quantities": "error of the worst quantity of interest",
+}
+
+
+class Ladder:
+    """Runs of one way that a study refines step by step, the coarsest first."""
+
+    def __init__(self, study, way, name, rows):
+        self.way = way
+        self.name = name
+        self.rows = rows
+        self.h = study["h"][rows]
+        self.k = study["k"][rows]
+
+    def sizes(self, axis):
+        return self.h if axis == "h" else self.k
+
+
+class Study:
+    """A directory with a study.csv; columns are arrays over its rows."""
+
+    def __init__(self, directory):
+        self.directory = Path(directory).resolve()
+        self.columns = read_table(self.directory / "study.csv")
+        self.columns = with_worst_quantity(self.columns)
+        self.about = read_about(self.directory / "study.json")
+        self.name = str(self.about.get("scene") or self.directory.name)
+
+    def __len__(self):
+        return len(self["ladder"])
+
+    def __contains__(self, name):
+        return name in self.columns
+
+    def __getitem__(self, name):
+        if name not in self.columns:
+            raise UserError(
+                f'{self.directory / "study.csv"} has no column "{name}"; it has '
+                + ", ".join(self.columns)
+            )
+        return self.columns[name]
+
+    def errors(self):
+        """Columns of errors that are known for some run."""
+        return [
+            name
+            for name in self.columns
+            if (name in ERRORS or name.endswith("_error"))
+            and rates.known(self[name]).any()
+        ]
+
+    def error(self, name=None):
+        """The name of a column of errors: the one asked for, or the first."""
+        found = self.errors()
+        if name is None:
+            if not found:
+                raise UserError(
+                    f"{self.directory / 'study.csv'} knows the error of no run, so "
+                    "there is nothing to draw it over"
+                )
+            return found[0]
+        if f"{name}_error" in self.columns:
+            name = f"{name}_error"
+        if name not in found:
+            there = ", ".join(found) or "none"
+            what = "is known for no run" if name in self else "does not exist"
+            raise UserError(f'the error "{name}" {what}; there are: {there}')
+        return name
+
+    def ways(self):
+        """The (strategy, scheme, history) that occur, in their order."""
+        return list(dict.fromkeys(zip(*(self[name] for name in WAY))))
+
+    def ladders(self):
+        """All of them; of runs with the same levels the last one counts.
+
+        On adaptive meshes h is what came out, hence the levels."""
+        keys = list(zip(*(self[name] for name in (*WAY, "ladder"))))
+        found = []
+        for key in dict.fromkeys(keys):
+            rows = {}
+            for i, other in enumerate(keys):
+                if other == key:
+                    rows[tuple(self[name][i] for name in LEVELS)] = i
+            rows = np.array([rows[levels] for levels in sorted(rows)])
+            found.append(Ladder(self, key[:3], key[3], rows))
+        return found
+
+    def way_label(self, way):
+        """What tells a way from the others of this study, in words."""
+        ways = self.ways()
+        parts = [
+            part
+            for i, part in enumerate(way)
+            if len({other[i] for other in ways}) > 1
+        ]
+        return style.plain(", ".join(parts or way[:2]))
+
+    def looks(self):
+        """{way: colour and dashes}: a colour each, or where they are many one
+        for each scheme and history, and dashes for the second strategy."""
+        ways = self.ways()
+        if len(ways) <= len(style.SERIES):
+            return {
+                way: {"color": colour, "ls": "-"}
+                for way, colour in zip(ways, style.SERIES)
+            }
+        methods = list(dict.fromkeys(way[1:] for way in ways))
+        strategies = list(dict.fromkeys(way[0] for way in ways))
+        return {
+            way: {
+                "color": style.SERIES[methods.index(way[1:]) % len(style.SERIES)],
+                "ls": ("-", (0, (4, 1.5)))[strategies.index(way[0]) % 2],
+            }
+            for way in ways
+        }
+
+    def fit(self, way, error):
+        """The fitted {C_h, p, C_k, q, ...} of study.json, or None."""
+        for fit in self.about.get("fits", ()):
+            if isinstance(fit, dict) and fit.get("error") == error:
+                if all(fit.get(name) == part for name, part in zip(WAY, way)):
+                    return fit
+        return None
+
+
+def error_label(name):
+    """A label of an axis; all errors are relative."""
+    if name in ERRORS:
+        return f"relative {ERRORS[name]}"
+    quantity = name.removesuffix("_error")
+    match = re.fullmatch(r"(.*)_([xyz])", quantity)
+    component = ""
+    if match:
+        quantity, component = match.group(1), f", ${match.group(2)}$"
+    quantity = re.sub(r"^max_", "largest ", quantity).replace("_", " ")
+    quantity = re.sub(r"^(point|reaction) ?(\d+)$", r"\1 \2", quantity)
+    return f"relative error of the {style.plain(quantity)}{component}"
+
+
+def with_worst_quantity(columns):
+    """Columns and, before the errors of single quantities, the largest of
+    them in each run."""
+    names = [name for name in columns if name.endswith("_error")]
+    if not names:
+        return columns
+    errors = np.array([columns[name] for name in names])
+    worst = np.nanmax(np.where(np.isnan(errors), -np.inf, errors), axis=0)
+    worst = np.where(np.isfinite(worst), worst, np.nan)
+    first = next(i for i, name in enumerate(columns) if name == names[0])
+    items = list(columns.items())
+    return dict([*items[: first - 1], ("quantities", worst), *items[first - 1 :]])
+
+
+def read_table(path):
+    """The columns of study.csv: texts, and numbers with nan for unknown."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.reader(file, skipinitialspace=True) if row]
+    except FileNotFoundError:
+        raise UserError(f"there is no file {path}") from None
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise UserError(f"{path} cannot be read: {error}") from error
+    if len(rows) < 2:
+        raise UserError(f"{path} has no runs")
+    names = [name.strip() for name in rows[0]]
+    missing = [name for name in NEEDED if name not in names]
+    if missing:
+        raise UserError(f"{path} lacks the columns " + ", ".join(missing))
+    columns = {name: [] for name in names}
+    for number, row in enumerate(rows[1:], start=1):
+        if len(row) != len(names):
+            raise UserError(
+                f"{path} is damaged: its run {number} has {len(row)} values, "
+                f"where the first line names {len(names)}"
+            )
+        for name, text in zip(names, row):
+            columns[name].append(value(path, number, name, text.strip()))
+    return {name: np.array(column) for name, column in columns.items()}
+
+
+def value(path, number, name, text):
+    if name in TEXT:
+        return text
+    try:
+        return float(text) if text else np.nan
+    except ValueError:
+        raise UserError(
+            f'{path} is damaged: its run {number} has "{text}" for {name}, which '
+            "is no number"
+        ) from None
+
+
+def read_about(path):
+    """study.json; a study in progress has none yet."""
+    if not path.exists():
+        return {}
+    try:
+        about = json.loads(path.read_text(encoding="utf-8"))
+    except (UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise UserError(f"{path} cannot be read: {error}") from error
+    if not isinstance(about, dict):
+        raise UserError(f"{path} cannot be read: it is no JSON object")
+    return about

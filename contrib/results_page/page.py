@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""doc/accuracy.md: the sentences between what is computed.
+
+Each computed part stands between <!-- PIECE --> and <!-- end -->.  The page is
+written anew each time; parts that have not been computed now are taken from
+the page as it was.
+"""
+
+import re
+
+from plotting.results import UserError
+
+from . import plan
+
+NOT_YET = "(not computed yet)\n"
+
+TEMPLATE = """\
+# What accuracy costs
+
+Made by `contrib/make_results`, which runs the program on the scenes named
+below, draws the pictures and writes every number of this page. The line under
+each part names version, machine and date. Errors are relative: the largest of
+all steps over the largest norm of the solution; where they are differences to a
+finer run, of the steps that end a phase of `Time/Phases`.
+
+- [How to read this page](#how-to-read-this-page)
+- [Orders of convergence](#orders-of-convergence)
+- [What an error costs](#what-an-error-costs)
+- [What the tolerance of the solver is worth](#what-the-tolerance-of-the-solver-is-worth)
+- [Reference cases](#reference-cases)
+
+A study of your own scene makes the same pictures and prices:
+
+    viscoplastic_contact study scene.prm
+    contrib/plot output/scene/study
+
+## How to read this page
+
+**A study** runs a scene on a ladder of mesh widths $h$ and time steps $k$, each
+half of the one before: $h$ alone with the finest steps, $k$ alone on the finest
+mesh, and both. Where the scene has an exact solution, errors are those of the
+discrete one; elsewhere they are differences to a run with half of the finest
+$h$ and $k$, so that an error of the finest run of a first-order method comes
+out about half as large as it is.
+
+**Convergence.** In logarithmic scales an error $C h^p$ is a straight line with
+slope $p$, which the triangles show. A curve that becomes flat has met the part
+of the error that its ladder leaves alone: where the curve of $h$ alone levels
+out, smaller cells buy nothing before the steps become smaller, too. The dotted
+line is the fit $C_h h^p+C_k k^q$ of all runs of a way to compute; prices are
+read off it, so where it leaves the points the prices do.
+
+**Work and precision.** Each point is a run: to the left is cheap, below is
+accurate. Compare curves along a horizontal line, at the error that you want:
+the one that is met first, coming from the left, is the way to compute. Parallel
+curves mean a fixed factor, curves that cross that the answer depends on the
+error. A method of higher order is steeper; it pays beyond the crossing only. A
+point far to the upper right of its curve was refined in one of $h$ and $k$
+alone, and paid for the wrong one.
+
+**The efficient frontier**, in yellow, joins the runs that no other run beats in
+both time and error. Between two of its runs one gets the error of the cheaper
+one, hence the stairs. Whatever does not touch it is not worth running; which
+ways to compute do is the answer to "which scheme, which mesh".
+
+**Cost by phase.** The share of each phase in the time of a run, and its total
+on a logarithmic scale. Where the contact problem takes most of the time a
+better solver or fewer steps would help, where the error estimate does it can be
+switched off (`Error control/Error bar = false`) at the price of not knowing.
+
+**Prices.** For each tolerance the cheapest run of the study that is at least so
+accurate. *Italics* mark predictions for runs that nobody made, from the fits of
+error and time: expect them within a factor of about two, and less the further
+they are from the measured runs. **Bold** is the cheapest of a scene for an error, of
+measured ones if there are any. Between
+runs of a ladder prices jump by what one refinement costs; the run that is named
+may therefore be more accurate than asked. To halve an error of first order in
+$h$ and $k$ takes four times as many cells in two dimensions, eight times as many
+in three, and twice as many steps: at least 8 and 16 times the seconds.
+
+## Orders of convergence
+
+Manufactured solutions: displacement and stress are given by formulas, loads and
+a source in the law follow. The stick-slip front moves, and in three dimensions
+the direction of slip turns. Orders are those between the two finest runs of a
+ladder, of the error of $u$ in the energy norm / of $u$ in $H^1$ / of $\\sigma$ in
+$L^2$ / of $\\lambda$ on $\\Gamma_3$. The paper proves first order in $h$ and $k$ for
+$u$ and $\\sigma$ where the solution is smooth, (5.14) and (5.20); the
+$h^{{3/4}}$ of (5.13) is what remains with less, a lower bound. The effectivity
+is the estimated over the true error, the largest of all steps each, over all
+runs of the study.
+
+{manufactured}
+### Solutions that are not smooth
+
+No solution is known here; errors are differences to a finer run. Theorem 4.4
+promises convergence without a rate. In adaptive runs $h$ is the width of a
+uniform mesh with as many cells: order one in $h$ is the best that bilinear
+elements can do, with any mesh.
+
+{low_regularity}
+## What an error costs
+
+Three scenes without known solutions; each picture names the error that it
+shows. Below each are the fits $C_h h^p+C_k k^q$ and the factor by which they miss
+the runs, as root mean square and at worst. The price list of all three:
+
+{prices}
+{diagrams}
+## What the tolerance of the solver is worth
+
+By default the iterations of a step stop when the bound on their error is a
+fraction (`Error control/Algebraic fraction`, 0.05) of the estimated error of
+discretisation. Against that stands `Solver/Contact tolerance` = {fixed}, on the
+ladder of $h$ and $k$ of the scenes above. Times are sums over its runs; the
+last column is the largest relative change of an error of any of them.
+
+{tolerance}
+## Reference cases
+
+Values of an independent solver in the same discretisation, at equal mesh and
+steps ([testing.md](testing.md) says more); the shear layer has a closed form,
+from which the second of its rows differs by the error in time.
+
+{references}"""
+
+DIAGRAM = """\
+### {title}
+
+The scene is `prm/verification/{name}.prm`, its coarsest run with
+
+{settings}
+
+{part}"""
+
+
+def parts_of(text):
+    """{piece: what stands between its marks}"""
+    found = re.findall(r"^<!-- (\w+) -->\n(.*?)^<!-- end -->$", text, re.M | re.S)
+    return dict(found)
+
+
+def marked(name, text):
+    return f"<!-- {name} -->\n{text}<!-- end -->\n"
+
+
+def settings(overrides):
+    """Overrides as they would stand on the command line."""
+    return "\n".join(
+        f"    --set '{name}={value}'"
+        for name, value in overrides.items()
+        if not name.startswith("Study/Budget")
+    )
+
+
+def render(parts):
+    """The page with these computed parts."""
+    parts = {
+        name: marked(name, parts.get(name, NOT_YET))
+        for name in (
+            "manufactured",
+            "low_regularity",
+            "prices",
+            "tolerance",
+            "references",
+            *plan.DIAGRAMS,
+        )
+    }
+    diagrams = "\n".join(
+        DIAGRAM.format(
+            title=title, name=name, settings=settings(overrides), part=parts[name]
+        )
+        for name, (title, overrides) in plan.DIAGRAMS.items()
+    )
+    return TEMPLATE.format(diagrams=diagrams, fixed=plan.FIXED_TOLERANCE, **parts)
+
+
+def write(file, name, text):
+    """Replace one computed part of the page."""
+    parts = {}
+    if file.exists():
+        parts = parts_of(file.read_text(encoding="utf-8"))
+        if not parts:
+            raise UserError(f"{file} is no page of contrib/make_results")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(render({**parts, name: text}), encoding="utf-8")

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The parts of the page that are computed, each by itself."""
+
+import datetime
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import matplotlib.pyplot as plt
+
+from plotting import convergence, cost, style, work_precision
+from plotting.results import UserError, read_parameters
+
+from . import plan, program, references, tables
+
+SCENES = program.SOURCE / "prm" / "verification"
+
+ABOUT = {
+    "manufactured": "orders of convergence of all manufactured solutions",
+    "low_regularity": "orders where solutions are not smooth",
+    **{name: title for name, (title, _) in plan.DIAGRAMS.items()},
+    "prices": "what errors of some per cent cost on these scenes",
+    "tolerance": "what coupling the solver's tolerance to the error saves",
+    "references": "reference cases beside independent values",
+}
+
+
+def make(name, runner, images):
+    """The Markdown of a piece."""
+    style.set_up()
+    if name == "manufactured":
+        return manufactured(runner)
+    if name == "low_regularity":
+        return low_regularity(runner)
+    if name == "references":
+        return references.section(runner) + stamp(runner)
+    if name == "tolerance":
+        return tolerance(runner)
+    if name == "prices":
+        return prices(runner)
+    return diagram(name, runner, images)
+
+
+def stamp(runner, about=None):
+    """Machine, date and version of what was computed."""
+    about = about or {}
+    words = [
+        f"viscoplastic_contact {about['version']}"
+        if about.get("version")
+        else runner.version(),
+        program.processor(),
+        str(about.get("date") or datetime.date.today())[:10],
+    ]
+    return f"\n*{', '.join(word for word in words if word)}.*\n"
+
+
+def both_cores(function, arguments):
+    """Two at a time, if there are two cores; errors are collected."""
+    workers = min(2, len(os.sched_getaffinity(0)))
+    with ThreadPoolExecutor(workers) as pool:
+        futures = [pool.submit(function, argument) for argument in arguments]
+    found, errors = [], []
+    for future in futures:
+        try:
+            found.append(future.result())
+        except UserError as error:
+            errors.append(error)
+    return found, errors
+
+
+def manufactured_cases():
+    """(scene, law or None, mesh, {ladder: overrides}) of all cases."""
+    folder = SCENES / "manufactured"
+    laws = sorted(folder.glob("law_*.prm"))
+    cases = []
+    for scene in sorted(set(folder.glob("*.prm")) - set(laws)):
+        dimension = int(read_parameters(scene).get(("Dimension",), "2"))
+
+        def case(law=None, mesh="uniform", scheme=plan.SCHEMES[0], **overrides):
+            ladders = {
+                ladder: {
+                    **plan.COUPLED,
+                    **plan.MANUFACTURED,
+                    "Study/Ladders": ladder,
+                    "Study/Time schemes": scheme,
+                    **own,
+                    **overrides,
+                }
+                for ladder, own in plan.MANUFACTURED_LADDERS[dimension].items()
+            }
+            cases.append((scene, law, mesh, ladders))
+
+        case(scheme=", ".join(plan.SCHEMES))
+        for mesh, overrides in plan.MESHES.items():
+            case(
+                mesh=mesh,
+                **{
+                    name: text.format(folder=folder, dimension=dimension)
+                    for name, text in overrides.items()
+                },
+            )
+        for law in laws:
+            case(law)
+    return cases
+
+
+def facts(scene, law, mesh):
+    """What the table of convergence says of a case."""
+    parameters = read_parameters(scene)
+    friction = dict.fromkeys(
+        value for key, value in parameters.items() if key[1:] == ("Friction law",)
+    )
+    name = parameters.get(("Material", "Law"), "elastic")
+    if law is not None:
+        name = law.stem.removeprefix("law_").replace("_", ", ")
+    return {
+        "scene": f"`{scene.stem}`",
+        "law": name,
+        "friction": ", ".join(friction) or tables.UNKNOWN,
+        "d": parameters.get(("Dimension",), "2"),
+        "mesh": mesh,
+    }
+
+
+def manufactured(runner):
+    cases = manufactured_cases()
+    if not cases:
+        raise UserError(f"there are no scenes in {SCENES / 'manufactured'}")
+
+    def one(case):
+        scene, law, mesh, ladders = case
+        name = "_".join([scene.stem, *([law.stem] if law else []), *mesh.split()])
+        files = [scene, law] if law else [scene]
+        studies = {
+            ladder: runner.study(f"manufactured/{name}_{ladder}", files, overrides)
+            for ladder, overrides in ladders.items()
+        }
+        rows = tables.convergence_rows(studies, facts(scene, law, mesh))
+        return rows, studies["both"].about
+
+    found, errors = both_cores(one, cases)
+    for error in errors:
+        print(f"Left out: {error}", file=sys.stderr)
+    if not found:
+        raise errors[0]
+    rows = [row for rows, _ in found for row in rows]
+    return tables.table(tables.CONVERGENCE_HEADER, rows) + stamp(runner, found[0][1])
+
+
+def low_regularity(runner):
+    def one(item):
+        name, (why, overrides) = item
+        study = runner.study(
+            f"low_regularity/{name}",
+            [SCENES / f"{name}.prm"],
+            {**plan.COUPLED, **overrides},
+        )
+        rows = tables.low_regularity_rows(f"`{name}`", why, study)
+        return rows, study.about
+
+    found, errors = both_cores(one, plan.LOW_REGULARITY.items())
+    if errors:
+        raise errors[0]
+    rows = [row for rows, _ in found for row in rows]
+    return tables.table(tables.LOW_REGULARITY_HEADER, rows) + stamp(
+        runner, found[0][1]
+    )
+
+
+def diagram_study(name, runner):
+    overrides = plan.DIAGRAMS[name][1]
+    return runner.study(name, [SCENES / f"{name}.prm"], {**plan.COUPLED, **overrides})
+
+
+def diagram(name, runner, images):
+    """Pictures and fits of one scene."""
+    study = diagram_study(name, runner)
+    error = study.error()
+    pictures = {}
+    for module in (work_precision, convergence, cost):
+        picture = f"accuracy_{name}_{module.__name__.rpartition('.')[2]}.png"
+        images.mkdir(parents=True, exist_ok=True)
+        figure = module.draw(study, error)
+        figure.savefig(images / picture, dpi=110, bbox_inches="tight", pad_inches=0.15)
+        plt.close(figure)
+        pictures[module] = f"images/{picture}"
+    return (
+        f"![Error over seconds]({pictures[work_precision]})\n\n"
+        + f"![Error over mesh width and time step]({pictures[convergence]})\n\n"
+        + f"![Seconds by phase]({pictures[cost]})\n\n"
+        + tables.fit_table(study, error)
+        + stamp(runner, study.about)
+    )
+
+
+def prices(runner):
+    """One table of all scenes."""
+    rows, about = [], None
+    for name in plan.DIAGRAMS:
+        study = diagram_study(name, runner)
+        about = about or study.about
+        rows += tables.price_rows(
+            f"`{name}`", study, plan.TOLERANCES, study.error()
+        )
+    return tables.table(tables.price_header(plan.TOLERANCES), rows) + stamp(
+        runner, about
+    )
+
+
+def tolerance(runner):
+    rows = []
+    for name, (_, overrides) in plan.DIAGRAMS.items():
+        files = [SCENES / f"{name}.prm"]
+        overrides = {**plan.COUPLED, **overrides, **plan.TOLERANCE_STUDY}
+        coupled = runner.study(f"tolerance/{name}_coupled", files, overrides)
+        overrides["Solver/Contact tolerance"] = plan.FIXED_TOLERANCE
+        fixed = runner.study(f"tolerance/{name}_fixed", files, overrides)
+        rows.append(tables.saving_row(f"`{name}`", coupled, fixed))
+    return tables.table(tables.SAVING_HEADER, rows) + stamp(runner)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is computed for doc/accuracy.md, and how finely.
+
+Sizes are such that everything takes about 20 minutes on two cores.  Overrides
+are those of the command line, {"Section/Entry": value}.
+"""
+
+# The errors that people ask for, and the columns of the price tables.
+TOLERANCES = (0.1, 0.03, 0.01, 0.003)
+
+# Of all studies, unless a scene says otherwise.
+COUPLED = {"Solver/Contact tolerance": "0", "Output/Fields every": "0"}
+
+SCHEMES = ("forward Euler", "backward Euler", "Heun")
+
+# Manufactured solutions: each scene of prm/verification/manufactured with each
+# of the laws there (law_*.prm, given after it) on its own mesh, and with its
+# own law on other meshes and with the other schemes.  A ladder shows an order
+# where what it leaves alone is small: each has a study of its own.  Only orders
+# are of interest, so two studies run side by side.
+MANUFACTURED = {"Study/Strategies": "uniform", "Study/Budget": "120"}
+MANUFACTURED_LADDERS = {
+    2: {
+        "space": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 64",
+            "Study/Levels": "3",
+        },
+        "time": {
+            "Geometry/Global refinements": "2",
+            "Time/Phases": "1: 4",
+            "Study/Levels": "3",
+        },
+        "both": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 12",
+            "Study/Levels": "4",
+        },
+    },
+    3: {
+        "space": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 16",
+            "Study/Levels": "3",
+        },
+        "time": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 3",
+            "Study/Levels": "3",
+        },
+        "both": {
+            "Geometry/Global refinements": "0",
+            "Time/Phases": "1: 12",
+            "Study/Levels": "3",
+        },
+    },
+}
+
+# {mesh: overrides}; {dimension} stands for 2 or 3, {folder} for that of the
+# scenes.  Local refinement is along a side, across the foundation.
+MESHES = {
+    "distorted": {"Geometry/File": "{folder}/distorted_{dimension}d.msh"},
+    "locally refined": {"Geometry/Boundary refinements": "0: 1"},
+}
+
+EVERY_WAY = {
+    "Study/Strategies": "uniform, adaptive",
+    "Study/Time schemes": ", ".join(SCHEMES),
+    "Study/Stress histories": "cell means, quadrature points",
+    "Study/Target errors": ", ".join(map(str, TOLERANCES)),
+}
+
+# Work-precision diagrams and prices: {scene: (title, overrides)}.
+DIAGRAMS = {
+    "slab": (
+        "Tresca slab, two dimensions",
+        {
+            "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+            "Time/Phases": "1: 4, 2: 4",
+            "Study/Levels": "5",
+            "Study/Ladders": "space, time, both",
+            "Study/Budget": "200",
+            **EVERY_WAY,
+        },
+    ),
+    "coulomb_pad_3d": (
+        "Coulomb pad, three dimensions",
+        {
+            "Geometry/Arguments": "3, 3, 3 : 0, 0, 0 : 1, 1, 1 : true",
+            "Time/Phases": "0.5: 2, 1.5: 4",
+            "Study/Levels": "3",
+            "Study/Ladders": "space, time, both",
+            "Study/Budget": "300",
+            **EVERY_WAY,
+        },
+    ),
+    "corner_singularity_2d": (
+        "Corner singularity, two dimensions",
+        {
+            "Geometry/Global refinements": "2",
+            "Time/Phases": "1: 4",
+            "Study/Levels": "5",
+            "Study/Ladders": "space, time, both",
+            "Study/Budget": "200",
+            **EVERY_WAY,
+        },
+    ),
+}
+
+# Solutions that are not smooth: {scene: (why, overrides)}.
+ROUGH = {
+    "Study/Levels": "4",
+    "Study/Ladders": "space, time, both",
+    "Study/Strategies": "uniform, adaptive",
+    "Study/Time schemes": ", ".join(SCHEMES),
+    "Study/Budget": "60",
+}
+LOW_REGULARITY = {
+    "kinked_load_2d": ("a kink of the load in time, a jump of the bound", ROUGH),
+    "junction_2d": (
+        "clamped and loaded pieces of one side",
+        {**ROUGH, "Study/Time schemes": SCHEMES[0]},
+    ),
+    "corner_singularity_2d": (
+        "re-entrant corner",
+        {
+            **ROUGH,
+            "Study/Time schemes": SCHEMES[0],
+            "Geometry/Global refinements": "1",
+            "Time/Phases": "1: 4",
+        },
+    ),
+}
+
+# Where the fixed tolerance is compared with the coupled one: the ladder of h
+# and k of the diagrams again.
+FIXED_TOLERANCE = "1e-10"
+TOLERANCE_STUDY = {
+    "Study/Ladders": "both",
+    "Study/Strategies": "uniform",
+    "Study/Time schemes": "forward Euler",
+    "Study/Stress histories": "cell means",
+}

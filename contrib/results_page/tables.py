@@ -1,0 +1,361 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Markdown tables from studies; functions of what they are given."""
+
+import numpy as np
+
+from plotting import rates
+from plotting.study import LEVELS, WAY
+
+UNKNOWN = "–"
+NORMS = ("error_energy", "error_h1", "error_stress", "error_multiplier")
+
+
+def table(header, rows):
+    """Markdown; columns whose cells are all numbers are set to the right."""
+    if not rows:
+        return "(nothing)\n"
+    right = [all(is_number(row[i]) for row in rows) for i in range(len(header))]
+    lines = [header, ["---:" if number else "---" for number in right], *rows]
+    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+
+
+def is_number(text):
+    text = str(text).strip("*_ ")
+    for unit in (" s", " %", " MB"):
+        text = text.removesuffix(unit)
+    if text == UNKNOWN:
+        return True
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def number(value, digits=3):
+    """A few digits, without a power of ten where none is needed."""
+    if value is None or not np.isfinite(value):
+        return UNKNOWN
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1e-5 < abs(value) < 1e7:
+        value = float(text)
+        text = f"{value:.0f}" if abs(value) >= 1 else f"{value:.7f}".rstrip("0")
+    return text
+
+
+def order(value):
+    return UNKNOWN if value is None else f"{round(value, 2) + 0.0:.2f}"
+
+
+def percent(value):
+    return UNKNOWN if value is None else f"{number(100 * value, 2)} %"
+
+
+def seconds(value):
+    return f"{number(value, 2)} s"
+
+
+def ladder_of(study, name, way=None):
+    """The ladder of that name, of the first way if none is given, or None."""
+    way = way or study.ways()[0]
+    for ladder in study.ladders():
+        if ladder.name == name and ladder.way == way:
+            return ladder
+    return None
+
+
+def orders(study, name, way=None):
+    """The order at the fine end of a ladder, for each of NORMS, or None."""
+    ladder = ladder_of(study, name, way)
+    if ladder is None:
+        return [None] * len(NORMS)
+    sizes = ladder.k if name == "time" else ladder.h
+    return [
+        rates.final_order(sizes, study[norm][ladder.rows]) if norm in study else None
+        for norm in NORMS
+    ]
+
+
+def of_way(study, name, way):
+    """The known values of a column in the runs of a way."""
+    if name not in study:
+        return np.array([])
+    values = study[name][rows_of(study, way)]
+    return values[rates.known(values)]
+
+
+def rows_of(study, way):
+    ways = list(zip(*(study[name] for name in WAY)))
+    return np.array([i for i, other in enumerate(ways) if other == way])
+
+
+CONVERGENCE_HEADER = (
+    "scene",
+    "law",
+    "friction",
+    "d",
+    "mesh",
+    "scheme",
+    "h alone",
+    "k alone",
+    "h and k",
+    "smallest error",
+    "effectivity",
+)
+
+
+def convergence_rows(studies, facts):
+    """Lines of the table of all manufactured solutions, one for each way.
+
+    studies  {ladder: the study that has it}
+    facts    scene, law, friction, d, mesh
+    """
+    rows = []
+    for way in studies["both"].ways():
+        errors, indices = (
+            np.concatenate([of_way(study, name, way) for study in studies.values()])
+            for name in ("error_energy", "effectivity")
+        )
+        rows.append(
+            [
+                *(facts[name] for name in ("scene", "law", "friction", "d", "mesh")),
+                way[WAY.index("scheme")],
+                *(
+                    " / ".join(map(order, orders(studies[name], name, way)))
+                    for name in ("space", "time", "both")
+                ),
+                percent(errors.min()) if len(errors) else UNKNOWN,
+                f"{indices.min():.2f} to {indices.max():.2f}"
+                if len(indices)
+                else UNKNOWN,
+            ]
+        )
+    return rows
+
+
+LOW_REGULARITY_HEADER = (
+    "scene",
+    "what is not smooth",
+    "strategy",
+    "scheme",
+    "h alone",
+    "k alone",
+    "h and k",
+    "smallest error",
+)
+
+
+def low_regularity_rows(name, why, study):
+    """As convergence_rows(), for solutions that nobody knows."""
+    facts = dict.fromkeys(("scene", "law", "friction", "d", "mesh"))
+    rows = convergence_rows(dict.fromkeys(("space", "time", "both"), study), facts)
+    return [
+        [name, why, *way[:2], *row[6:10]] for way, row in zip(study.ways(), rows)
+    ]
+
+
+def offer(study, way, tolerance, error):
+    """The line of the price list of study.json for a way, or None."""
+    for offered in study.about.get("prices", ()):
+        if (
+            isinstance(offered, dict)
+            and offered.get("error") == error
+            and all(offered.get(name) == part for name, part in zip(WAY, way))
+            and abs((offered.get("tolerance") or 0.0) / tolerance - 1) < 1e-6
+        ):
+            return offered if offered.get("seconds") is not None else None
+    return None
+
+
+def price(study, way, tolerance, error):
+    """What an error of `tolerance` costs: {seconds, cells, steps, memory,
+    measured}, or None.
+
+    Measured where a run of the study is accurate enough, the cheapest of
+    them; otherwise what the price list of the study predicts.
+    """
+    rows = rows_of(study, way)
+    best = rates.cheapest_within(
+        tolerance, study["seconds_total"][rows], study[error][rows]
+    )
+    if best is not None:
+        row = rows[best]
+        return {
+            "seconds": float(study["seconds_total"][row]),
+            "cells": float(np.round(study["cells"][row])),  # mean of the steps
+            "steps": float(study["steps"][row]),
+            "memory": float(study["peak_memory_MB"][row]),
+            "measured": True,
+        }
+    offered = offer(study, way, tolerance, error)
+    if offered is None:
+        return None
+    finest = max(rows, key=lambda row: study["dofs"][row])
+    cells_per_dof = study["cells"][finest] / study["dofs"][finest]
+    return {
+        "seconds": offered["seconds"],
+        "cells": round((offered.get("dofs") or np.nan) * cells_per_dof, -1),
+        "steps": offered.get("steps"),
+        "memory": offered.get("memory_MB"),
+        "measured": False,
+    }
+
+
+def price_cell(found, is_cheapest):
+    """Seconds bold where no other way is cheaper, all italic if predicted."""
+    if found is None:
+        return UNKNOWN
+    time = seconds(found["seconds"])
+    rest = ", ".join(
+        f"{number(found[name], digits)}{unit}"
+        for name, digits, unit in (
+            ("cells", 9, " cells"),
+            ("steps", 9, " steps"),
+            ("memory", 2, " MB"),
+        )
+        if found[name] is not None and np.isfinite(found[name])
+    )
+    if is_cheapest:
+        time = f"**{time}**"
+    text = f"{time}: {rest}" if rest else time
+    return text if found["measured"] else f"*{text}*"
+
+
+def price_header(tolerances):
+    return ("scene", *WAY, *(percent(tolerance) for tolerance in tolerances))
+
+
+def best_seconds(prices):
+    """The least of what was measured, or else of what is predicted."""
+    prices = [price for price in prices if price]
+    measured = [price for price in prices if price["measured"]]
+    return min((price["seconds"] for price in measured or prices), default=None)
+
+
+def price_rows(name, study, tolerances, error):
+    """A line for each way to compute, a column for each tolerance."""
+    ways = study.ways()
+    found = [[price(study, way, eps, error) for eps in tolerances] for way in ways]
+    cheapest = [best_seconds([line[i] for line in found]) for i in range(len(tolerances))]
+    return [
+        [
+            name,
+            *way,
+            *(
+                price_cell(cell, cell and cell["seconds"] == best)
+                for cell, best in zip(line, cheapest)
+            ),
+        ]
+        for way, line in zip(ways, found)
+    ]
+
+
+FIT_HEADER = (*WAY, "$C_h$", "$p$", "$C_k$", "$q$", "off by", "at worst")
+
+
+def fit_table(study, error):
+    """C_h h^p + C_k k^q of each way, and the factors by which it misses the
+    runs, or nothing where no fit is known."""
+    rows = []
+    for way in study.ways():
+        fit = study.fit(way, error)
+        if fit:
+            values = (fit.get(name) for name in ("C_h", "p", "C_k", "q"))
+            deviation = fit.get("rms_of_log")
+            rows.append(
+                [
+                    *way,
+                    *map(number, values),
+                    number(None if deviation is None else np.exp(deviation)),
+                    number(fit.get("worst_factor")),
+                ]
+            )
+    return table(FIT_HEADER, rows) if rows else ""
+
+
+REFERENCE_HEADER = (
+    "case",
+    "mesh and steps",
+    "t",
+    "quantity",
+    "computed",
+    "independent",
+    "difference",
+)
+
+
+def reference_row(case, size, t, quantity, computed, independent):
+    """The difference is relative."""
+    difference = abs(computed / independent - 1)
+    return [
+        case,
+        size,
+        number(t),
+        quantity,
+        f"{computed:.7g}",
+        f"{independent:.7g}",
+        f"{difference:.1e}",
+    ]
+
+
+def matched(first, second):
+    """Pairs of rows of two studies with the same way, ladder and levels."""
+
+    def key(study, i):
+        return (
+            *(study[name][i] for name in (*WAY, "ladder")),
+            *(study[name][i] for name in LEVELS),
+        )
+
+    rows = {key(second, i): i for i in range(len(second))}
+    pairs = [(i, rows.get(key(first, i))) for i in range(len(first))]
+    return [(i, j) for i, j in pairs if j is not None]
+
+
+SAVING_HEADER = (
+    "scene",
+    "runs",
+    "contact problem, fixed",
+    "coupled",
+    "whole run, fixed",
+    "coupled",
+    "time saved",
+    "largest change of an error",
+)
+
+
+def saving_row(name, coupled, fixed):
+    """What the coupled tolerance saves over the runs that both studies have,
+    and by how much it changes their errors, relative to them."""
+    pairs = matched(coupled, fixed)
+    if not pairs:
+        return [name, "0", *[UNKNOWN] * 6]
+    mine, theirs = (list(rows) for rows in zip(*pairs))
+    times = [
+        float(np.nansum(study[column][rows]))
+        for column in ("seconds_contact", "seconds_total")
+        for study, rows in ((fixed, theirs), (coupled, mine))
+    ]
+    change = largest_change(coupled, mine, fixed, theirs)
+    return [
+        name,
+        str(len(pairs)),
+        *map(seconds, times),
+        percent(1 - times[3] / times[2]),
+        UNKNOWN if change is None else f"{percent(change[0])} ({change[1]})",
+    ]
+
+
+def largest_change(first, first_rows, second, second_rows):
+    """(largest relative change of an error, its column) or None."""
+    worst = None
+    for name in NORMS:
+        if name not in first or name not in second:
+            continue
+        a, b = first[name][first_rows], second[name][second_rows]
+        usable = rates.known(a, b)
+        if usable.any():
+            change = float(np.max(np.abs(a[usable] / b[usable] - 1)))
+            if worst is None or change > worst[0]:
+                worst = change, name.removeprefix("error_")
+    return worst

@@ -250,7 +250,8 @@ namespace Viscoplastic
           }
         market.smallest_k  = std::min(market.smallest_k, record->number("k"));
         const double limit = record->number("step_limit");
-        if (std::isfinite(limit)) // which stresses may still lower
+        // Stresses may lower it still; implicit schemes go beyond.
+        if (std::isfinite(limit) && limit >= record->number("k"))
           market.largest_k = std::min(market.largest_k, 0.95 * limit);
       }
     // Nothing coarser than what was measured: there errors obey no law.

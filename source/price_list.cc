@@ -268,7 +268,7 @@ namespace Viscoplastic
         return text.str() + '.';
       }
     text << "not within " << seconds_in_words(budget);
-    if (price.offer)
+    if (price.offer && price.offer->seconds < 3e8)
       text << ", it would take about "
            << seconds_in_words(price.offer->seconds);
     if (const auto best = most_accurate(market, budget))
@@ -324,7 +324,7 @@ namespace Viscoplastic
     std::ostringstream text;
     text << std::setprecision(n) << value;
     // 1.2e+05 is for programs.
-    if (std::abs(value) >= std::pow(10., n) && std::abs(value) < 1e9)
+    if (std::abs(value) >= std::pow(10., n) - 0.5 && std::abs(value) < 1e9)
       {
         std::ostringstream whole;
         whole << std::lround(value);

@@ -76,7 +76,9 @@ namespace Viscoplastic
 
   template <int dim>
   unsigned int
-  ResidualEstimator<dim>::find_shape(const Cell &cell)
+  ResidualEstimator<dim>::find_shape(const Cell        &cell,
+                                     FEValues<dim>     &values,
+                                     FEFaceValues<dim> &on_face)
   {
     // Vertices from the first, relative to the diameter and rounded: equal for
     // translated cells, whatever rounding did to their vertices.
@@ -94,11 +96,6 @@ namespace Viscoplastic
     if (!is_new)
       return entry->second;
 
-    const FiniteElement<dim> &fe = sampling.space.dof_handler.get_fe();
-    FEValues<dim>             values(fe,
-                         QGauss<dim>(2),
-                         update_gradients | update_hessians |
-                           update_quadrature_points | update_JxW_values);
     values.reinit(cell);
     shapes.emplace_back();
     Shape &shape   = shapes.back();
@@ -125,7 +122,6 @@ namespace Viscoplastic
         shape.constant_hessians &=
           (shape.hessians[q][v] - shape.hessians[0][v]).norm() <=
           1e-12 * shape.hessians[0][v].norm();
-    FEFaceValues<dim> on_face(fe, QGauss<dim - 1>(2), on_faces);
     for (unsigned int f = 0; f < n_faces; ++f)
       {
         on_face.reinit(cell, f);
@@ -141,11 +137,17 @@ namespace Viscoplastic
   ResidualEstimator<dim>::make_cells()
   {
     const AdmissibleSpace<dim> &space = sampling.space;
+    const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
+    FEValues<dim>               values(fe,
+                         QGauss<dim>(2),
+                         update_gradients | update_hessians |
+                           update_quadrature_points | update_JxW_values);
+    FEFaceValues<dim>           on_face(fe, QGauss<dim - 1>(2), on_faces);
     for (const bool owned : {true, false})
       for (const auto &cell : space.dof_handler.active_cell_iterators())
         if (cell->is_locally_owned() == owned && !cell->is_artificial())
           {
-            LocalCell here{find_shape(cell),
+            LocalCell here{find_shape(cell, values, on_face),
                            cell->active_cell_index(),
                            {},
                            owned ? sampling.moduli(cells.size()) :

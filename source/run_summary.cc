@@ -146,10 +146,9 @@ namespace Viscoplastic
         const auto part = [&](const std::string &name, const double value) {
           const double       size = errors->largest_energy_norm;
           std::ostringstream text;
-          text << std::setprecision(2) << std::left << std::setw(9) << value
-               << std::right;
+          text << std::setprecision(2) << value;
           if (size > 0.)
-            text << std::setw(8) << 100. * value / size << " %";
+            text << " (" << 100. * value / size << " %)";
           print_row(out, name, text.str());
         };
         out << "Estimated error in the energy norm, largest at t = "

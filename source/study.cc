@@ -343,7 +343,7 @@ namespace Viscoplastic
       }
     const unsigned int n_found = find_finished();
     if (n_found > 0)
-      out << n_found << " of them are finished" << std::endl;
+      out << "Finished already: " << n_found << std::endl;
     for (PlannedRun &run : plan)
       if (!run.record && run.skipped.empty())
         {

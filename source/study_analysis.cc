@@ -178,7 +178,12 @@ namespace Viscoplastic
           std::find(field_errors.begin(), field_errors.end(), measure) !=
           field_errors.end();
         if (reference == nullptr ||
-            (is_norm && records[0]->numbers.count("is_difference") == 0))
+            (is_norm && std::none_of(records.begin(),
+                                     records.end(),
+                                     [](const auto *record) {
+                                       return record->numbers.count(
+                                                "is_difference") > 0;
+                                     })))
           return fit_error(samples);
         return fit_error(samples,
                          Finer{reference->number("h"),
@@ -273,13 +278,15 @@ namespace Viscoplastic
         const double first = r.values[1] - r.values[0],
                      last  = r.values[2] - r.values[1],
                      size  = size_of(*runs[2], r.quantity);
-        if (!(size > 0.) || !(std::abs(last) > 1e-12 * size))
+        if (!(size > 0.))
+          continue;
+        if (!(std::abs(last) > 1e-12 * size))
           {
             // Nothing left to converge.
             r.order          = nan;
             r.extrapolated   = r.values[2];
-            r.error          = size > 0. ? 0. : nan;
-            r.is_trustworthy = size > 0.;
+            r.error          = 0.;
+            r.is_trustworthy = true;
           }
         else
           {

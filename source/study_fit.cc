@@ -584,8 +584,12 @@ namespace Viscoplastic
         simple.push_back({s.dofs, 1., s.seconds / s.steps});
       }
     // Some 10 % of noise in seconds against exponents known to a few tenths.
-    const Prior solve{dim == 2 ? 1. : 4. / 3., 0., 0.1, false, true};
-    CostModel   model;
+    Prior solve;
+    solve.p          = dim == 2 ? 1. : 4. / 3.;
+    solve.q          = 0.;
+    solve.weight     = 0.3;
+    solve.q_is_fixed = true;
+    CostModel model;
     // Assembly is linear, factorisations n^(3/2) and n^2.
     Prior factorise    = solve;
     factorise.p        = dim == 2 ? 1.2 : 1.7;

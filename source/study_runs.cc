@@ -289,8 +289,11 @@ namespace Viscoplastic
                             const std::vector<StepsUntil> &steps) const
   {
     const bool adaptive = key.strategy == "adaptive";
-    const int  level = adaptive ? std::min(0, key.mesh_level) : key.mesh_level,
-              base   = static_cast<int>(scene.geometry.global_refinements);
+    // Adaptive runs begin one level coarser: from a much coarser mesh,
+    // refinement at singular points would leave the rest too coarse.
+    const int level = adaptive && key.mesh_level > 0 ? key.mesh_level - 1 :
+                                                       key.mesh_level,
+              base  = static_cast<int>(scene.geometry.global_refinements);
     AssertThrow(-level <= n_coarser_meshes(),
                 ExcMessage("The mesh of the scene cannot be made coarser by " +
                            std::to_string(-level) +
@@ -315,6 +318,8 @@ namespace Viscoplastic
     if (!scene_is_adaptive)
       {
         result.push_back("Mesh refinement/Strategy=residual");
+        result.push_back("Mesh refinement/Refinement fraction=0.6");
+        result.push_back("Mesh refinement/Coarsening fraction=0.05");
         result.push_back("Mesh refinement/Every n steps=" +
                          std::to_string(std::max(1u, n_steps(steps) / 10)));
       }
@@ -322,7 +327,7 @@ namespace Viscoplastic
       n_cells *
       std::pow(2., static_cast<double>(scene.dimension) * key.mesh_level);
     result.push_back("Mesh refinement/Minimal level=" +
-                     std::to_string(refinements));
+                     std::to_string(std::min(refinements, base)));
     result.push_back(
       "Mesh refinement/Maximal level=" +
       std::to_string(std::max(refinements, base + key.mesh_level + 2)));
@@ -477,10 +482,9 @@ namespace Viscoplastic
               RunRecord record =
                 make_record(key,
                             read_table(place + "statistics.csv"),
-                            measurements);
-              record.name = name(key);
-              if (reference)
-                record.numbers["is_difference"] = 1.;
+                            measurements,
+                            reference.has_value() && !(key == *reference));
+              record.name         = name(key);
               record.numbers["h"] = mesh_width(record.number("cells"));
               const double every  = parameters.refinement.strategy == "none" ?
                                       0. :

@@ -67,11 +67,11 @@ def cheapest_within(tolerance, seconds, errors):
 
 
 def predicted_error(fit, h, k):
-    """C_h h^p + C_k k^q; a part that the fit lacks is zero."""
-    h, k = np.asarray(h, float), np.asarray(k, float)
-    return (fit.get("C_h") or 0.0) * h ** (fit.get("p") or 0.0) + (
-        fit.get("C_k") or 0.0
-    ) * k ** (fit.get("q") or 0.0)
+    """((C_h h^p)^m + (C_k k^q)^m)^(1/m); a part that the fit lacks is zero."""
+    h, k, m = np.asarray(h, float), np.asarray(k, float), fit.get("m") or 1.0
+    of_mesh = (fit.get("C_h") or 0.0) * h ** (fit.get("p") or 0.0)
+    of_steps = (fit.get("C_k") or 0.0) * k ** (fit.get("q") or 0.0)
+    return (of_mesh**m + of_steps**m) ** (1.0 / m)
 
 
 def at(x, curve_x, curve_y):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/vector.h>
 
 #include <viscoplastic_contact/boundary_condition.h>
@@ -143,7 +144,9 @@ namespace Viscoplastic
 
     /// The number of a cell's shape, made if it is new.
     unsigned int
-    find_shape(const Cell &cell);
+    find_shape(const Cell        &cell,
+               FEValues<dim>     &values,
+               FEFaceValues<dim> &on_face);
 
     StressTerms
     stress_terms(const std::size_t            cell,

@@ -81,13 +81,16 @@ namespace Viscoplastic
   /**
    * The numbers of a finished run. Errors are relative: the largest of all
    * steps over the largest norm of the exact solution; estimates are relative
-   * to the largest energy norm. Numbers of unknowns and cells are means over
+   * to the largest energy norm. With @p is_difference they are differences to
+   * another run, at few times: then the largest norms of the run itself count,
+   * too. Numbers of unknowns and cells are means over
    * the steps.
    */
   RunRecord
   make_record(const RunKey          &key,
               const Table           &statistics,
-              const RunMeasurements &measurements);
+              const RunMeasurements &measurements,
+              const bool             is_difference = false);
 
 
   /// The errors of a run as norms of fields, relative to the largest norms.

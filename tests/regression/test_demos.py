@@ -14,7 +14,7 @@ import unittest
 
 import numpy as np
 
-from harness import SOURCE, TestCase, main, run
+from harness import COUPLED, SOURCE, TestCase, main, run
 
 
 class SaltPillar(TestCase):
@@ -76,8 +76,8 @@ class SaltPillar(TestCase):
         return np.array(result)
 
     def test_identities(self):
-        self.check_identities(self.result, tolerance=1e-8)
-        self.check_identities(self.free, tolerance=1e-8)
+        self.check_identities(self.result, tolerance=COUPLED)
+        self.check_identities(self.free, tolerance=COUPLED)
 
     def test_steady_creep_by_nortons_formula(self):
         """In steady flow sigma_zz = sigma_yy/2, so sigma_eq = sqrt(3)/2
@@ -145,7 +145,7 @@ class BrakePad(TestCase):
         )
 
     def test_identities(self):
-        self.check_identities(self.result, tolerance=1e-8)
+        self.check_identities(self.result, tolerance=COUPLED)
 
     def test_force_reaches_the_bound_and_turns(self):
         """At full slip the points pull nearly in line: 0.4 times 2 MPa times
@@ -234,7 +234,7 @@ class ShearedSlab(TestCase):
         )
 
     def test_identities(self):
-        self.check_identities(self.result, tolerance=1e-8)
+        self.check_identities(self.result, tolerance=COUPLED)
 
     def test_area_of_the_loop_is_dissipated(self):
         """A closed loop of force over displacement: nothing is stored."""
@@ -309,7 +309,7 @@ class TreadBlock(TestCase):
         """In full sliding mu p A = 150 N along the motion of the road: what
         the road pulls at is minus the friction force on it."""
         r = run("tread_block_3d", {"Geometry/Arguments": self.CELLS})
-        self.check_identities(r, tolerance=1e-8)
+        self.check_identities(r, tolerance=COUPLED)
         pull = -r.vector("friction_force")
         # Braked, then driven.  Sideways components vanish by symmetry; the
         # block still creeps a little beside the road's 1 m/s.
@@ -426,7 +426,7 @@ class RodSeal(TestCase):
             "rod_seal_2d",
             {"Geometry/File": self.MESH, "Geometry/Global refinements": 0},
         )
-        self.check_identities(r, tolerance=1e-8)
+        self.check_identities(r, tolerance=COUPLED)
         p, pressed = self.PRESSURE, r.row(1)
 
         # The air's force is the pressure on the chord of the arc; chords of

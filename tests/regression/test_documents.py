@@ -247,7 +247,8 @@ class OwnScene(TestCase):
         self.assertClose(result["reaction_1_y"][weight], 24000, relative=1e-6)
         force = result["friction_force_x"]
         self.assertClose(abs(force).max(), 7200, relative=1e-9)
-        self.assertClose(result["reaction_3_x"], force, absolute=1e-3)
+        # iterations stop at 1e-5 in the energy norm
+        self.assertClose(result["reaction_3_x"], force, absolute=1e-4 * 7200)
         # the summary, digit by digit
         shown = self.block_after("ends with a summary")
         summary = dict(re.findall(r"^ *(.*?)  +(.*)$", shown, re.M))

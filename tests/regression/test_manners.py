@@ -196,7 +196,8 @@ class Voice(Manners):
         self.assertNotIn("\r", text)
         self.assertNotIn("\033", text)
         steps = re.findall(r"^Step (\d+)/4  t = \S+  k = 0\.25  cells 8  contact "
-                           r"iterations \d+  slipping \d+ %  elapsed \S+ s  left", text, re.M)
+                           r"iterations \d+  slipping \d+ %  error estimate \S+ %  "
+                           r"elapsed \S+ s  left", text, re.M)
         self.assertEqual(steps, ["1", "2", "3", "4"])
 
     def test_long_runs_do_not_flood(self):

@@ -140,7 +140,8 @@ namespace Viscoplastic
       for (ErrorLedger *ledger : {&present, &run.largest})
         archive & ledger->space & ledger->time & ledger->algebraic &
           ledger->initial & ledger->time_indicator &
-          ledger->velocity_variation & ledger->energy_norm;
+          ledger->velocity_variation & ledger->energy_norm &
+          ledger->velocity_square;
       archive &run.t &run.largest_energy_norm;
     }
 

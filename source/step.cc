@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/viscoplastic_contact.h>
+
+#include <limits>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  FlowStep<dim>
+  ViscoplasticContact<dim>::flow(const State<dim> &old_state,
+                                 const TimeStep   &time_step) const
+  {
+    // With an error bar, G has been evaluated at the end of the last step.
+    const FlowLaws<dim> &laws = discretisation->laws;
+    FlowStep<dim>        flow =
+      error_bar ?
+               advance_irreversible_stress<dim>(error_bar->rate(laws, old_state),
+                                         old_state.z,
+                                         time_step.k) :
+               advance_irreversible_stress(
+          laws, old_state.u, old_state.z, time_step.t_old, time_step.k);
+    check_stability(flow.relaxation_rate, time_step);
+    return flow;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_stability(const double    relaxation_rate,
+                                            const TimeStep &time_step) const
+  {
+    std::ostringstream message;
+    message << "The time step " << time_step.k << " of step " << time_step.n
+            << " (t = " << time_step.t
+            << ") exceeds the stability limit 2/r = " << 2. / relaxation_rate
+            << " of " << parameters.time.scheme
+            << "; take more steps in 'Time/Phases', or set 'Time/Scheme' = "
+               "backward Euler.";
+    AssertThrow(time_step.k * relaxation_rate <= 2. * (1. + 1e-10),
+                ExcMessage(message.str()));
+  }
+
+
+
+  template <int dim>
+  typename ViscoplasticContact<dim>::Step
+  ViscoplasticContact<dim>::advance(const State<dim>  &old_state,
+                                    const Forces<dim> &old_forces,
+                                    const TimeStep    &time_step)
+  {
+    const Discretisation &d = *discretisation;
+    Step                  step;
+    step.step_limit      = std::numeric_limits<double>::infinity();
+    step.capped_volume   = 0.;
+    step.state.n         = time_step.n;
+    step.state.t         = time_step.t;
+    step.state.k         = time_step.k;
+    step.state.initial_u = old_state.initial_u;
+
+    Load<dim> load;
+    {
+      TimerOutput::Scope phase(timer, "load");
+      load = d.loads.assemble(time_step.t);
+      if (d.face)
+        {
+          step.bounds = d.face->bounds(time_step.t);
+          step.foundation_step =
+            d.face->foundation_step(time_step.t_old, time_step.t);
+        }
+    }
+    try
+      {
+        if (is_implicit())
+          advance_implicitly(old_state, old_forces, load, time_step, step);
+        else
+          advance_explicitly(old_state, old_forces, load, time_step, step);
+      }
+    catch (const std::exception &exception)
+      {
+        std::ostringstream message;
+        message << "Step " << time_step.n << " (t = " << time_step.t
+                << "): " << reason(exception);
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+    TimerOutput::Scope phase(timer, "balance");
+    step.forces =
+      evaluate_forces(d.sampling, d.matrix, std::move(load), step.state);
+    return step;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::advance_explicitly(const State<dim>  &old_state,
+                                               const Forces<dim> &old_forces,
+                                               const Load<dim>   &load,
+                                               const TimeStep    &time_step,
+                                               Step              &step)
+  {
+    State<dim> &state     = step.state;
+    state.z               = old_state.z;
+    double     rate       = 0.;
+    const auto solve_with = [&](const State<dim> &guess) {
+      TimerOutput::Scope  phase(timer, "contact");
+      const ContactReport last = step.report;
+      step.report              = solve(
+        guess, old_forces, load, step.bounds, step.foundation_step, state);
+      step.report.iterations += last.iterations;
+      step.report.linear_iterations += last.linear_iterations;
+    };
+
+    const auto note = [&](const double relaxation_rate,
+                          const double capped_volume) {
+      rate               = std::max(rate, relaxation_rate);
+      step.capped_volume = std::max(step.capped_volume, capped_volume);
+    };
+
+    if (scene.has_viscosity())
+      {
+        TimerOutput::Scope phase(timer, "rate");
+        FlowStep<dim>      z_step = flow(old_state, time_step);
+        state.z                   = std::move(z_step.z);
+        note(z_step.relaxation_rate, z_step.capped_volume);
+      }
+    solve_with(old_state);
+    if (scene.has_viscosity() && parameters.time.scheme == "Heun")
+      {
+        // z_{n-1} + k (G_{n-1} + G*)/2 with G* at the state just predicted.
+        const State<dim> predicted = state;
+        {
+          TimerOutput::Scope phase(timer, "rate");
+          const FlowRate     end = evaluate_flow(discretisation->laws,
+                                             predicted.u,
+                                             predicted.z,
+                                             time_step.t,
+                                             ExactSolution<dim>::Side::before);
+          check_stability(end.relaxation_rate, time_step);
+          note(end.relaxation_rate, end.capped_volume);
+          for (std::size_t i = 0; i < state.z.size(); ++i)
+            state.z[i] = 0.5 * (old_state.z[i] + predicted.z[i] +
+                                time_step.k * end.rate[i]);
+        }
+        solve_with(predicted);
+      }
+    if (rate > 0.)
+      step.step_limit = 2. / rate;
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  ViscoplasticContact<dim>::solve(const State<dim>          &guess,
+                                  const Forces<dim>         &old_forces,
+                                  const Load<dim>           &load,
+                                  const std::vector<double> &bounds,
+                                  const Vector<double>      &foundation_step,
+                                  State<dim>                &new_state)
+  {
+    Discretisation             &d     = *discretisation;
+    const AdmissibleSpace<dim> &space = d.space;
+    DistributedVector           right_side(load.values);
+    if (scene.has_irreversible_stress()) // collective, also without cells
+      add_irreversible_load(d.sampling, new_state.z, right_side);
+
+    // An elastic body whose data have not changed does not move.
+    if (!d.face && !scene.has_viscosity() && is_solved_on_mesh)
+      {
+        DistributedVector displacement_change(old_forces.u);
+        space.set_prescribed(new_state.t, displacement_change);
+        displacement_change -= old_forces.u;
+        DistributedVector load_change(load.values);
+        load_change -= old_forces.load.values;
+        if (displacement_change.linfty_norm() == 0. &&
+            load_change.linfty_norm() == 0.)
+          {
+            new_state.u        = guess.u;
+            new_state.velocity = space.ghosted_vector();
+            return {};
+          }
+      }
+
+    DistributedVector u = start(guess, old_forces, foundation_step, new_state);
+    const ContactReport report = solve_from(old_forces,
+                                            load,
+                                            right_side,
+                                            bounds,
+                                            foundation_step,
+                                            step_tolerance(),
+                                            u,
+                                            new_state.friction);
+    set_displacement(u, old_forces, new_state);
+    return report;
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  ViscoplasticContact<dim>::start(const State<dim>     &guess,
+                                  const Forces<dim>    &old_forces,
+                                  const Vector<double> &foundation_step,
+                                  State<dim>           &new_state) const
+  {
+    const Discretisation       &d     = *discretisation;
+    const AdmissibleSpace<dim> &space = d.space;
+    // Start from the last displacement, moved on by the last velocity, except
+    // where points stick: they go with the foundation.
+    const DistributedVector &old_u = old_forces.u;
+    DistributedVector        u(old_u), velocity(old_u);
+    space.to_frames(guess.velocity, velocity);
+    u.add(new_state.k, velocity);
+    if (d.face)
+      {
+        const FrictionFace &face = d.face->layout();
+        new_state.friction       = guess.friction;
+        if (new_state.friction.sticks.size() != face.points.size())
+          new_state.friction = FrictionState(face.points.size());
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          if (new_state.friction.sticks[face.first_point[node]])
+            for (unsigned int i = face.first_dof[node];
+                 i < face.first_dof[node + 1];
+                 ++i)
+              if (space.owned.is_element(d.face->dofs()[i]))
+                {
+                  const auto local =
+                    space.owned.index_within_set(d.face->dofs()[i]);
+                  u.begin()[local] =
+                    old_u.begin()[local] +
+                    (foundation_step.size() > 0 ? foundation_step[i] : 0.);
+                }
+      }
+    space.set_prescribed(new_state.t, u);
+    return u;
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  ViscoplasticContact<dim>::solve_from(const Forces<dim>         &old_forces,
+                                       const Load<dim>           &load,
+                                       const DistributedVector   &right_side,
+                                       const std::vector<double> &bounds,
+                                       const Vector<double> &foundation_step,
+                                       const double          tolerance,
+                                       DistributedVector    &u,
+                                       FrictionState        &friction)
+  {
+    Discretisation             &d     = *discretisation;
+    const AdmissibleSpace<dim> &space = d.space;
+
+    // What rounding leaves of displacements and of loads that cancel.
+    double rounding = 0.;
+    for (std::size_t i = 0; i < space.excluded().size(); ++i)
+      if (!space.excluded()[i])
+        {
+          const double stiffness = d.diagonal.begin()[i];
+          const auto   square    = [](const double x) { return x * x; };
+          rounding +=
+            stiffness * square(u.begin()[i]) +
+            (square(load.values.begin()[i]) + square(right_side.begin()[i])) /
+              stiffness;
+        }
+    rounding = Utilities::MPI::sum(rounding, communicator);
+    d.solver->set_rounding_error(100. * std::numeric_limits<double>::epsilon() *
+                                 std::sqrt(rounding));
+
+    if (d.face)
+      {
+        DistributedVector change(u);
+        change -= old_forces.u;
+        Vector<double> increment = d.face->face_vector(change);
+        if (foundation_step.size() > 0)
+          increment -= foundation_step;
+        d.solver->begin(right_side, u);
+        return contact_solver.solve(
+          *d.solver, d.face->layout(), bounds, tolerance, increment, friction);
+      }
+    ContactReport report;
+    report.linear_iterations = d.solver->solve(right_side, u, tolerance);
+    report.tolerance         = tolerance;
+    report.error             = d.solver->rounding_error();
+    if (!d.solver->is_exact())
+      report.error =
+        std::max(report.error, tolerance * d.solver->energy_norm());
+    return report;
+  }
+
+
+
+  template <int dim>
+  double
+  ViscoplasticContact<dim>::step_tolerance() const
+  {
+    return error_bar ? error_bar->tolerance() :
+                       parameters.solver.strict_tolerance();
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::set_displacement(const DistributedVector &u,
+                                             const Forces<dim> &old_forces,
+                                             State<dim>        &new_state)
+  {
+    const AdmissibleSpace<dim> &space = discretisation->space;
+    new_state.u                       = space.ghosted_vector();
+    new_state.velocity                = space.ghosted_vector();
+    space.to_cartesian(u, new_state.u);
+    if (new_state.k > 0.)
+      {
+        DistributedVector velocity(u);
+        velocity -= old_forces.u;
+        velocity /= new_state.k;
+        space.to_cartesian(velocity, new_state.velocity);
+      }
+    is_solved_on_mesh = true;
+  }
+
+
+
+  template class ViscoplasticContact<2>;
+  template class ViscoplasticContact<3>;
+} // namespace Viscoplastic

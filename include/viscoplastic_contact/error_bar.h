@@ -138,9 +138,15 @@ namespace Viscoplastic
     exchange(Archive &archive)
     {
       for (ErrorLedger *ledger : {&present, &run.largest})
-        archive & ledger->space & ledger->time & ledger->algebraic &
-          ledger->initial & ledger->time_indicator &
-          ledger->velocity_variation & ledger->energy_norm;
+        for (double *value : {&ledger->space,
+                              &ledger->time,
+                              &ledger->algebraic,
+                              &ledger->initial,
+                              &ledger->time_indicator,
+                              &ledger->velocity_variation,
+                              &ledger->energy_norm,
+                              &ledger->velocity_square})
+          archive &*value;
       archive &run.t &run.largest_energy_norm;
     }
 

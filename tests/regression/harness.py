@@ -37,7 +37,13 @@ COUPLED = 1e-5
 
 # Columns that tell how the numbers were found: they may differ from run to
 # run and from rank count to rank count.
-EFFORT = {"contact_iterations", "linear_iterations", "duality_gap", "algebraic_error"}
+EFFORT = {
+    "contact_iterations",
+    "linear_iterations",
+    "duality_gap",
+    "algebraic_error",
+    "estimate_algebraic",
+}
 
 # Fields that have one value a cell.
 CELL_DATA = ("stress_", "irreversible_stress_", "von_mises", "estimator", "subdomain")

@@ -314,6 +314,10 @@ class Restart(TestCase):
     def test_bit_by_bit_on_two_ranks(self):
         self.check(2)
 
+    def test_bit_by_bit_on_one_mesh(self):
+        """What a new mesh makes anew must come from the checkpoint here."""
+        self.check(1, **{"Mesh refinement/Strategy": "none"})
+
     def test_the_error_bar_cannot_change(self):
         with Job("slab", {**SLAB, **EVERY_STEP}) as job:
             job.run()

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/exact_solution.h>
 #include <viscoplastic_contact/scene.h>
+#include <viscoplastic_contact/strain.h>
 
 #include <sstream>
 
@@ -99,12 +100,7 @@ namespace Viscoplastic
   SymmetricTensor<2, 3>
   ExactSolution<dim>::strain(const Point<dim> &x, const double t) const
   {
-    const Tensor<2, dim>  g = gradient(x, t);
-    SymmetricTensor<2, 3> result;
-    for (unsigned int i = 0; i < dim; ++i)
-      for (unsigned int j = i; j < dim; ++j)
-        result[i][j] = 0.5 * (g[i][j] + g[j][i]);
-    return result;
+    return Viscoplastic::strain(gradient(x, t));
   }
 
 

@@ -6,6 +6,7 @@
 
 #include <viscoplastic_contact/binary_archive.h>
 #include <viscoplastic_contact/reference_fields.h>
+#include <viscoplastic_contact/strain.h>
 
 #include <cstdio>
 #include <fstream>
@@ -20,42 +21,6 @@ namespace Viscoplastic
     /// Begins a file of samples, and says of which dimension and version.
     template <int dim>
     constexpr double magic_number = 7.25e9 + dim;
-
-
-
-    template <int dim>
-    double
-    mean_divergence(const std::vector<double>         &weights,
-                    const std::vector<Tensor<2, dim>> &gradients)
-    {
-      double sum = 0., volume = 0.;
-      for (unsigned int q = 0; q < weights.size(); ++q)
-        {
-          sum += trace(gradients[q]) * weights[q];
-          volume += weights[q];
-        }
-      return sum / volume;
-    }
-
-
-
-    /// The strain of a gradient, with the trace replaced by @p dilatation
-    /// under mean dilatation.
-    template <int dim>
-    SymmetricTensor<2, 3>
-    strain(const Tensor<2, dim> &gradient,
-           const bool            mean_dilatation,
-           const double          dilatation)
-    {
-      SymmetricTensor<2, 3> result;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = i; j < dim; ++j)
-          result[i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
-      if (mean_dilatation)
-        for (unsigned int d = 0; d < 3; ++d)
-          result[d][d] += (dilatation - trace(gradient)) / 3.;
-      return result;
-    }
 
 
 
@@ -191,12 +156,14 @@ namespace Viscoplastic
                   for (unsigned int e = 0; e < dim; ++e)
                     g[d][e] = sample[Samples::gradient_index + d * dim + e];
                 }
-              const auto exact = strain(g,
-                                        sampling.mean_dilatation,
-                                        sample[Samples::dilatation_index]);
+              const auto exact =
+                reduced_strain(g,
+                               sampling.mean_dilatation,
+                               sample[Samples::dilatation_index]);
               const auto defect =
-                exact -
-                strain(gradients[q], sampling.mean_dilatation, dilatation);
+                exact - reduced_strain(gradients[q],
+                                       sampling.mean_dilatation,
+                                       dilatation);
               error[0] += w * (stiffness.stress(defect) * defect);
               norm[0] += w * (stiffness.stress(exact) * exact);
               error[1] += w * ((u - values[q]).norm_square() +

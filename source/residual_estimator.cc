@@ -3,6 +3,7 @@
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/residual_estimator.h>
+#include <viscoplastic_contact/strain.h>
 
 #include <cmath>
 
@@ -28,29 +29,6 @@ namespace Viscoplastic
         for (unsigned int j = 0; j < dim; ++j)
           traction[i] += stress[i][j] * normal[j];
       return traction;
-    }
-
-
-
-    /// The strain of a displacement gradient, with its trace moved to
-    /// @p dilatation under mean dilatation.
-    template <int dim>
-    SymmetricTensor<2, 3>
-    strain(const Tensor<2, dim> &gradient,
-           const bool            mean_dilatation,
-           const double          dilatation)
-    {
-      SymmetricTensor<2, 3> result;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = i; j < dim; ++j)
-          result[i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
-      if (mean_dilatation)
-        {
-          const double change = (dilatation - trace(result)) / 3.;
-          for (unsigned int d = 0; d < 3; ++d)
-            result[d][d] += change;
-        }
-      return result;
     }
 
 
@@ -202,8 +180,9 @@ namespace Viscoplastic
         else
           tractions[q] =
             terms.z * normal +
-            in_plane(stiffness.stress(
-                       strain(gradient, mean_dilatation, terms.dilatation)),
+            in_plane(stiffness.stress(reduced_strain(gradient,
+                                                     mean_dilatation,
+                                                     terms.dilatation)),
                      normal);
       }
   }
@@ -254,7 +233,7 @@ namespace Viscoplastic
                 for (unsigned int k = 0; k < dim; ++k)
                   gradient[i][k] = hessian[i][k][j];
               const SymmetricTensor<2, 3> stress =
-                stiffness.stress(strain(gradient, mean_dilatation, 0.));
+                stiffness.stress(reduced_strain(gradient, mean_dilatation, 0.));
               for (unsigned int i = 0; i < dim; ++i)
                 residual[i] += stress[i][j];
             }

@@ -3,6 +3,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/solution_errors.h>
+#include <viscoplastic_contact/strain.h>
 
 #include <cmath>
 
@@ -10,40 +11,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    template <int dim>
-    SymmetricTensor<2, 3>
-    strain(const Tensor<2, dim> &gradient)
-    {
-      SymmetricTensor<2, 3> result;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = i; j < dim; ++j)
-          result[i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
-      return result;
-    }
-
-
-
-    /// Give each strain of a cell the mean of their traces.
-    void
-    average_dilatation(const std::vector<double>          &weights,
-                       std::vector<SymmetricTensor<2, 3>> &strains)
-    {
-      double sum = 0., volume = 0.;
-      for (unsigned int q = 0; q < weights.size(); ++q)
-        {
-          sum += trace(strains[q]) * weights[q];
-          volume += weights[q];
-        }
-      for (SymmetricTensor<2, 3> &strain : strains)
-        {
-          const double change = (sum / volume - trace(strain)) / 3.;
-          for (unsigned int d = 0; d < 3; ++d)
-            strain[d][d] += change;
-        }
-    }
-
-
-
     /// The squares of the norms.
     struct Squares
     {
@@ -97,10 +64,12 @@ namespace Viscoplastic
           fe_values.reinit(cell);
           fe_values[displacement].get_function_values(state.u, values);
           fe_values[displacement].get_function_gradients(state.u, gradients);
+          const double dilatation =
+            mean_divergence(fe_values.get_JxW_values(), gradients);
           for (unsigned int q = 0; q < n; ++q)
-            strains[q] = strain(gradients[q]);
-          if (sampling.mean_dilatation)
-            average_dilatation(fe_values.get_JxW_values(), strains);
+            strains[q] = reduced_strain(gradients[q],
+                                        sampling.mean_dilatation,
+                                        dilatation);
           const Stiffness &stiffness = sampling.moduli(index);
           for (unsigned int q = 0; q < n; ++q)
             {

@@ -305,7 +305,14 @@ class Killed(RestartCase):
             for i in range(N_KILLS):
                 with Job("slab_adaptive", self.OVERRIDES) as job:
                     instant = chance.uniform(0.1, 1) * duration
-                    self.kill(job.start(), instant)
+                    process = job.start()
+                    if i % 2 == 1:
+                        # not before there is something to go on from, also
+                        # where other programs make the start slow
+                        while process.poll() is None and not job.steps():
+                            time.sleep(0.01)
+                        instant *= 0.5
+                    self.kill(process, instant)
                     n_restarted += job.steps() != []
                     job.run("--restart=auto")
                     self.assertIdentical(

@@ -647,7 +647,8 @@ namespace
             (cell->center()[0] < 1. ? left : right) += value;
             if (std::abs(cell->center()[0] - 1.) > 0.26)
               {
-                EXPECT_EQ(value, 0.);
+                // Squares of what rounding leaves of tractions of size 1.
+                EXPECT_LE(value, 1e-30);
               }
           }
         const double expected = 0.5 * h * square / (2. * mu);

@@ -433,11 +433,11 @@ namespace Viscoplastic
                       "Time between outputs of fields; where positive, it "
                       "replaces the entry above. Unit: time.",
                       Patterns::Double(0.));
-    prm.add_parameter("Reference fields",
-                      reference_fields,
-                      "At the end of each phase of time, write the fields at "
-                      "all quadrature points for coarser runs to be compared "
-                      "with, see `Exact solution/Reference directory'.");
+    prm.add_parameter(
+      "Reference fields",
+      reference_fields,
+      "At the end of each phase of time, write the fields in "
+      "all cells for coarser runs to be compared with, see `Exact solution/Reference directory'.");
     prm.add_parameter("Points",
                       points,
                       "Points of the body, coordinates separated by commas and "

@@ -280,9 +280,13 @@ namespace Viscoplastic
     Samples     result;
     result.t = state.t;
     FEValues<dim>               fe_values(dof_handler.get_fe(),
-                            QGauss<dim>(2),
+                            QMidpoint<dim>(),
                             update_values | update_gradients |
                               update_JxW_values | update_quadrature_points);
+    FEValues<dim>               whole(dof_handler.get_fe(),
+                        QGauss<dim>(2),
+                        update_gradients | update_JxW_values);
+    std::vector<Tensor<2, dim>> all_gradients(whole.n_quadrature_points);
     FEFaceValues<dim>           face_values(dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values |
@@ -301,8 +305,13 @@ namespace Viscoplastic
         fe_values.reinit(cell);
         fe_values[displacement].get_function_values(state.u, values);
         fe_values[displacement].get_function_gradients(state.u, gradients);
-        const double dilatation =
-          mean_divergence(fe_values.get_JxW_values(), gradients);
+        double dilatation = trace(gradients[0]);
+        if (sampling.mean_dilatation)
+          {
+            whole.reinit(cell);
+            whole[displacement].get_function_gradients(state.u, all_gradients);
+            dilatation = mean_divergence(whole.get_JxW_values(), all_gradients);
+          }
         for (const unsigned int q : fe_values.quadrature_point_indices())
           {
             typename Samples::CellPoint sample;

@@ -10,17 +10,17 @@
 namespace Viscoplastic
 {
   /**
-   * The fields of one state at the quadrature points of its mesh, free of that
-   * mesh: a stand-in for the exact solution that runs on other meshes, with
-   * other time steps and on other numbers of ranks compare themselves with.
+   * The fields of one state at the centres of its cells, free of the mesh: a
+   * stand-in for the exact solution that runs on other meshes, with other time
+   * steps and on other numbers of ranks compare themselves with.
    */
   template <int dim>
   struct FieldSamples
   {
     static constexpr unsigned int n_stresses = dim == 2 ? 4 : 6;
 
-    // x, weight, u, grad u row by row, the mean of div u over the cell,
-    // and the cell mean of the stress in the order of the parameter file.
+    // x, weight (the volume), u, grad u row by row, the mean of div u over the
+    // cell, and the cell mean of the stress in the order of the parameter file.
     static constexpr unsigned int u_index          = dim + 1;
     static constexpr unsigned int gradient_index   = u_index + dim;
     static constexpr unsigned int dilatation_index = gradient_index + dim * dim;
@@ -37,7 +37,9 @@ namespace Viscoplastic
     std::vector<FacePoint> faces;
   };
 
-  /// Of the owned cells. @p multiplier_density is null without friction.
+  /// Of the owned cells. Gradients are more accurate at their centres than
+  /// elsewhere, and points cost time. @p multiplier_density is null without
+  /// friction.
   template <int dim>
   FieldSamples<dim>
   sample_fields(const StressSampling<dim> &sampling,

@@ -174,7 +174,9 @@ namespace Viscoplastic
       known = records();
     if (known.empty())
       return std::numeric_limits<double>::quiet_NaN();
-    const CostModel  cost = cost_of(known, runs.scene.dimension);
+    if (costs.count(key.way()) == 0)
+      costs.emplace(key.way(), cost_of(known, runs.scene.dimension));
+    const CostModel &cost = costs.at(key.way());
     const RunRecord *finest =
       *std::max_element(known.begin(),
                         known.end(),
@@ -242,6 +244,7 @@ namespace Viscoplastic
     for (PlannedRun &run : plan)
       {
         run.record = runs.find(run.key);
+        costs.clear();
         n += run.record ? 1 : 0;
       }
     return n;
@@ -287,8 +290,15 @@ namespace Viscoplastic
         return "";
       }
     run.record = std::move(outcome.record);
+    costs.clear();
     announce(run, elapsed());
-    report(false);
+    // The fits of a large study take as long as a small run.
+    const double now = elapsed();
+    if (now - last_report > 10.)
+      {
+        report(false);
+        last_report = elapsed();
+      }
     return "";
   }
 

@@ -97,6 +97,11 @@ namespace Viscoplastic
     void
     announce(const PlannedRun &run, const double elapsed) const;
 
+    /// Of the ways, from the present records.
+    mutable std::map<std::string, CostModel> costs;
+    /// Seconds since the study began.
+    double last_report = 0.;
+
     Console           &console;
     ConditionalOStream out;
   };

@@ -77,6 +77,7 @@ def manufactured_cases():
         dimension = int(read_parameters(scene).get(("Dimension",), "2"))
 
         def case(law=None, mesh="uniform", scheme=plan.SCHEMES[0], **overrides):
+            of_law = plan.LAW_LADDERS.get(law.stem if law else "", {})
             ladders = {
                 ladder: {
                     **plan.COUPLED,
@@ -84,6 +85,7 @@ def manufactured_cases():
                     "Study/Ladders": ladder,
                     "Study/Time schemes": scheme,
                     **own,
+                    **of_law.get(ladder, {}),
                     **overrides,
                 }
                 for ladder, own in plan.MANUFACTURED_LADDERS[dimension].items()

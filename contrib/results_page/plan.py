@@ -56,6 +56,9 @@ MANUFACTURED_LADDERS = {
     },
 }
 
+# Steps that forward Euler can take, where those above are too long for a law.
+LAW_LADDERS = {"law_norton": {"time": {"Time/Phases": "1: 14"}}}
+
 # {mesh: overrides}; {dimension} stands for 2 or 3, {folder} for that of the
 # scenes.  Local refinement is along a side, across the foundation.
 MESHES = {

@@ -41,7 +41,9 @@ half of the one before: $h$ alone with the finest steps, $k$ alone on the finest
 mesh, and both. Where the scene has an exact solution, errors are those of the
 discrete one; elsewhere they are differences to a run with half of the finest
 $h$ and $k$, so that an error of the finest run of a first-order method comes
-out about half as large as it is.
+out about half as large as it is. That run has a uniform mesh: near
+singularities adaptive runs can be better than it, and their curves level out at
+its error.
 
 **Convergence.** In logarithmic scales an error $C h^p$ is a straight line with
 slope $p$, which the triangles show. A curve that becomes flat has met the part

@@ -93,7 +93,7 @@ DIAGRAMS = {
             "Time/Phases": "0.5: 2, 1.5: 4",
             "Study/Levels": "3",
             "Study/Ladders": "space, time, both",
-            "Study/Budget": "240",
+            "Study/Budget": "700",
             **EVERY_WAY,
         },
     ),

@@ -73,7 +73,8 @@ switched off (`Error control/Error bar = false`) at the price of not knowing.
 **Prices.** For each tolerance the cheapest run of the study that is at least so
 accurate. *Italics* mark predictions for runs that nobody made, from the fits of
 error and time: expect them within a factor of about two, and less the further
-they are from the measured runs. **Bold** is the cheapest of a scene for an error, of
+they are from the measured runs, which took seconds; what would take more than
+an hour is out of reach of such a prediction. **Bold** is the cheapest of a scene for an error, of
 measured ones if there are any. Between
 runs of a ladder prices jump by what one refinement costs; the run that is named
 may therefore be more accurate than asked. To halve an error of first order in

@@ -201,10 +201,17 @@ def price(study, way, tolerance, error):
     }
 
 
+# A prediction so far from the runs that it rests on, some seconds long, is no
+# number any more.
+BEYOND_REACH = 3600
+
+
 def price_cell(found, is_cheapest):
     """Seconds bold where no other way is cheaper, all italic if predicted."""
     if found is None:
         return UNKNOWN
+    if not found["measured"] and found["seconds"] > BEYOND_REACH:
+        return "*out of reach*"
     time = seconds(found["seconds"])
     rest = ", ".join(
         f"{number(found[name], digits)}{unit}"

@@ -60,7 +60,8 @@ DEFECTS = {
 
 
 def scene_file(name):
-    """The parameter file of that name in prm/verification or prm/demos."""
+    """The parameter file of that name in prm/verification or prm/demos, e.g.
+    `slab' or `hard/hold_2d'."""
     (file,) = (SOURCE / "prm").glob(f"[vd]*/{name}.prm")
     return file
 
@@ -197,10 +198,11 @@ def run(scene, overrides=None, ranks=1, text=None, check=True):
     keep = os.environ.get("KEEP_RESULTS")
     if keep:
         Path(keep).mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix=f"{scene}_", dir=keep))
-
     if text is None:
         text = scene_file(scene).read_text()
+    scene = Path(scene).name
+    work = Path(tempfile.mkdtemp(prefix=f"{scene}_", dir=keep))
+
     overrides = {"Output/Directory": work / "results", **(overrides or {})}
     files = work / f"{scene}.prm", work / "overrides.prm"
     files[0].write_text(text)

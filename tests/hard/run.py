@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Run hard cases: python3 run.py [--full] [--list] [--table FILE] [CASE ...].
+
+Without names all of them.  Ends with `N passed, N failed`, and with code 1
+unless all have passed.
+"""
+
+import argparse
+import importlib
+import sys
+from pathlib import Path
+
+from suite import CASES, Size, run_case, table
+
+# The order is that of the table.
+MODULES = ("elasticity", "creep", "friction", "time_steps", "limits")
+
+
+def load():
+    here = Path(__file__).resolve().parent
+    for module in MODULES:
+        if (here / f"{module}.py").exists():
+            importlib.import_module(module)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="CASE")
+    parser.add_argument("--full", action="store_true", help="the full sizes")
+    parser.add_argument("--list", action="store_true", help="names, and nothing else")
+    parser.add_argument("--table", metavar="FILE", help="write the results as Markdown")
+    arguments = parser.parse_args()
+    load()
+    if arguments.list:
+        print("\n".join(CASES))
+        return 0
+    unknown = [name for name in arguments.names if name not in CASES]
+    if unknown:
+        parser.error(f"there is no case {', '.join(unknown)}; --list names all")
+
+    size = Size(arguments.full)
+    outcomes = []
+    for name in arguments.names or CASES:
+        outcome = run_case(CASES[name], size)
+        outcomes.append(outcome)
+        print(f"{name}: {'passed' if outcome.passed else 'FAILED'}", end="")
+        print(f" in {outcome.seconds:.1f} s  {outcome.failure}", flush=True)
+        for figure in outcome.figures:
+            mark = "" if figure.holds else "  BROKEN"
+            print(f"  {figure.name}: {figure.value:.6g} ({figure.bounds}){mark}")
+        if arguments.table:  # also what a run that is ended has found
+            Path(arguments.table).write_text(table(outcomes, size))
+    n_passed = sum(outcome.passed for outcome in outcomes)
+    print(f"{n_passed} passed, {len(outcomes) - n_passed} failed")
+    return 0 if n_passed == len(outcomes) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

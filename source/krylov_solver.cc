@@ -8,6 +8,7 @@
 #include <Epetra_Vector.h>
 #include <Teuchos_ParameterList.hpp>
 #include <ml_MultiLevelPreconditioner.h>
+#include <ml_utils.h>
 
 #include <cmath>
 #include <limits>
@@ -190,18 +191,30 @@ namespace Viscoplastic
 
 
   void
-  KrylovSolver::recall(const Memory &memory)
+  KrylovSolver::recall(const std::optional<Memory> &memory)
   {
-    AssertThrow(memory.built_for.projector.size() == face.n_nodes() &&
-                  memory.built_for.spring.size() == face.n_nodes(),
+    if (!memory)
+      {
+        amg.reset();
+        truncation = built_for = FaceTruncation();
+        has_springs            = false;
+        best_rate = lost_iterations = 0.;
+        is_fresh                    = false;
+        return;
+      }
+    const FaceTruncation &wanted = memory->built_for;
+    AssertThrow(wanted.projector.size() == face.n_nodes() &&
+                  wanted.spring.size() == face.n_nodes(),
                 ExcMessage("The memory of the linear solver belongs to another "
                            "contact face."));
-    truncation  = memory.built_for;
+    truncation  = wanted;
     has_springs = truncation.has_springs();
-    build_preconditioner();
-    best_rate       = memory.best_rate;
-    lost_iterations = memory.lost_iterations;
-    is_fresh        = memory.is_fresh;
+    if (!amg || built_for.projector != wanted.projector ||
+        built_for.spring != wanted.spring)
+      build_preconditioner();
+    best_rate       = memory->best_rate;
+    lost_iterations = memory->lost_iterations;
+    is_fresh        = memory->is_fresh;
   }
 
 
@@ -355,6 +368,10 @@ namespace Viscoplastic
     parameters.set("null space: dimension",
                    static_cast<int>(rigid_body_modes.size()));
     parameters.set("null space: vectors", near_null_space.data());
+    // The vectors from which ML estimates eigenvalues are random: always the
+    // same ones, or a set-up would depend on how many there were before.
+    ML_set_random_seed(
+      1 + static_cast<int>(Utilities::MPI::this_mpi_process(communicator)));
     amg = std::make_unique<TrilinosWrappers::PreconditionAMG>();
     amg->initialize(masked_matrix, parameters);
     built_for       = truncation;

@@ -46,18 +46,17 @@ namespace Viscoplastic
   {
     if (!scene.has_viscosity())
       return;
-    const TimeStep first = scene.schedule.step(1);
-    // Of backward Euler it is no limit, but what it would have been.
-    const double rate =
-      is_implicit() ?
-        evaluate_flow(discretisation->laws, state.u, state.z, first.t_old)
-          .relaxation_rate :
-        flow(state, first).relaxation_rate; // throws
+    const FlowRate &initial = accepted_rate();
+    const double    rate    = initial.relaxation_rate;
+    const bool      has_limit =
+      !is_implicit() && !changes_scheme() && !control.needs_limit();
+    if (has_limit)
+      check_stability(initial, scene.schedule.step(1));
     if (rate == 0.)
       return;
     out << "Stability limit 2/r of the initial state: " << 2. / rate
         << (is_implicit() ? " of explicit schemes\n" : "\n");
-    if (is_implicit())
+    if (!has_limit)
       return;
     const TimeStep largest = scene.schedule.largest_step();
     if (largest.k * rate > 2. * (1. + 1e-10))

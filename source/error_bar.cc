@@ -60,7 +60,6 @@ namespace Viscoplastic
     : scene(scene)
     , solver(scene.parameters.solver)
     , algebraic_fraction(scene.parameters.error_control.algebraic_fraction)
-    , defect(time_defect(scene.parameters.time.scheme))
   {}
 
 
@@ -161,23 +160,28 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::pair<double, double>
+  void
   ErrorBar<dim>::add_defect(const StressSampling<dim> &sampling,
+                            const TimeDefect          &defect,
                             const State<dim>          &accepted,
-                            State<dim>                &state) const
+                            State<dim>                &state,
+                            ErrorLedger               &ledger) const
   {
-    const bool   is_second = n_sample_fields(scene) > 2;
-    const double k         = state.k;
-    state.time_error       = accepted.time_error;
+    const bool   is_second   = n_sample_fields(scene) > 2;
+    const bool   is_first    = accepted.k == 0.;
+    const bool   is_measured = scene.parameters.step_control.is_on();
+    const double k           = state.k;
+    state.time_error         = accepted.time_error;
     if (is_second)
       state.rate_slope.resize(accepted.rate_slope.size());
-    std::vector<double> sums(2, 0.);
+    std::vector<double> sums(4, 0.);
     std::size_t         i = 0;
     for (std::size_t c = 0; c < sampling.n_cells(); ++c)
       {
         const Stiffness &stiffness = sampling.moduli(c);
         for (unsigned int s = 0; s < sampling.n_samples; ++s, ++i)
           {
+            const double                weight = sampling.weight(c, s);
             const SymmetricTensor<2, 3> change =
               assessed_rate->rate[i] - accepted_rate->rate[i];
             SymmetricTensor<2, 3> step = defect.first * k * change;
@@ -185,19 +189,31 @@ namespace Viscoplastic
               {
                 state.rate_slope[i] = change / k;
                 // There is no second derivative before the second step.
-                if (accepted.k > 0.)
+                if (!is_first)
                   step += defect.second * k * k * k * 2. / (k + accepted.k) *
                           (state.rate_slope[i] - accepted.rate_slope[i]);
               }
             state.time_error[i] += step;
-            sums[0] +=
-              sampling.weight(c, s) * complementary_square(stiffness, step);
-            sums[1] += sampling.weight(c, s) *
-                       complementary_square(stiffness, state.time_error[i]);
+            // Steps are chosen with the slope as the change of slope there.
+            if (is_first)
+              step += defect.second * k * change;
+            sums[0] += weight * complementary_square(stiffness, step);
+            sums[1] +=
+              weight * complementary_square(stiffness, state.time_error[i]);
+            if (is_measured)
+              {
+                sums[2] += weight * complementary_square(stiffness, state.z[i]);
+                sums[3] +=
+                  weight *
+                  complementary_square(stiffness, state.z[i] - accepted.z[i]);
+              }
           }
       }
     Utilities::MPI::sum(sums, sampling.space.communicator, sums);
-    return {sums[0], sums[1]};
+    ledger.time_indicator      = std::sqrt(sums[0]);
+    ledger.time                = std::sqrt(sums[1]);
+    ledger.irreversible_norm   = std::sqrt(sums[2]);
+    ledger.irreversible_change = std::sqrt(sums[3]);
   }
 
 
@@ -205,6 +221,7 @@ namespace Viscoplastic
   template <int dim>
   ErrorLedger
   ErrorBar<dim>::assess(const StressSampling<dim> &sampling,
+                        const TimeDefect          &defect,
                         const State<dim>          &accepted,
                         const Forces<dim>         &old_forces,
                         const Forces<dim>         &forces,
@@ -223,9 +240,7 @@ namespace Viscoplastic
       {
         Assert(accepted_rate && assessed_rate,
                ExcMessage("The rates have not been evaluated."));
-        const auto [step, all] = add_defect(sampling, accepted, state);
-        ledger.time_indicator  = std::sqrt(step);
-        ledger.time            = std::sqrt(all);
+        add_defect(sampling, defect, accepted, state, ledger);
       }
 
     // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:

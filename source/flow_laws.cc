@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/flow_laws.h>
+#include <viscoplastic_contact/messages.h>
 
 #include <algorithm>
 
@@ -171,6 +172,45 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /**
+     * The largest relaxation rate and where it is: at the first of samples
+     * whose rates are equal up to solver tolerances. Ranks have their cells in
+     * the order of the mesh, so that it does not depend on their number.
+     */
+    struct CriticalSample
+    {
+      double   largest = 0., critical = 0.;
+      Point<3> position;
+
+      bool
+      is_beyond(const double r) const
+      {
+        return r > critical * (1. + 1e-6);
+      }
+
+      void
+      reduce(const MPI_Comm comm)
+      {
+        const std::array<double, 5> own{
+          {largest, critical, position[0], position[1], position[2]}};
+        *this = CriticalSample();
+        for (const auto &other : Utilities::MPI::all_gather(comm, own))
+          {
+            largest = std::max(largest, other[0]);
+            if (is_beyond(other[1]))
+              {
+                critical = other[1];
+                position = Point<3>(other[2], other[3], other[4]);
+              }
+          }
+      }
+    };
+  } // namespace
+
+
+
   template <int dim>
   FlowRate
   evaluate_flow(const FlowLaws<dim>                    &laws,
@@ -183,33 +223,52 @@ namespace Viscoplastic
     const auto                 now      = laws.at(t);
     FlowRate                   result{IrreversibleStress(z.size()), 0., 0.};
     std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+    CriticalSample                     worst;
+    // An expression without a value there, on some rank.
+    std::string failure;
+    try
       {
-        if (laws.source_solution)
-          for (unsigned int s = 0; s < sampling.n_samples; ++s)
-            result.rate[c * sampling.n_samples + s] =
-              laws.source(now, c, s, side);
-        const ViscoplasticLaw *law = now.law(c);
-        if (law == nullptr)
-          continue;
-        const Stiffness &stiffness = sampling.moduli(c);
-        sampling.strains(c, ghosted_u.begin(), strain.data());
-        for (unsigned int s = 0; s < sampling.n_samples; ++s)
+        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
           {
-            const std::size_t           i     = c * sampling.n_samples + s;
-            const LawPoint              point = now.point(c, s);
-            const SymmetricTensor<2, 3> stress =
-              stiffness.stress(strain[s]) + z[i];
-            result.rate[i] += law->rate(stress, strain[s], stiffness, point);
-            result.relaxation_rate = std::max(
-              result.relaxation_rate,
-              law->relaxation_rate(stress, strain[s], stiffness, point));
-            if (law->is_beyond_cap(stress, point))
-              result.capped_volume += sampling.weight(c, s);
+            if (laws.source_solution)
+              for (unsigned int s = 0; s < sampling.n_samples; ++s)
+                result.rate[c * sampling.n_samples + s] =
+                  laws.source(now, c, s, side);
+            const ViscoplasticLaw *law = now.law(c);
+            if (law == nullptr)
+              continue;
+            const Stiffness &stiffness = sampling.moduli(c);
+            sampling.strains(c, ghosted_u.begin(), strain.data());
+            for (unsigned int s = 0; s < sampling.n_samples; ++s)
+              {
+                const std::size_t           i     = c * sampling.n_samples + s;
+                const LawPoint              point = now.point(c, s);
+                const SymmetricTensor<2, 3> stress =
+                  stiffness.stress(strain[s]) + z[i];
+                result.rate[i] +=
+                  law->rate(stress, strain[s], stiffness, point);
+                const double r =
+                  law->relaxation_rate(stress, strain[s], stiffness, point);
+                worst.largest = std::max(worst.largest, r);
+                if (worst.is_beyond(r))
+                  {
+                    worst.critical = r;
+                    worst.position = position(sampling, c, s);
+                  }
+                if (law->is_beyond_cap(stress, point))
+                  result.capped_volume += sampling.weight(c, s);
+              }
           }
       }
-    const MPI_Comm comm    = sampling.space.communicator;
-    result.relaxation_rate = Utilities::MPI::max(result.relaxation_rate, comm);
+    catch (const std::exception &exception)
+      {
+        failure = reason(exception);
+      }
+    const MPI_Comm comm = sampling.space.communicator;
+    agree_on_failure(failure, comm);
+    worst.reduce(comm);
+    result.relaxation_rate   = worst.largest;
+    result.critical_position = worst.position;
     if (laws.any_cap)
       result.capped_volume = Utilities::MPI::sum(result.capped_volume, comm);
     return result;

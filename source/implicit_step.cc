@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/backward_euler.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
@@ -93,8 +94,10 @@ namespace Viscoplastic
     TangentMatrix<dim> &matrix = *d.tangent;
     const bool          is_new = matrix.linearise(ghosted_u, z, t, k);
     // A preconditioner that has seen other solves is not a function of what
-    // is given.
-    if (is_new || !d.solver || (!matrix.is_constant && !d.solver->is_exact()))
+    // is given; only that of constant tangents goes from step to step, where
+    // no steps of other schemes are between.
+    const bool stays = matrix.is_constant && !changes_scheme();
+    if (is_new || !d.solver || !(stays || d.solver->is_exact()))
       {
         d.make_solver(matrix.matrix(), matrix.max_poissons_ratio());
         announce_solver();
@@ -131,8 +134,10 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space    = d.space;
     const StressSampling<dim>  &sampling = d.sampling;
     const double                k        = time_step.k;
-    const auto                  laws     = d.laws.at(time_step.t);
-    State<dim>                 &state    = step.state;
+    if (!d.tangent)
+      d.tangent = std::make_unique<TangentMatrix<dim>>(d.laws, d.matrix);
+    const auto  laws  = d.laws.at(time_step.t);
+    State<dim> &state = step.state;
     // A source is known.
     IrreversibleStress target = old_state.z;
     if (d.laws.source_solution)
@@ -144,8 +149,19 @@ namespace Viscoplastic
     const auto z_for = [&](const DistributedVector  &ghosted_u,
                            const IrreversibleStress &guess) {
       TimerOutput::Scope phase(timer, "rate");
-      return implicit_irreversible_stress<dim>(
-        laws, sampling, ghosted_u, target, k, guess);
+      IrreversibleStress result;
+      std::string        failure; // on this rank alone
+      try
+        {
+          result = implicit_irreversible_stress<dim>(
+            laws, sampling, ghosted_u, target, k, guess);
+        }
+      catch (const std::exception &exception)
+        {
+          failure = reason(exception);
+        }
+      agree_on_failure(failure, communicator);
+      return result;
     };
 
     DistributedVector u =
@@ -265,7 +281,10 @@ namespace Viscoplastic
     const FlowRate end = evaluate_flow(d.laws, state.u, state.z, time_step.t);
     step.capped_volume = end.capped_volume;
     if (end.relaxation_rate > 0.)
-      step.step_limit = 2. / end.relaxation_rate;
+      {
+        step.step_limit        = 2. / end.relaxation_rate;
+        step.critical_position = end.critical_position;
+      }
   }
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
+#include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/messages.h>
 
@@ -23,6 +24,22 @@ namespace Viscoplastic
     while (words >> word)
       line += (line.empty() ? "" : " ") + word;
     return line;
+  }
+
+
+
+  void
+  agree_on_failure(const std::string &failure, const MPI_Comm communicator)
+  {
+    namespace MPI              = dealii::Utilities::MPI;
+    const unsigned int n_ranks = MPI::n_mpi_processes(communicator);
+    const unsigned int first =
+      MPI::min(failure.empty() ? n_ranks : MPI::this_mpi_process(communicator),
+               communicator);
+    if (first == n_ranks)
+      return;
+    AssertThrow(
+      false, dealii::ExcMessage(MPI::broadcast(communicator, failure, first)));
   }
 
 

@@ -221,7 +221,7 @@ namespace Viscoplastic
   bool
   Output<dim>::is_due(const TimeStep &step) const
   {
-    if (step.n == scene.schedule.n_steps())
+    if (step.t >= scene.schedule.end_time())
       return true;
     const OutputParameters &parameters = scene.parameters.output;
     if (parameters.fields_interval > 0.)

@@ -293,6 +293,7 @@ namespace Viscoplastic
     for (auto &[id, boundary] : boundaries)
       in_subsection("Boundary " + std::to_string(id), boundary);
     in_subsection("Time", time);
+    in_subsection("Step control", step_control);
     in_subsection("Solver", solver);
     in_subsection("Error control", error_control);
     in_subsection("Mesh refinement", refinement);

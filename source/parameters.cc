@@ -263,6 +263,61 @@ namespace Viscoplastic
                       "end, second order, stable up to 2/r, twice the price of "
                       "forward Euler.",
                       Patterns::Selection("forward Euler|backward Euler|Heun"));
+    prm.add_parameter("Stiffness policy",
+                      stiffness_policy,
+                      "What becomes of a step of an explicit scheme beyond its "
+                      "stability limit 2/r. `refuse' ends the run with a "
+                      "sentence; `subdivide' divides the step into equal ones "
+                      "within the limit; `backward Euler' takes it by that "
+                      "scheme.",
+                      Patterns::Selection("refuse|subdivide|backward Euler"));
+  }
+
+
+
+  void
+  StepControlParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+      "Tolerance",
+      tolerance,
+      "How large the error of the time steps may become over the run, "
+      "relative to the solution in the energy norm: steps are then chosen by "
+      "their estimated error, within 2/r for explicit schemes, and `Time/"
+      "Phases' gives the first step of each phase. 0: the steps are those of "
+      "`Time/Phases'.",
+      Patterns::Double(0.));
+    prm.add_parameter("Landing times",
+                      landing_times,
+                      "Times separated by commas at which a step ends, besides "
+                      "the ends of phases and the multiples of `Output/Fields "
+                      "interval': where loads have kinks or jumps. Unit: "
+                      "time.");
+    prm.add_parameter("Resolve events",
+                      resolve_events,
+                      "Whether steps in which slip begins somewhere, comes to "
+                      "cover all of the face, ends everywhere or turns back "
+                      "are divided until they are as short as `Event "
+                      "tolerance' says.");
+    prm.add_parameter("Event tolerance",
+                      event_tolerance,
+                      "How exactly the times of such events are found, "
+                      "relative to the length of the phase.",
+                      Patterns::Double(1e-12, 1.));
+    prm.add_parameter("Largest step",
+                      largest_step,
+                      "Longer steps are not taken; 0 for the length of the "
+                      "phase, or in scenes without viscosity, whose steps have "
+                      "no estimate, for the steps of `Time/Phases'. Unit: "
+                      "time.",
+                      Patterns::Double(0.));
+    prm.add_parameter("Smallest step",
+                      smallest_step,
+                      "Steps of this size are accepted whatever their error, "
+                      "so that jumps of the data do not end a run, and a step "
+                      "that fails is not divided further; 0 for 1e-6 of the "
+                      "length of the phase. Unit: time.",
+                      Patterns::Double(0.));
   }
 
 

@@ -37,11 +37,16 @@ namespace Viscoplastic
 
 
 
+    /// The number of the step and of all, which may be an estimate.
     std::string
-    padded(const unsigned int n, const unsigned int like)
+    count(const StepProgress &step, const unsigned int n_steps)
     {
+      const std::string  all = step.expected_steps ?
+                                 "~" + whole_number(*step.expected_steps) :
+                                 std::to_string(n_steps);
       std::ostringstream text;
-      text << std::setw(static_cast<int>(std::to_string(like).size())) << n;
+      text << "Step " << std::setw(static_cast<int>(all.size())) << step.n
+           << '/' << all;
       return text.str();
     }
 
@@ -54,10 +59,9 @@ namespace Viscoplastic
              const double        elapsed,
              const double        left)
     {
-      std::string line =
-        "Step " + padded(step.n, n_steps) + '/' + std::to_string(n_steps) +
-        "  t = " + number(step.t, 5) + "  k = " + number(step.k, 3) +
-        "  cells " + whole_number(step.n_cells);
+      std::string line = count(step, n_steps) + "  t = " + number(step.t, 5) +
+                         "  k = " + number(step.k, 3) + "  cells " +
+                         whole_number(step.n_cells);
       if (step.contact_iterations)
         line +=
           "  contact iterations " + std::to_string(*step.contact_iterations);
@@ -85,9 +89,7 @@ namespace Viscoplastic
     {
       // In the order of appearance, with the order of omission.
       std::vector<std::pair<std::string, unsigned int>> parts;
-      parts.emplace_back("Step " + padded(step.n, n_steps) + '/' +
-                           std::to_string(n_steps),
-                         0);
+      parts.emplace_back(count(step, n_steps), 0);
       parts.emplace_back("t = " + number(step.t, 4), 6);
       parts.emplace_back("k = " + number(step.k, 2), 2);
       parts.emplace_back("cells " + whole_number(step.n_cells), 3);
@@ -132,7 +134,7 @@ namespace Viscoplastic
 
 
   double
-  RemainingTime::seconds(const unsigned int n_steps, const double n_cells) const
+  RemainingTime::seconds(const double n_steps, const double n_cells) const
   {
     return weighted_cells > 0. ?
              n_steps * n_cells * weighted_seconds / weighted_cells :
@@ -156,14 +158,17 @@ namespace Viscoplastic
     last_elapsed = elapsed;
     if (step.n == 0)
       return;
-    const double left    = remaining.seconds(n_steps - step.n, step.n_cells);
-    const bool   is_last = step.n == n_steps;
+    const bool   varies  = step.expected_steps.has_value();
+    const double all     = varies ? *step.expected_steps : n_steps;
+    const double left    = remaining.seconds(all - step.n, step.n_cells);
+    const bool   is_last = varies ? step.done >= 1. : step.n == n_steps;
 
     // A line for each of max_lines equal parts of the run.
-    const std::uint64_t part = std::uint64_t(step.n) * max_lines / n_steps,
-                        last_part =
-                          std::uint64_t(step.n - 1) * max_lines / n_steps;
-    if (step.n == 1 || is_last || part > last_part)
+    const double done = varies ? step.done : step.n / all;
+    const bool   is_another_part =
+      std::floor(done * max_lines) > std::floor(last_done * max_lines);
+    last_done = done;
+    if (step.n == 1 || is_last || is_another_part)
       {
         const std::string line = in_words(step, n_steps, elapsed, left);
         if (!console.has_status() || is_last)

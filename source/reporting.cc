@@ -167,6 +167,7 @@ namespace Viscoplastic
     accounts.contact_iterations += step.report.iterations;
     accounts.linear_iterations += step.report.linear_iterations;
     accounts.newton_iterations += step.newton_iterations;
+    accounts.implicit_steps += step.is_implicit;
     const double defect =
       accounts.external_work -
       (stored_energy - accounts.initial_energy - accounts.adaptation_energy) -
@@ -192,12 +193,18 @@ namespace Viscoplastic
         row.add("cells", triangulation.n_global_active_cells());
         row.add("dofs", dof_handler.n_dofs());
         if (scene.has_viscosity())
-          row.add("step_limit", step.step_limit);
+          {
+            row.add("step_limit", step.step_limit);
+            row.add("k_r", 2. * time_step.k / step.step_limit);
+            row.add_vector("critical_cell", step.critical_position, dim);
+          }
+        if (control.may_reject())
+          row.add("rejected", step.n_rejections);
         if (d.tension)
           row.add("tension_area", tension_area);
         if (d.laws.any_cap)
           row.add("capped_volume", step.capped_volume);
-        if (is_implicit())
+        if (is_implicit() || changes_scheme())
           row.add("newton_iterations", step.newton_iterations);
         if (d.face)
           {
@@ -264,7 +271,8 @@ namespace Viscoplastic
                                  "output"})
           {
             if ((!error_bar && name == std::string("estimate")) ||
-                (!is_implicit() && name == std::string("tangent")))
+                (!is_implicit() && !changes_scheme() &&
+                 name == std::string("tangent")))
               continue;
             const auto   entry = total.find(name);
             const double now   = entry == total.end() ? 0. : entry->second;
@@ -323,7 +331,7 @@ namespace Viscoplastic
             step.errors.total() / step.errors.energy_norm;
       }
     // The rate of an explicit step is that of its beginning.
-    const double rate_time = is_implicit() ? time_step.t : time_step.t_old;
+    const double rate_time = step.is_implicit ? time_step.t : time_step.t_old;
     if (summary.capped_volume.value == 0. && step.capped_volume > 0.)
       {
         std::ostringstream volume;
@@ -334,6 +342,24 @@ namespace Viscoplastic
                        "; beyond it the law is continued linearly.");
       }
     summary.capped_volume.update(step.capped_volume, rate_time);
+    if (const double k_r = 2. * time_step.k / step.step_limit;
+        k_r > summary.stiffness.value)
+      {
+        summary.stiffness.update(k_r, time_step.t);
+        for (unsigned int d = 0; d < dim; ++d)
+          summary.critical_position[d] = step.critical_position[d];
+      }
+    summary.n_steps = time_step.n;
+    if (control.may_reject())
+      summary.steps = control.counts();
+    if (changes_scheme())
+      summary.implicit_steps = accounts.implicit_steps;
+    if (control.may_reject())
+      {
+        progress_of_step.expected_steps =
+          control.expected_steps(time_step.n, time_step.t, time_step.k);
+        progress_of_step.done = time_step.t / scene.schedule.end_time();
+      }
     if (is_initial)
       first_set_up_seconds =
         timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
@@ -364,7 +390,7 @@ namespace Viscoplastic
   SolutionErrors
   ViscoplasticContact<dim>::measure_errors(const State<dim> &of)
   {
-    const unsigned int phase = scene.schedule.phase_ending_with(of.n);
+    const unsigned int phase = scene.schedule.phase_ending_at(of.t);
     const std::string &reference =
       parameters.exact_solution.reference_directory;
     SolutionErrors result;
@@ -414,7 +440,7 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::close()
   {
-    const unsigned int       n       = scene.schedule.n_steps();
+    const unsigned int       n       = state.n;
     std::vector<std::string> remarks = console.remarks();
     if (scene.has_viscosity())
       {
@@ -457,7 +483,7 @@ namespace Viscoplastic
     if (error_bar)
       output->record_errors(error_bar->summary());
     out << std::setprecision(3) << "Iterations per step: ";
-    if (is_implicit())
+    if (is_implicit() || changes_scheme())
       out << static_cast<double>(accounts.newton_iterations) / n
           << " of Newton's method, ";
     if (discretisation->face)

@@ -88,15 +88,19 @@ namespace Viscoplastic
       .viscous_dissipation &accounts.friction_dissipation &accounts
       .largest_force &accounts.adaptation_energy &accounts
       .contact_iterations &accounts.linear_iterations &accounts
-      .newton_iterations;
+      .newton_iterations                              &accounts.implicit_steps;
+    control.exchange(archive);
     if (error_bar)
       error_bar->exchange(archive);
     for (Largest *largest : {&summary.displacement,
                              &summary.von_mises,
                              &summary.slip_area,
                              &summary.capped_volume,
-                             &summary.tension_area})
+                             &summary.tension_area,
+                             &summary.stiffness})
       archive & largest->value & largest->t;
+    for (unsigned int d = 0; d < dim; ++d)
+      archive &summary.critical_position[d];
     for (SolutionNorms *norms :
          {&summary.largest_error, &summary.largest_exact})
       archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
@@ -125,7 +129,9 @@ namespace Viscoplastic
       pack_fields(discretisation->sampling, state, squared_estimate);
     // Where each step makes its own matrix, there is nothing to remember.
     std::optional<BulkSolver::Memory> memory;
-    if (!discretisation->tangent || discretisation->tangent->is_constant)
+    if (changes_scheme())
+      discretisation->use_solver_of_tangent(false);
+    if (!is_implicit() || discretisation->tangent->is_constant)
       memory = discretisation->solver->memory(); // collective, as all of it
     if (rank == 0)
       {
@@ -151,7 +157,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::keep_checkpoints(const SignalRequests &signals)
   {
     const CheckpointParameters &wanted  = parameters.checkpoint;
-    const bool                  is_last = state.n == scene.schedule.n_steps();
+    const bool                  is_last = is_finished();
     bool                        is_due =
       wanted.every_n_steps > 0 && state.n % wanted.every_n_steps == 0;
     // The last one, for who adds a phase later.
@@ -241,10 +247,14 @@ namespace Viscoplastic
     std::optional<BulkSolver::Memory> memory;
     exchange_memory(archive, memory);
 
-    const bool is_on_schedule = state.n >= 1 &&
-                                state.n <= scene.schedule.n_steps() &&
+    // Steps of the phases must be there; others, chosen by the run, must not
+    // pass its end.
+    const bool is_on_schedule =
+      state.n >= 1 &&
+      (control.may_reject() ? state.t <= scene.schedule.end_time() :
+                              state.n <= scene.schedule.n_steps() &&
                                 scene.schedule.step(state.n).t == state.t &&
-                                scene.schedule.step(state.n).k == state.k;
+                                scene.schedule.step(state.n).k == state.k);
     AssertThrow(is_on_schedule,
                 ExcMessage("'Time/Phases' = " + parameters.time.phases +
                            " does not contain the step of the checkpoint '" +
@@ -283,10 +293,10 @@ namespace Viscoplastic
                   state.friction.sticks.size() == n_points &&
                   archive.is_at_end(),
                 ExcMessage(name + "' does not fit the scene."));
-    if (d.tangent && d.tangent->is_constant)
+    if (is_implicit() && d.tangent->is_constant)
       linearise(state.u, state.z, state.t, state.k);
     if (memory && d.solver)
-      d.solver->recall(*memory);
+      d.solver->recall(memory);
     is_solved_on_mesh = is_solved;
     forces =
       evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);

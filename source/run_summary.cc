@@ -126,6 +126,34 @@ namespace Viscoplastic
                   " at t = " + number(slip_area.t));
     if (capped_volume.value > 0.)
       print_row(out, "volume beyond the cap", with_time(capped_volume));
+    if (stiffness.value > 0.)
+      {
+        std::ostringstream place;
+        place << std::setprecision(3) << critical_position;
+        print_row(out,
+                  "time step times r",
+                  with_time(stiffness) + ", x = (" + place.str() + ")");
+      }
+    if (steps)
+      {
+        std::string text = std::to_string(n_steps) + " accepted";
+        const auto  add  = [&](const unsigned int n, const std::string &what) {
+          if (n > 0)
+            text += ", " + std::to_string(n) + ' ' + what;
+        };
+        add(steps->rejected, "rejected for their error");
+        add(steps->events, "rejected to resolve events of slip");
+        add(steps->failed, "that failed");
+        out << "Steps: " << text << '\n';
+        if (steps->unresolved > 0)
+          out << "Note: " << steps->unresolved
+              << " steps of the smallest size have larger errors than 'Step "
+                 "control/Tolerance' allows: where the data jump, or because "
+                 "'Smallest step' is too large.\n";
+      }
+    if (implicit_steps)
+      out << "Steps by backward Euler, beyond the limit 2/r: "
+          << *implicit_steps << " of " << n_steps << '\n';
 
     const auto error =
       [&](const std::string &name, const double value, const double norm) {

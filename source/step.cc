@@ -10,39 +10,37 @@
 namespace Viscoplastic
 {
   template <int dim>
-  FlowStep<dim>
-  ViscoplasticContact<dim>::flow(const State<dim> &old_state,
-                                 const TimeStep   &time_step) const
+  const FlowRate &
+  ViscoplasticContact<dim>::accepted_rate()
   {
-    // With an error bar, G has been evaluated at the end of the last step.
     const FlowLaws<dim> &laws = discretisation->laws;
-    FlowStep<dim>        flow =
-      error_bar ?
-               advance_irreversible_stress<dim>(error_bar->rate(laws, old_state),
-                                         old_state.z,
-                                         time_step.k) :
-               advance_irreversible_stress(
-          laws, old_state.u, old_state.z, time_step.t_old, time_step.k);
-    check_stability(flow.relaxation_rate, time_step);
-    return flow;
+    if (error_bar)
+      return error_bar->rate(laws, state);
+    if (!rate)
+      rate = evaluate_flow(laws, state.u, state.z, state.t);
+    return *rate;
   }
 
 
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::check_stability(const double    relaxation_rate,
+  ViscoplasticContact<dim>::check_stability(const FlowRate &at,
                                             const TimeStep &time_step) const
   {
+    if (time_step.k * at.relaxation_rate <= 2. * (1. + 1e-10))
+      return;
     std::ostringstream message;
-    message << "The time step " << time_step.k << " of step " << time_step.n
-            << " (t = " << time_step.t
-            << ") exceeds the stability limit 2/r = " << 2. / relaxation_rate
+    message << "Step " << time_step.n << " (t = " << time_step.t
+            << "): the time step " << time_step.k
+            << " exceeds the stability limit 2/r = " << 2. / at.relaxation_rate
             << " of " << parameters.time.scheme
-            << "; take more steps in 'Time/Phases', or set 'Time/Scheme' = "
-               "backward Euler.";
-    AssertThrow(time_step.k * relaxation_rate <= 2. * (1. + 1e-10),
-                ExcMessage(message.str()));
+            << ", which is that of the cell at x = (";
+    for (unsigned int d = 0; d < dim; ++d)
+      message << (d > 0 ? ", " : "") << at.critical_position[d];
+    message << "); take more steps in 'Time/Phases', or set 'Time/Stiffness "
+               "policy' or 'Time/Scheme' = backward Euler.";
+    throw StepBeyondStability(message.str());
   }
 
 
@@ -73,19 +71,51 @@ namespace Viscoplastic
             d.face->foundation_step(time_step.t_old, time_step.t);
         }
     }
+    step.is_implicit = is_implicit();
     try
       {
-        if (is_implicit())
-          advance_implicitly(old_state, old_forces, load, time_step, step);
-        else
-          advance_explicitly(old_state, old_forces, load, time_step, step);
+        if (changes_scheme())
+          {
+            TimerOutput::Scope phase(timer, "rate");
+            step.is_implicit =
+              time_step.k * accepted_rate().relaxation_rate > 2. * (1. + 1e-10);
+          }
+        if (!step.is_implicit)
+          try
+            {
+              if (changes_scheme())
+                discretisation->use_solver_of_tangent(false);
+              advance_explicitly(old_state, old_forces, load, time_step, step);
+            }
+          catch (const StepBeyondStability &)
+            {
+              // Heun's method sees the end of the step, too.
+              if (!changes_scheme())
+                throw;
+              step.is_implicit = true;
+              step.report      = ContactReport();
+            }
+        if (step.is_implicit)
+          {
+            if (changes_scheme())
+              discretisation->use_solver_of_tangent(true);
+            advance_implicitly(old_state, old_forces, load, time_step, step);
+          }
+      }
+    catch (const std::bad_alloc &)
+      {
+        throw;
+      }
+    catch (const StepBeyondStability &)
+      {
+        throw; // which names the step
       }
     catch (const std::exception &exception)
       {
         std::ostringstream message;
         message << "Step " << time_step.n << " (t = " << time_step.t
                 << "): " << reason(exception);
-        AssertThrow(false, ExcMessage(message.str()));
+        throw StepFailure(message.str());
       }
     TimerOutput::Scope phase(timer, "balance");
     step.forces =
@@ -105,7 +135,7 @@ namespace Viscoplastic
   {
     State<dim> &state     = step.state;
     state.z               = old_state.z;
-    double     rate       = 0.;
+    double     largest    = 0.;
     const auto solve_with = [&](const State<dim> &guess) {
       TimerOutput::Scope  phase(timer, "contact");
       const ContactReport last = step.report;
@@ -115,18 +145,24 @@ namespace Viscoplastic
       step.report.linear_iterations += last.linear_iterations;
     };
 
-    const auto note = [&](const double relaxation_rate,
-                          const double capped_volume) {
-      rate               = std::max(rate, relaxation_rate);
-      step.capped_volume = std::max(step.capped_volume, capped_volume);
+    const auto note = [&](const FlowRate &at) {
+      check_stability(at, time_step);
+      if (at.relaxation_rate > largest)
+        {
+          largest                = at.relaxation_rate;
+          step.step_limit        = 2. / largest;
+          step.critical_position = at.critical_position;
+        }
+      step.capped_volume = std::max(step.capped_volume, at.capped_volume);
     };
 
     if (scene.has_viscosity())
       {
         TimerOutput::Scope phase(timer, "rate");
-        FlowStep<dim>      z_step = flow(old_state, time_step);
-        state.z                   = std::move(z_step.z);
-        note(z_step.relaxation_rate, z_step.capped_volume);
+        const FlowRate    &start = accepted_rate();
+        note(start);
+        for (std::size_t i = 0; i < state.z.size(); ++i)
+          state.z[i] += time_step.k * start.rate[i];
       }
     solve_with(old_state);
     if (scene.has_viscosity() && parameters.time.scheme == "Heun")
@@ -140,16 +176,13 @@ namespace Viscoplastic
                                              predicted.z,
                                              time_step.t,
                                              ExactSolution<dim>::Side::before);
-          check_stability(end.relaxation_rate, time_step);
-          note(end.relaxation_rate, end.capped_volume);
+          note(end);
           for (std::size_t i = 0; i < state.z.size(); ++i)
             state.z[i] = 0.5 * (old_state.z[i] + predicted.z[i] +
                                 time_step.k * end.rate[i]);
         }
         solve_with(predicted);
       }
-    if (rate > 0.)
-      step.step_limit = 2. / rate;
   }
 
 

@@ -216,6 +216,10 @@ namespace Viscoplastic
               read_phases(scene.time.phases)))
     , communicator(communicator)
   {
+    AssertThrow(!scene.step_control.is_on(),
+                ExcMessage("A study compares runs with the steps of "
+                           "'Time/Phases'; set 'Step control/Tolerance' = 0 "
+                           "for it."));
     int ierr = MPI_Comm_dup(communicator, &agreement);
     AssertThrowMPI(ierr);
     if (scene.dimension == 2)
@@ -305,6 +309,9 @@ namespace Viscoplastic
                                     "Time/Phases=" + write_phases(steps),
                                     "Time/Scheme=" + key.scheme,
                                     "Material/Stress history=" + key.history};
+    // Runs have the steps that the study says, or none.
+    if (scene.time.stiffness_policy == "subdivide")
+      result.emplace_back("Time/Stiffness policy=refuse");
     if (base + level < 0)
       result.push_back("Geometry/Arguments=" +
                        scale_subdivisions(scene.geometry.arguments,

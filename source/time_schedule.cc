@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/spelling.h>
 #include <viscoplastic_contact/time_schedule.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Viscoplastic
@@ -15,6 +16,17 @@ namespace Viscoplastic
   {
     /// More are a slip of the pen, and would not fit into the type of n.
     constexpr double max_n_steps = 1e9;
+
+
+
+    /// The end of step j of a phase.
+    double
+    step_end(const TimeSchedule::Phase &phase, const unsigned int j)
+    {
+      return j == phase.n_steps ?
+               phase.end :
+               phase.start + (phase.end - phase.start) * j / phase.n_steps;
+    }
   } // namespace
 
 
@@ -81,26 +93,49 @@ namespace Viscoplastic
     auto         p = phases.begin();
     for (; i > p->n_steps; ++p)
       i -= p->n_steps;
-    const auto time = [&](const unsigned int j) {
-      return j == p->n_steps ? p->end :
-                               p->start + (p->end - p->start) * j / p->n_steps;
-    };
-    return {n, time(i - 1), time(i), time(i) - time(i - 1)};
+    const double t_old = step_end(*p, i - 1), t = step_end(*p, i);
+    return {n, t_old, t, t - t_old};
   }
 
 
 
   unsigned int
-  TimeSchedule::phase_ending_with(const unsigned int n) const
+  TimeSchedule::phase_ending_at(const double t) const
   {
-    unsigned int last = 0;
     for (unsigned int i = 0; i < phases.size(); ++i)
-      {
-        last += phases[i].n_steps;
-        if (n <= last)
-          return n == last ? i + 1 : 0;
-      }
+      if (phases[i].end == t)
+        return i + 1;
     return 0;
+  }
+
+
+
+  const TimeSchedule::Phase &
+  TimeSchedule::phase_at(const double t) const
+  {
+    Assert(t >= 0. && t < end_time(), ExcIndexRange(t, 0., end_time()));
+    auto p = phases.begin();
+    while (t >= p->end)
+      ++p;
+    return *p;
+  }
+
+
+
+  double
+  TimeSchedule::next_time(const double t) const
+  {
+    const Phase &phase = phase_at(t);
+    // A guess that rounding may have moved by one.
+    unsigned int j = static_cast<unsigned int>(
+      std::clamp((t - phase.start) / phase.step_size(),
+                 1.,
+                 static_cast<double>(phase.n_steps)));
+    while (j > 1 && step_end(phase, j - 1) > t)
+      --j;
+    while (step_end(phase, j) <= t)
+      ++j;
+    return step_end(phase, j);
   }
 
 

@@ -6,6 +6,8 @@
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <algorithm>
+#include <iomanip>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -35,11 +37,19 @@ namespace Viscoplastic
       return level > 0 ? level - 1 : 0;
     };
     const RefinementParameters &refinement = parameters.refinement;
+    // Steps by their error: twice as long with twice the error per time, or
+    // four times in the second order.
+    const double       factor = parameters.time.scheme == "Heun" ? 4. : 2.;
+    std::ostringstream tolerance;
+    tolerance << std::setprecision(17)
+              << factor * parameters.step_control.tolerance;
     return {
       "Error control/Two-level comparison=false",
-      // Nobody reads it, and without it the iterations go on to a fixed
-      // tolerance.
-      "Error control/Error bar=false",
+      "Step control/Tolerance=" + tolerance.str(),
+      // Nobody reads it unless it chooses the steps, and without it the
+      // iterations go on to a fixed tolerance.
+      parameters.step_control.is_on() ? "Error control/Error bar=true" :
+                                        "Error control/Error bar=false",
       assign("Geometry/Global refinements", refinements - 1),
       "Time/Phases=" + phases,
       assign("Mesh refinement/Minimal level", less(refinement.minimal_level)),

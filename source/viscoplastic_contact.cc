@@ -111,6 +111,20 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  ViscoplasticContact<dim>::Discretisation::use_solver_of_tangent(
+    const bool of_tangent)
+  {
+    if (of_tangent == tangent_is_in_use)
+      return;
+    std::swap(solver, solver_aside);
+    std::swap(diagonal, diagonal_aside);
+    tangent_is_in_use = of_tangent;
+  }
+
+
+
+  template <int dim>
   ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
                                                 Console          &console)
     : communicator(MPI_COMM_WORLD)
@@ -126,6 +140,11 @@ namespace Viscoplastic
                       dim>::mesh_reconstruction_after_repartitioning)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
+    , control(parameters.step_control,
+              parameters.time.stiffness_policy,
+              scene.schedule,
+              parameters.time.scheme == "Heun" ? 2 : 1,
+              parameters.output.fields_interval)
     , contact_solver(parameters.solver.maximal_iterations)
     , error_bar(parameters.error_control.error_bar ?
                   std::make_unique<ErrorBar<dim>>(scene) :
@@ -144,7 +163,7 @@ namespace Viscoplastic
     if (const auto checkpoint = find_checkpoint(restart))
       {
         resume(*checkpoint);
-        if (state.n == scene.schedule.n_steps())
+        if (is_finished())
           {
             out << "This is the last step: there is nothing left to do."
                 << std::endl;
@@ -155,10 +174,9 @@ namespace Viscoplastic
       begin();
 
     const SignalRequests signals;
-    while (state.n < scene.schedule.n_steps())
+    while (!is_finished())
       {
-        make_step();
-        if (output->is_due(scene.schedule.step(state.n)))
+        if (output->is_due(make_step()))
           write_fields();
         const std::string interruption = keep_checkpoints(signals);
         if (!interruption.empty())
@@ -179,7 +197,7 @@ namespace Viscoplastic
     set_initial_state();
     check_steps();
     record_initial_state();
-    while (state.n < scene.schedule.n_steps())
+    while (!is_finished())
       make_step();
     return summary;
   }
@@ -191,40 +209,6 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::compare_with(const RunSummary<dim> &coarser)
   {
     coarser_summary = coarser;
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::make_step()
-  {
-    const TimeStep     time_step     = scene.schedule.step(state.n + 1);
-    const unsigned int every_n_steps = parameters.refinement.every_n_steps;
-    if (scene.is_adaptive() && state.n > 0 && state.n % every_n_steps == 0)
-      adapt_mesh();
-    Step         step     = advance(state, forces, time_step);
-    const double residual = estimate(step.state);
-    if (error_bar)
-      {
-        if (scene.has_viscosity())
-          {
-            TimerOutput::Scope phase(timer, "rate");
-            error_bar->evaluate_rate(discretisation->laws, state, step.state);
-          }
-        TimerOutput::Scope phase(timer, "estimate");
-        step.errors = error_bar->assess(discretisation->sampling,
-                                        state,
-                                        forces,
-                                        step.forces,
-                                        step.report,
-                                        residual,
-                                        step.state);
-        error_bar->accept(step.errors, step.state.t);
-      }
-    record(state, step, time_step);
-    state  = std::move(step.state);
-    forces = std::move(step.forces);
   }
 
 
@@ -259,6 +243,7 @@ namespace Viscoplastic
                  initial_report,
                  {},
                  std::numeric_limits<double>::infinity(),
+                 {},
                  0.,
                  {},
                  error_bar ? error_bar->ledger() : ErrorLedger()};
@@ -273,6 +258,10 @@ namespace Viscoplastic
   {
     Viscoplastic::make_mesh(parameters.geometry, triangulation);
     scene.inspect(triangulation);
+    AssertThrow(!control.is_on || !scene.has_viscosity() || error_bar,
+                ExcMessage("'Step control/Tolerance' needs an estimate of the "
+                           "error; set 'Error control/Error bar' = true."));
+    control.set_has_estimate(scene.has_viscosity());
     announce();
   }
 
@@ -432,6 +421,7 @@ namespace Viscoplastic
       }
     forces =
       evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
+    rate.reset();
     if (error_bar)
       error_bar->change_mesh(d.space, d.matrix, state);
     accounts.adaptation_energy += stored_energy(state, forces) - energy;

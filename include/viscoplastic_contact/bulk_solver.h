@@ -44,9 +44,10 @@ namespace Viscoplastic
       return {};
     }
 
-    /// Go on like the solver that had this memory, on the same mesh.
+    /// Go on like the solver that had this memory, on the same mesh; without
+    /// one like a new solver.
     virtual void
-    recall(const Memory &)
+    recall(const std::optional<Memory> &)
     {}
 
     /**

@@ -102,12 +102,13 @@ namespace Viscoplastic
 
     /**
      * The ledger of a step from the accepted state to @p state, whose fields
-     * of time errors it sets; with viscosity after evaluate_rate(). @p matrix
-     * is that of a(.,.); @p residual the residual estimate of @p state.
-     * Collective.
+     * of time errors it sets; with viscosity after evaluate_rate(). @p defect
+     * is that of the scheme of the step; @p residual the residual estimate of
+     * @p state. Collective.
      */
     ErrorLedger
     assess(const StressSampling<dim> &sampling,
+           const TimeDefect          &defect,
            const State<dim>          &accepted,
            const Forces<dim>         &old_forces,
            const Forces<dim>         &forces,
@@ -146,17 +147,18 @@ namespace Viscoplastic
     }
 
   private:
-    /// Add the defect of a step to the field of @p state; the norms of both,
-    /// squared. Collective.
-    std::pair<double, double>
+    /// Add the defect of a step to the field of @p state, and put the norms
+    /// into the ledger. Collective.
+    void
     add_defect(const StressSampling<dim> &sampling,
+               const TimeDefect          &defect,
                const State<dim>          &accepted,
-               State<dim>                &state) const;
+               State<dim>                &state,
+               ErrorLedger               &ledger) const;
 
     const Scene<dim>       &scene;
     const SolverParameters &solver;
     const double            algebraic_fraction;
-    const TimeDefect        defect;
     ErrorLedger             present;
     ErrorSummary            run;
     /// Of the accepted state and the one that was assessed.

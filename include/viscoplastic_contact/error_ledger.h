@@ -28,6 +28,9 @@ namespace Viscoplastic
     double energy_norm = 0.;
     /// a(du_n, du_n).
     double velocity_square = 0.;
+    /// (int E^-1 z : z)^{1/2} and the same of the change of z in the step; with
+    /// step control only.
+    double irreversible_norm = 0., irreversible_change = 0.;
 
     /// By the triangle inequality.
     double

@@ -113,6 +113,9 @@ namespace Viscoplastic
     /// Volume of the samples with stresses beyond the cap of their law.
     /// Collective result.
     double capped_volume;
+    /// The sample with the largest rate, or the first one of those. Collective
+    /// result.
+    Point<3> critical_position = {};
   };
 
   /// One evaluation a sample; a source is that of the step on this side of t.
@@ -132,11 +135,8 @@ namespace Viscoplastic
   struct FlowStep
   {
     IrreversibleStress z;
-    /// The largest relaxation rate r; forward Euler is stable for k <= 2/r.
-    /// Collective result.
+    /// As in FlowRate.
     double relaxation_rate;
-    /// Volume of the samples with stresses beyond the cap of their law.
-    /// Collective result.
     double capped_volume;
   };
 

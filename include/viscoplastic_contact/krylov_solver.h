@@ -48,7 +48,7 @@ namespace Viscoplastic
     memory() const override;
 
     void
-    recall(const Memory &memory) override;
+    recall(const std::optional<Memory> &memory) override;
 
     unsigned int
     solve(const DistributedVector &load,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <mpi.h>
+
 #include <exception>
 #include <set>
 #include <string>
@@ -13,6 +15,15 @@ namespace Viscoplastic
    */
   std::string
   reason(const std::exception &exception);
+
+
+  /**
+   * Throw on all ranks what some rank has met alone, so that they stay together
+   * and a step can be tried again. @p failure is empty where all is well; the
+   * first rank that has one speaks. Collective; throws ExcMessage.
+   */
+  void
+  agree_on_failure(const std::string &failure, const MPI_Comm communicator);
 
 
   /// Ids of boundaries or materials, separated by commas.

@@ -53,6 +53,7 @@ namespace Viscoplastic
     ExactSolutionParameters                    exact_solution;
     std::map<unsigned int, BoundaryParameters> boundaries;
     TimeParameters                             time;
+    StepControlParameters                      step_control;
     SolverParameters                           solver;
     ErrorControlParameters                     error_control;
     RefinementParameters                       refinement;

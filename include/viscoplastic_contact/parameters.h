@@ -98,8 +98,29 @@ namespace Viscoplastic
 
   struct TimeParameters
   {
-    std::string phases = "1: 10";
-    std::string scheme = "forward Euler";
+    std::string phases           = "1: 10";
+    std::string scheme           = "forward Euler";
+    std::string stiffness_policy = "refuse";
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
+  /// Of the size of time steps by their error.
+  struct StepControlParameters
+  {
+    /// 0: the steps of the phases.
+    double      tolerance = 0.;
+    std::string landing_times;
+    bool        resolve_events  = true;
+    double      event_tolerance = 1e-3;
+    double      largest_step = 0., smallest_step = 0.;
+
+    bool
+    is_on() const
+    {
+      return tolerance > 0.;
+    }
 
     void
     declare(ParameterHandler &prm);

@@ -21,7 +21,7 @@ namespace Viscoplastic
 
     /// What @p n_steps further ones will take on a mesh of @p n_cells.
     double
-    seconds(const unsigned int n_steps, const double n_cells) const;
+    seconds(const double n_steps, const double n_cells) const;
 
   private:
     double weighted_seconds = 0., weighted_cells = 0.;
@@ -44,6 +44,10 @@ namespace Viscoplastic
     std::optional<double> error_estimate = {};
     /// With an error bar: the estimate over the energy norm of the solution.
     std::optional<double> relative_error = {};
+    /// Where steps are chosen on the way: how many the run may have, and which
+    /// part of its time is done.
+    std::optional<double> expected_steps = {};
+    double                done           = 0.;
   };
 
 
@@ -56,6 +60,7 @@ namespace Viscoplastic
   class Progress
   {
   public:
+    /// @p n_steps: of the run, unless each step says how many it expects.
     Progress(Console &console, const unsigned int n_steps);
 
     /// A step has been made, @p elapsed seconds after the beginning of the
@@ -69,7 +74,7 @@ namespace Viscoplastic
     Console           &console;
     const unsigned int n_steps;
     RemainingTime      remaining;
-    double             last_elapsed = 0., last_shown = -1.;
+    double             last_elapsed = 0., last_shown = -1., last_done = 0.;
   };
 
 

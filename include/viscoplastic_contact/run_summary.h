@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
 #include <viscoplastic_contact/error_ledger.h>
 #include <viscoplastic_contact/solution_norms.h>
+#include <viscoplastic_contact/step_control.h>
 
 #include <map>
 #include <optional>
@@ -59,6 +61,13 @@ namespace Viscoplastic
     std::optional<ErrorSummary> errors;
 
     Largest displacement, von_mises, slip_area, capped_volume, tension_area;
+    /// k r, and where r was that large.
+    Largest    stiffness;
+    Point<dim> critical_position;
+    /// Of all steps; absent where they are those of the phases.
+    unsigned int                n_steps = 0;
+    std::optional<StepCounts>   steps;
+    std::optional<unsigned int> implicit_steps;
     /// Of all friction points.
     double friction_area = 0.;
     /// Against an exact solution; zero without one.

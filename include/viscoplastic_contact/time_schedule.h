@@ -37,9 +37,30 @@ namespace Viscoplastic
       return phases.size();
     }
 
-    /// The phase, counted from 1, of which step n is the last; 0 if none.
+    /// The phase, counted from 1, that ends at time t; 0 if none.
     unsigned int
-    phase_ending_with(const unsigned int n) const;
+    phase_ending_at(const double t) const;
+
+    /// A phase and what it asks for.
+    struct Phase
+    {
+      double       start, end;
+      unsigned int n_steps;
+
+      double
+      step_size() const
+      {
+        return (end - start) / n_steps;
+      }
+    };
+
+    /// The phase with start <= t < end. 0 <= t < end_time().
+    const Phase &
+    phase_at(const double t) const;
+
+    /// The first end of a step after t. 0 <= t < end_time().
+    double
+    next_time(const double t) const;
 
     /// The first step of the phase with the longest ones.
     TimeStep
@@ -52,11 +73,6 @@ namespace Viscoplastic
     }
 
   private:
-    struct Phase
-    {
-      double       start, end;
-      unsigned int n_steps;
-    };
     std::vector<Phase> phases;
   };
 } // namespace Viscoplastic

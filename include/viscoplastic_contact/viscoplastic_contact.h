@@ -26,6 +26,7 @@
 #include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
+#include <viscoplastic_contact/step_control.h>
 #include <viscoplastic_contact/tangent_matrix.h>
 
 #include <functional>
@@ -103,6 +104,11 @@ namespace Viscoplastic
       void
       make_solver(const DistributedMatrix &of, const double max_nu);
 
+      /// In runs that change between schemes: put the solver of the elastic
+      /// matrix or that of the tangent in place, and the other one aside.
+      void
+      use_solver_of_tangent(const bool of_tangent);
+
       AdmissibleSpace<dim> space;
       ElasticModuli<dim>   moduli;
       bool                 mean_dilatation;
@@ -124,6 +130,11 @@ namespace Viscoplastic
       std::unique_ptr<TangentMatrix<dim>> tangent;
       std::unique_ptr<BulkSolver>         solver;
       DistributedVector                   diagonal; // of the solver's matrix
+
+    private:
+      std::unique_ptr<BulkSolver> solver_aside;
+      DistributedVector           diagonal_aside;
+      bool                        tangent_is_in_use = false;
     };
 
     /// What a step gives.
@@ -136,14 +147,26 @@ namespace Viscoplastic
       /// 2/r; infinite without viscosity. Backward Euler, which may pass it,
       /// reports that of the end of the step.
       double step_limit;
+      /// Where r is that large; the origin where it is zero.
+      Point<3> critical_position;
       /// Volume beyond the cap of a law.
       double capped_volume;
       /// What the foundation moved, as a face vector; empty at rest.
       Vector<double> foundation_step;
       /// Zero without error bar.
       ErrorLedger errors;
-      /// Of backward Euler; 0 in other schemes.
+      /// Whether it is one of backward Euler, and of how many iterations.
+      bool         is_implicit       = false;
       unsigned int newton_iterations = 0;
+      /// How often a longer one has been tried.
+      unsigned int n_rejections = 0;
+    };
+
+    /// What a step that is not accepted must not change.
+    struct SolverState
+    {
+      bool                              is_solved_on_mesh;
+      std::optional<BulkSolver::Memory> memory;
     };
 
     /// What adds up over the steps.
@@ -157,7 +180,7 @@ namespace Viscoplastic
       /// What changes of the mesh did to the stored energy.
       double       adaptation_energy  = 0.;
       unsigned int contact_iterations = 0, linear_iterations = 0,
-                   newton_iterations = 0;
+                   newton_iterations = 0, implicit_steps = 0;
     };
 
     /// From the start: everything up to the initial state.
@@ -168,9 +191,34 @@ namespace Viscoplastic
     void
     record_initial_state();
 
-    /// The next step, recorded and accepted.
-    void
+    bool
+    is_finished() const
+    {
+      return state.t >= scene.schedule.end_time();
+    }
+
+    /// The next step, recorded and accepted. Returns what it was. Source:
+    /// source/stepping.cc.
+    TimeStep
     make_step();
+
+    /// Steps from the accepted state until one will do.
+    Step
+    try_steps(TimeStep &time_step);
+
+    /// What a step is judged by; its errors are known then.
+    StepErrors
+    assess(Step &step);
+
+    /// What the solver is before a step, and back to that. Collective.
+    SolverState
+    solver_state();
+    void
+    restore(const SolverState &before);
+
+    /// G at the accepted state, evaluated once.
+    const FlowRate &
+    accepted_rate();
 
     void
     make_mesh();
@@ -197,17 +245,20 @@ namespace Viscoplastic
              scene.has_viscosity();
     }
 
-    /// z at the end of a step of forward Euler. Throws ExcMessage beyond the
-    /// stability limit.
-    FlowStep<dim>
-    flow(const State<dim> &old_state, const TimeStep &time_step) const;
+    /// Whether some steps may be of backward Euler and others not.
+    bool
+    changes_scheme() const
+    {
+      return control.passes_limit && scene.has_viscosity() && !is_implicit();
+    }
 
+    /// Throws StepBeyondStability.
     void
-    check_stability(const double    relaxation_rate,
-                    const TimeStep &time_step) const;
+    check_stability(const FlowRate &rate, const TimeStep &time_step) const;
 
-    /// One step: a function of the state, its forces and the time step. It
-    /// keeps nothing but what a linear solver knows of its preconditioner.
+    /// One step: a function of the accepted state, its forces and the time
+    /// step. It keeps nothing but what solver_state() knows. Throws
+    /// StepFailure.
     Step
     advance(const State<dim>  &old_state,
             const Forces<dim> &old_forces,
@@ -391,13 +442,16 @@ namespace Viscoplastic
     const FESystem<dim>                       fe;
     DoFHandler<dim>                           dof_handler;
     std::unique_ptr<Discretisation>           discretisation;
+    StepControl                               control;
     ContactSolver                             contact_solver;
     std::unique_ptr<ErrorBar<dim>>            error_bar; // null if not wanted
 
-    State<dim>     state;
-    Forces<dim>    forces; // of the state
-    ContactReport  initial_report;
-    Accounts       accounts;
+    State<dim>  state;
+    Forces<dim> forces; // of the state
+    /// At the state; in scenes with an error bar, that has it.
+    std::optional<FlowRate> rate;
+    ContactReport           initial_report;
+    Accounts                accounts;
     Vector<double> squared_estimate; // eta_K^2, only in adaptive scenes
     /// Whether the state is a solution on the present mesh.
     bool is_solved_on_mesh = false;

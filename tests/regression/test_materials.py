@@ -579,7 +579,7 @@ class Refused(TestCase):
     def test_first_step_beyond_the_stability_limit(self):
         """2/r = 2 eta/mu = 2.5."""
         self.refused(
-            r"time step 3 of step 1 .* exceeds the stability limit 2/r = 2\.5 of",
+            r"Step 1 \(t = 3\): the time step 3 exceeds the stability limit 2/r = 2\.5 of",
             **{"Material/Law": "maxwell", "Time/Phases": "6: 2"},
         )
 

@@ -405,8 +405,10 @@ class Slab(TestCase):
             self.assertEqual(refused.returncode, 1)
             self.assertRegex(
                 refused.stderr,
-                rf"exceeds the stability limit 2/r = 0.052 of {scheme}; take more "
-                "steps in 'Time/Phases', or set 'Time/Scheme' = backward Euler",
+                rf"exceeds the stability limit 2/r = 0.052 of {scheme}, which is "
+                r"that of the cell at x = \([0-9.]+, [0-9.]+\); take more steps in "
+                "'Time/Phases', or set 'Time/Stiffness policy' or 'Time/Scheme' = "
+                "backward Euler",
             )
         coarse = self.slab("backward Euler", 6, **PERZYNA)
         self.assertGreater((coarse["k"] / coarse["step_limit"])[1:].min(), 3)

@@ -206,7 +206,7 @@ namespace
             "all subsections.");
     refused("subsection Time\nset qqqqqqq = 2\nend",
             "line 2: 'Time' has no entry 'qqqqqqq'; its entries are: Phases, "
-            "Scheme.");
+            "Scheme, Stiffness policy.");
     refused("subsection Lods\nend",
             "line 1: there is no subsection 'Lods'; did you mean 'Loads'?");
     refused("subsection Material\nsubsection Maxwel\nend\nend",

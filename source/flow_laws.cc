@@ -175,19 +175,30 @@ namespace Viscoplastic
   namespace
   {
     /**
-     * The largest relaxation rate and where it is: at the first of samples
-     * whose rates are equal up to solver tolerances. Ranks have their cells in
-     * the order of the mesh, so that it does not depend on their number.
+     * The largest relaxation rate and where it is: of samples whose rates are
+     * equal up to solver tolerances, the one with the least coordinates, so
+     * that it does not depend on the number of ranks.
      */
     struct CriticalSample
     {
       double   largest = 0., critical = 0.;
       Point<3> position;
 
-      bool
-      is_beyond(const double r) const
+      void
+      add(const double r, const Point<3> &x)
       {
-        return r > critical * (1. + 1e-6);
+        const bool is_larger = r > critical * (1. + 1e-6),
+                   is_equal  = r > 0. && r >= critical * (1. - 1e-6);
+        largest              = std::max(largest, r);
+        if (is_larger ||
+            (is_equal && std::lexicographical_compare(x.begin_raw(),
+                                                      x.end_raw(),
+                                                      position.begin_raw(),
+                                                      position.end_raw())))
+          {
+            critical = r;
+            position = x;
+          }
       }
 
       void
@@ -198,12 +209,8 @@ namespace Viscoplastic
         *this = CriticalSample();
         for (const auto &other : Utilities::MPI::all_gather(comm, own))
           {
+            add(other[1], Point<3>(other[2], other[3], other[4]));
             largest = std::max(largest, other[0]);
-            if (is_beyond(other[1]))
-              {
-                critical = other[1];
-                position = Point<3>(other[2], other[3], other[4]);
-              }
           }
       }
     };
@@ -249,12 +256,7 @@ namespace Viscoplastic
                   law->rate(stress, strain[s], stiffness, point);
                 const double r =
                   law->relaxation_rate(stress, strain[s], stiffness, point);
-                worst.largest = std::max(worst.largest, r);
-                if (worst.is_beyond(r))
-                  {
-                    worst.critical = r;
-                    worst.position = position(sampling, c, s);
-                  }
+                worst.add(r, position(sampling, c, s));
                 if (law->is_beyond_cap(stress, point))
                   result.capped_volume += sampling.weight(c, s);
               }

@@ -147,7 +147,9 @@ namespace
     EXPECT_LT(done.size(), 80u);
     for (const TimeStep &step : done)
       if (step.t_old < 0.31 && step.t >= 0.31)
-        EXPECT_LE(step.k, 1e-6 * (1. + 1e-6));
+        {
+          EXPECT_LE(step.k, 1e-6 * (1. + 1e-6));
+        }
   }
 
 

@@ -70,20 +70,35 @@ def hourglass(size, report):
                 0,
                 1 / least[kind],
             )
-            # What a program with that form would show: beyond the bounds above.
-            report.figure(
-                f"the same of the DGQ(0) form, {what}", ratios[:, 2].max(), 5
-            )
+    # What a program with that form would show: beyond the bounds above.  In 3D
+    # it is singular.
+    report.figure(
+        "energy over that of (eps, eps) of the DGQ(0) form, largest over n, 2D",
+        naive_ratio(max(sizes)),
+        5,
+    )
+
+
+def naive_ratio(n):
+    box = Box(n, 2)
+    load = checkerboard_load(box)
+    return (load @ answer(box.matrix(MU, BULK, "one-point"), load)) / (
+        load @ answer(box.matrix(0.5, 1 / 3), load)
+    )
+
+
+def checkerboard_load(box):
+    return box.load(lambda x: np.prod(np.cos(box.n * np.pi * x), axis=1))
 
 
 def checkerboard(n, dim, kind):
     """The energies that a checkerboard load excites: of the program over the
-    form in Python; of the program and of the DGQ(0) form over (eps, eps).
+    form in Python, and over (eps, eps).
 
     There are no identities to check: the resultant of the load is rounding.
     """
     box = Box(n, dim)
-    load = box.load(lambda x: np.prod(np.cos(n * np.pi * x), axis=1))
+    load = checkerboard_load(box)
 
     def energy(*form):
         return load @ answer(box.matrix(*form), load)
@@ -104,12 +119,7 @@ def checkerboard(n, dim, kind):
         },
     )
     program = 2 * result["strain_energy"][-1]
-    reference = energy(0.5, 1 / 3)
-    return (
-        program / energy(MU, BULK, kind),
-        program / reference,
-        energy(MU, BULK, "one-point") / reference,
-    )
+    return program / energy(MU, BULK, kind), program / energy(0.5, 1 / 3)
 
 
 RATIOS = (0.3, 0.49, 0.499, 0.4999, 0.49999)  # Poisson's
@@ -325,7 +335,10 @@ def aspect_ratio(size, report):
             abs(result["point0_x"] - square["point0_x"]).max()
             / abs(square["point0_x"]).max(),
             0,
-            1e-6,
+            # A column 250 times as high as a cell is long, n^2 of them wide,
+            # bends so easily that the tolerance of 1e-9 in energy, or rounding,
+            # is some thousand times that at the foot.
+            1e-5,
         )
         if solver == "multigrid":
             report.figure(
@@ -496,7 +509,7 @@ def slivers(size, report):
         report.figure("order in h, gap 1e-6", order, 0.9, 1.1)
 
         for solver in "direct", "multigrid":
-            counts = {}
+            counts, linear = {}, {}
             for gap in (1, *gaps):
                 sliver_mesh(file, n, gap, 2)
                 result = run(
@@ -513,10 +526,18 @@ def slivers(size, report):
                 )
                 report.identities(result, 1e-8)
                 counts[gap] = result["contact_iterations"][1:].mean()
-                print(solver, gap, counts[gap], result["linear_iterations"][1:].mean())
+                linear[gap] = result["linear_iterations"][1:].mean()
             report.figure(
                 f"active-set iterations a step, largest over gaps, {solver}",
                 max(counts.values()),
                 0,
                 counts[1] + 1,
             )
+            if solver == "multigrid":
+                report.figure("multigrid iterations a step, squares", linear[1])
+                report.figure(
+                    "the same, largest over gaps",
+                    max(linear.values()),
+                    0,
+                    2 * linear[1],
+                )

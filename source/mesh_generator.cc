@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/mesh_generator.h>
 #include <viscoplastic_contact/mesh_size.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/spelling.h>
 
 #include <algorithm>
 #include <cmath>
@@ -105,7 +106,7 @@ namespace Viscoplastic
       AssertThrow(!is_negative && total <= most, ExcMessage(message.str()));
       check_mesh_size(dim,
                       total,
-                      "'Geometry/Arguments' = " + geometry.arguments,
+                      "'Geometry/Arguments' = " + excerpt(geometry.arguments),
                       communicator);
     }
 
@@ -144,9 +145,10 @@ namespace Viscoplastic
       const auto lists = Utilities::split_string_list(arguments[0], ';');
       const auto refuse_unless = [&](const bool good, const std::string &what) {
         AssertThrow(good,
-                    ExcMessage("'Geometry/Arguments' = " + geometry.arguments +
-                               ": '" + arguments[0] + "' has to be " + what +
-                               "."));
+                    ExcMessage(
+                      "'Geometry/Arguments' = " + excerpt(geometry.arguments) +
+                      ": '" + excerpt(arguments[0]) + "' has to be " + what +
+                      "."));
       };
       const std::string n = std::to_string(dim);
       if (lists.size() < 2)

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/mesh_refinement.h>
 #include <viscoplastic_contact/mesh_size.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/spelling.h>
 
 #include <algorithm>
 #include <cmath>
@@ -117,7 +118,7 @@ namespace Viscoplastic
       check_mesh_size(dim,
                       n_cells_after(times, triangulation),
                       "'Geometry/Boundary refinements' = " +
-                        geometry.boundary_refinements,
+                        excerpt(geometry.boundary_refinements),
                       comm);
     for (unsigned int pass = 0; pass < local; ++pass)
       {

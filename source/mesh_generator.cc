@@ -3,7 +3,9 @@
 #include <deal.II/grid/grid_generator.h>
 
 #include <viscoplastic_contact/mesh_generator.h>
+#include <viscoplastic_contact/mesh_size.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/spelling.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +60,8 @@ namespace Viscoplastic
     /// the memory that huge ones need.
     void
     check_numbers_of_cells(const GeometryParameters &geometry,
-                           const unsigned int        dim)
+                           const unsigned int        dim,
+                           const MPI_Comm            communicator)
     {
       const auto found = cell_counts.find(geometry.generator);
       if (found == cell_counts.end())
@@ -101,6 +104,85 @@ namespace Viscoplastic
       message << " cells; possible are 1 to " << most
               << " (refinements make more).";
       AssertThrow(!is_negative && total <= most, ExcMessage(message.str()));
+      check_mesh_size(dim,
+                      total,
+                      "'Geometry/Arguments' = " + excerpt(geometry.arguments),
+                      communicator);
+    }
+
+
+
+    /// As numbers; empty unless all of them are.
+    std::vector<double>
+    list_of_numbers(const std::string &text)
+    {
+      std::vector<double> values;
+      for (const std::string &part : Utilities::split_string_list(text, ','))
+        {
+          char *end = nullptr;
+          values.push_back(std::strtod(part.c_str(), &end));
+          if (*end != '\0' || part.empty() || !std::isfinite(values.back()))
+            return {};
+        }
+      return values;
+    }
+
+
+
+    /**
+     * deal.II takes what is not a list of whole numbers of cells for lists of
+     * step sizes, one a direction, and in release mode compares neither their
+     * number nor that of the numbers of cells with the dimension.
+     */
+    void
+    check_box(const GeometryParameters &geometry, const unsigned int dim)
+    {
+      const auto arguments =
+        Utilities::split_string_list(geometry.arguments, ':');
+      if (geometry.generator != "subdivided_hyper_rectangle" ||
+          arguments.size() < 3)
+        return; // deal.II says it
+      const auto lists = Utilities::split_string_list(arguments[0], ';');
+      const auto refuse_unless = [&](const bool good, const std::string &what) {
+        AssertThrow(good,
+                    ExcMessage(
+                      "'Geometry/Arguments' = " + excerpt(geometry.arguments) +
+                      ": '" + excerpt(arguments[0]) + "' has to be " + what +
+                      "."));
+      };
+      const std::string n = std::to_string(dim);
+      if (lists.size() < 2)
+        {
+          const std::vector<double> counts = list_of_numbers(arguments[0]);
+          const bool                are_whole =
+            arguments[0].find_first_not_of("0123456789, ") == std::string::npos;
+          refuse_unless(counts.size() == dim && are_whole,
+                        n + " whole numbers of cells separated by commas, or " +
+                          n + " lists of step sizes separated by semicolons");
+          return;
+        }
+
+      refuse_unless(lists.size() == dim,
+                    n + " lists of step sizes separated by semicolons");
+      const std::vector<double> first = list_of_numbers(arguments[1]),
+                                last  = list_of_numbers(arguments[2]);
+      if (first.size() != dim || last.size() != dim)
+        return; // deal.II says it
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const std::vector<double> steps  = list_of_numbers(lists[d]);
+          const double              length = std::abs(last[d] - first[d]);
+          double                    sum    = 0.;
+          bool                      good   = !steps.empty();
+          for (const double step : steps)
+            {
+              good = good && step > 0.;
+              sum += step;
+            }
+          refuse_unless(good && std::abs(sum - length) <= 1e-6 * length,
+                        "lists of positive step sizes that add up to the "
+                        "lengths of the sides");
+        }
     }
   } // namespace
 
@@ -111,7 +193,8 @@ namespace Viscoplastic
   generate_mesh(const GeometryParameters                  &geometry,
                 parallel::distributed::Triangulation<dim> &triangulation)
   {
-    check_numbers_of_cells(geometry, dim);
+    check_numbers_of_cells(geometry, dim, triangulation.get_communicator());
+    check_box(geometry, dim);
     try
       {
         GridGenerator::generate_from_name_and_arguments(triangulation,

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/mesh_ids.h>
 #include <viscoplastic_contact/mesh_refinement.h>
+#include <viscoplastic_contact/mesh_size.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/spelling.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,35 @@ namespace Viscoplastic
         }
       return result;
     }
+
+
+
+    /// About how many cells there will be, from below: each face brings a cell
+    /// to be halved, and 2^(dim-1) faces in its place.
+    template <int dim>
+    double
+    n_cells_after(
+      const std::map<types::boundary_id, unsigned int> &times,
+      const parallel::distributed::Triangulation<dim>  &triangulation)
+    {
+      double n = 0.;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            n += 1.;
+            for (const unsigned int f : cell->face_indices())
+              {
+                const auto found = cell->at_boundary(f) ?
+                                     times.find(cell->face(f)->boundary_id()) :
+                                     times.end();
+                if (found != times.end())
+                  for (unsigned int pass = 0; pass < found->second; ++pass)
+                    n +=
+                      std::ldexp(Utilities::pow(2, dim) - 1, (dim - 1) * pass);
+              }
+          }
+      return Utilities::MPI::sum(n, triangulation.get_communicator());
+    }
   } // namespace
 
 
@@ -75,17 +105,21 @@ namespace Viscoplastic
                   " with " + std::to_string(local) +
                   " further ones at boundaries; together, " +
                   std::to_string(n_levels) + " are possible."));
-    const double n_unknowns =
-      dim * std::ldexp(triangulation.n_cells(0), dim * global);
-    std::ostringstream message;
-    message << "'Geometry/Global refinements' = " << global
-            << " would make about " << n_unknowns
-            << " unknowns, more than can be numbered.";
-    AssertThrow(n_unknowns <
-                  std::numeric_limits<types::global_dof_index>::max(),
-                ExcMessage(message.str()));
+    const MPI_Comm comm = triangulation.get_communicator();
+    if (global > 0)
+      check_mesh_size(dim,
+                      std::ldexp(triangulation.n_cells(0), dim * global),
+                      "'Geometry/Global refinements' = " +
+                        std::to_string(global),
+                      comm);
 
     triangulation.refine_global(global);
+    if (local > 0)
+      check_mesh_size(dim,
+                      n_cells_after(times, triangulation),
+                      "'Geometry/Boundary refinements' = " +
+                        excerpt(geometry.boundary_refinements),
+                      comm);
     for (unsigned int pass = 0; pass < local; ++pass)
       {
         // A cell may touch the boundary in a vertex or an edge only.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
@@ -470,6 +471,23 @@ namespace Viscoplastic
              << " the foundation pulls at the body on "
              << std::lround(100. * tension)
              << " % of the face in bilateral contact, which does not open.";
+        remarks.push_back(text.str());
+      }
+
+    // All ranks have the coarse mesh.
+    const auto corners =
+      GridTools::compute_bounding_box(triangulation).get_boundary_points();
+    const double size = corners.first.distance(corners.second);
+    if (summary.displacement.value > size)
+      {
+        std::ostringstream text;
+        text << std::setprecision(3)
+             << "Note: at t = " << summary.displacement.t
+             << " the largest displacement is "
+             << summary.displacement.value / size
+             << " times the size of the body; small strains are assumed, so "
+                "that this is flow without end or a load far too large, and "
+                "only its onset means something.";
         remarks.push_back(text.str());
       }
 

@@ -13,7 +13,15 @@ from pathlib import Path
 from suite import CASES, Size, run_case, table
 
 # The order is that of the table.
-MODULES = ("elasticity", "creep", "friction", "time_steps", "step_control", "limits")
+MODULES = (
+    "elasticity",
+    "cells",
+    "creep",
+    "friction",
+    "time_steps",
+    "step_control",
+    "limits",
+)
 
 
 def load():

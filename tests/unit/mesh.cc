@@ -358,6 +358,9 @@ TEST(BoundaryRefinements, Refused)
   geometry                    = generated("4, 4 : 0, 0 : 1, 1 : true");
   geometry.global_refinements = 15;
   expect_mesh_refused<2>(geometry, "more than can be numbered");
+  // 5.4e8 unknowns, but 9.7e9 entries
+  geometry.global_refinements = 12;
+  expect_mesh_refused<2>(geometry, "; take at least 5.");
 }
 
 
@@ -481,6 +484,36 @@ TEST(MeshChecks, Generators)
   geometry             = generated("2, 2 : 0, 0 : 1, 1 : true");
   geometry.translation = "1, 0, 0";
   expect_mesh_refused<2>(geometry, "'Geometry/Translation' = 1, 0, 0 needs 2");
+}
+
+
+
+TEST(MeshChecks, CellsOfBoxes)
+{
+  // deal.II would take these for lists of step sizes, or not look
+  const auto refused = [](const std::string &cells, const std::string &why) {
+    const std::string  rest = " : 0, 0 : 2, 1 : true";
+    GeometryParameters box  = generated(cells + rest);
+    box.generator           = "subdivided_hyper_rectangle";
+    expect_mesh_refused<2>(box,
+                           "'Geometry/Arguments' = " + cells + rest + ": '" +
+                             cells + "' has to be " + why);
+  };
+  const std::string counts = "2 whole numbers of cells separated by commas, or "
+                             "2 lists of step sizes";
+  refused("1e3, 1", counts);
+  refused("3.5, 1", counts);
+  refused("8", counts);
+  refused("8, 8, 8", counts);
+  refused("", counts);
+  const std::string sizes = "lists of positive step sizes that add up";
+  refused("1, 1; 0.5", sizes);
+  refused("1, 1; 0.5, -0.5, 1", sizes);
+  refused("1, 1; ", sizes);
+  refused("1, 1; 1; 1", "2 lists of step sizes");
+  const auto mesh =
+    make<2>(generated("0.5, 1.5; 0.25, 0.25, 0.5 : 0, 0 : 2, 1 : true"));
+  EXPECT_EQ(mesh->n_global_active_cells(), 6u);
 }
 
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
 #include <viscoplastic_contact/backward_euler.h>
+#include <viscoplastic_contact/messages.h>
 
 #include <cmath>
 #include <limits>
@@ -260,24 +263,44 @@ namespace Viscoplastic
     IrreversibleStress                 z(old_z);
     std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
     LinearEquation                     linear_equation;
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-      if (const ViscoplasticLaw *law = laws.law(c))
+    const auto                         solve_cell = [&](const std::size_t c) {
+      const ViscoplasticLaw &law       = *laws.law(c);
+      const Stiffness       &stiffness = sampling.moduli(c);
+      sampling.strains(c, ghosted_u.begin(), strain.data());
+      for (unsigned int s = 0; s < sampling.n_samples; ++s)
         {
-          const Stiffness &stiffness = sampling.moduli(c);
-          sampling.strains(c, ghosted_u.begin(), strain.data());
-          for (unsigned int s = 0; s < sampling.n_samples; ++s)
-            {
-              const std::size_t i     = c * sampling.n_samples + s;
-              const LawPoint    point = laws.point(c, s);
-              z[i] =
-                law->has_constant_tangents() ?
-                  linear_equation.solve(
-                    {*law, strain[s], old_z[i], k, stiffness, point},
-                    start[i]) :
-                  implicit_irreversible_stress(
-                    *law, strain[s], old_z[i], k, stiffness, point, start[i]);
-            }
+          const std::size_t i = c * sampling.n_samples + s;
+          const LawPoint    point = laws.point(c, s);
+          z[i] =
+            law.has_constant_tangents() ?
+                                      linear_equation.solve(
+                {law, strain[s], old_z[i], k, stiffness, point}, start[i]) :
+                                      implicit_irreversible_stress(
+                law, strain[s], old_z[i], k, stiffness, point, start[i]);
         }
+    };
+
+    std::string failure;
+    try
+      {
+        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+          if (laws.law(c) != nullptr)
+            solve_cell(c);
+      }
+    catch (const std::exception &exception)
+      {
+        failure = reason(exception);
+      }
+    // A sample without a solution fails the step, so on all ranks.
+    const MPI_Comm     comm    = sampling.space.communicator;
+    const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(comm);
+    const unsigned int first   = Utilities::MPI::min(
+      failure.empty() ? n_ranks : Utilities::MPI::this_mpi_process(comm), comm);
+    if (first < n_ranks)
+      {
+        failure = Utilities::MPI::broadcast(comm, failure, first);
+        AssertThrow(false, ExcMessage(failure));
+      }
     return z;
   }
 

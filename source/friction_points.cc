@@ -301,4 +301,59 @@ namespace Viscoplastic
       }
     return result;
   }
+
+
+
+  FaceTruncation
+  make_truncation(const FrictionFace              &face,
+                  const std::vector<double>       &bounds,
+                  const FrictionState             &state,
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal)
+  {
+    FaceTruncation truncation;
+    truncation.projector.resize(face.n_nodes());
+    truncation.spring.resize(face.n_nodes());
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        Tensor<2, 3> &projector = truncation.projector[node];
+        for (unsigned int d = 0; d < 3; ++d)
+          projector[d][d] = 1.;
+        for (unsigned int p = face.first_point[node];
+             p < face.first_point[node + 1];
+             ++p)
+          {
+            const FrictionFace::Point &point = face.points[p];
+            if (state.sticks[p])
+              for (unsigned int i = 0; i < point.n_tangents; ++i)
+                {
+                  // Remove what is left of this direction.
+                  Tensor<1, 3> q = projector * point.map[i];
+                  if (q.norm() > 1e-8 * point.map[i].norm())
+                    {
+                      q /= q.norm();
+                      projector -= outer_product(q, q);
+                    }
+                }
+            else if (point.n_tangents == 2 && bounds[p] > 0.)
+              {
+                // kappa P_e with kappa = rho/|s|, which tends to infinity as
+                // a point comes to rest; 1e10 times the diagonal is stick.
+                const double kappa =
+                  std::min(bounds[p] / state.slip[p].norm(),
+                           1e10 / inverse_diagonal[node].norm());
+                const Tensor<1, 2> e = state.slip[p] / state.slip[p].norm();
+                const Tensor<1, 3> across =
+                  -e[1] * point.map[0] + e[0] * point.map[1];
+                truncation.spring[node] +=
+                  kappa * outer_product(across, across);
+              }
+          }
+        // Remove rounding, so that equal sets compare equal.
+        for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int j = 0; j < 3; ++j)
+            if (std::abs(projector[i][j]) < 1e-14)
+              projector[i][j] = 0.;
+      }
+    return truncation;
+  }
 } // namespace Viscoplastic

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/backward_euler.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/nonsymmetric_correction.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
@@ -146,6 +147,8 @@ namespace Viscoplastic
                                        i / sampling.n_samples,
                                        i % sampling.n_samples,
                                        ExactSolution<dim>::Side::before);
+    const bool is_symmetric =
+      d.tangent->is_constant || have_symmetric_tangents(d.laws, time_step.t);
     const auto z_for = [&](const DistributedVector  &ghosted_u,
                            const IrreversibleStress &guess) {
       TimerOutput::Scope phase(timer, "rate");
@@ -247,21 +250,54 @@ namespace Viscoplastic
             AssertThrow(false, ExcMessage(message.str()));
           }
 
-        // Go there, or as far as J decreases.
-        double length = 1.;
-        if (base.size() > 0)
-          length = step_length(old_forces, load, step, base, z, u, z_for);
-        if (length == 1.)
+        // What the matrix misses of the tangents may be all that matters.
+        double length = 0.;
+        if (!is_symmetric)
           {
-            base = u;
-            at   = state.u;
-            z    = state.z;
+            NewtonIterate<dim> iterate{u, state.u, state.z, state.friction};
+            const auto         correction =
+              NonsymmetricCorrection<dim>(d.laws,
+                                          d.matrix,
+                                          *d.solver,
+                                          d.face.get(),
+                                          load.values,
+                                          old_forces.u,
+                                          step.bounds,
+                                          step.foundation_step)
+                .correct(time_step.t,
+                         k,
+                         std::max(0.1 * tolerance * size / error,
+                                  std::min(1e-2, error / size)),
+                         z_for,
+                         iterate);
+            step.report.linear_iterations += correction.iterations;
+            length = correction.share;
+            if (length > 0.)
+              {
+                u = base       = iterate.u;
+                at             = iterate.ghosted_u;
+                z              = iterate.z;
+                state.friction = iterate.friction;
+              }
           }
-        else
+        // Else go there, or as far as J decreases.
+        if (length == 0.)
           {
-            base.sadd(1. - length, length, u);
-            space.to_cartesian(base, at);
-            z = z_for(at, z);
+            length = 1.;
+            if (base.size() > 0)
+              length = step_length(old_forces, load, step, base, z, u, z_for);
+            if (length == 1.)
+              {
+                base = u;
+                at   = state.u;
+                z    = state.z;
+              }
+            else
+              {
+                base.sadd(1. - length, length, u);
+                space.to_cartesian(base, at);
+                z = z_for(at, z);
+              }
           }
 
         // A tangent serves while the iterations left cost less than a new one.

@@ -51,7 +51,8 @@ namespace Viscoplastic
 
   /**
    * The same at all samples: z_n for the strains of @p ghosted_u, from @p
-   * start. Elastic cells keep their z. No communication.
+   * start. Elastic cells keep their z. Throws on all ranks if there is no
+   * solution at a sample of one. Collective.
    */
   template <int dim>
   IrreversibleStress

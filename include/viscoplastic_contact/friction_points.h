@@ -80,4 +80,16 @@ namespace Viscoplastic
           const std::vector<Tensor<2, 3>> &diagonal,
           const FrictionState             &state,
           const Vector<double>            &force);
+
+
+  /**
+   * How the linear system of a Newton step treats the face: sticking points
+   * are held, slipping ones resist turning. @p inverse_diagonal: of the blocks
+   * of the face matrix, beyond which a spring is as good as stick.
+   */
+  FaceTruncation
+  make_truncation(const FrictionFace              &face,
+                  const std::vector<double>       &bounds,
+                  const FrictionState             &state,
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal);
 } // namespace Viscoplastic

@@ -181,6 +181,17 @@ namespace Viscoplastic
     }
 
     /**
+     * Whether the tangent of a step of backward Euler (algorithmic_tangent())
+     * is symmetric at all states, as it is for flow that has a potential. If
+     * not, the linear systems of a step are solved by GMRES as well.
+     */
+    virtual bool
+    has_symmetric_tangents() const
+    {
+      return false;
+    }
+
+    /**
      * The rate r, 1/time, at which stress relaxes at fixed strain: at least
      * the largest eigenvalue of -dG/dsigma at this stress. Forward Euler is
      * stable for time steps up to 2/r. A law whose rate may jump to a larger

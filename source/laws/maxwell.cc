@@ -49,6 +49,12 @@ namespace Viscoplastic
         return true;
       }
 
+      bool
+      has_symmetric_tangents() const override
+      {
+        return true;
+      }
+
       double
       relaxation_rate(const SymmetricTensor<2, 3> & /*stress*/,
                       const SymmetricTensor<2, 3> & /*strain*/,

@@ -67,6 +67,12 @@ namespace Viscoplastic
       }
 
       bool
+      has_symmetric_tangents() const override
+      {
+        return true;
+      }
+
+      bool
       deviatoric_flow() const override
       {
         return true;

@@ -110,6 +110,14 @@ namespace Viscoplastic
       }
 
       bool
+      has_symmetric_tangents() const override
+      {
+        const LawParameter &H = parameters[hardening];
+        return !H.depends_on_position() && !H.depends_on_time() &&
+               H.value(Point<3>(), 0.) == 0.;
+      }
+
+      bool
       deviatoric_flow() const override
       {
         return true;

@@ -1,0 +1,508 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Backward Euler at one sample: the stress against closed forms and
+// bisection, the tangent against differences of the stress.
+
+#include <viscoplastic_contact/backward_euler.h>
+#include <viscoplastic_contact/viscoplastic_law.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+
+  using Tensor2 = SymmetricTensor<2, 3>;
+  using Tensor4 = SymmetricTensor<4, 3>;
+
+  // mu = 0.4, K = 2/3.
+  constexpr double mu          = 0.4;
+  const Stiffness  isotropic   = Stiffness::isotropic(1., 0.25);
+  const double     from_tensor = std::sqrt(2. / 3.); // |dev| over von Mises
+
+
+
+  /// A body with soft shears in one plane.
+  Stiffness
+  anisotropic()
+  {
+    FullMatrix<double> C(6, 6);
+    for (unsigned int i = 0; i < 3; ++i)
+      {
+        for (unsigned int j = 0; j < 3; ++j)
+          C(i, j) = i == j ? 1.2 + 0.3 * i : 0.4;
+        C(i + 3, i + 3) = 0.2 + 0.1 * i;
+      }
+    C(0, 5) = C(5, 0) = 0.15;
+    return Stiffness::anisotropic(C);
+  }
+
+
+
+  class RandomTensors
+  {
+  public:
+    Tensor2
+    operator()()
+    {
+      Tensor2 t;
+      for (unsigned int i = 0; i < Tensor2::n_independent_components; ++i)
+        t.access_raw_entry(i) = distribution(generator);
+      return t;
+    }
+
+  private:
+    std::mt19937                           generator{20260101};
+    std::uniform_real_distribution<double> distribution{-1., 1.};
+  };
+
+
+
+  std::string
+  message_of(const std::function<void()> &action)
+  {
+    try
+      {
+        action();
+      }
+    catch (const std::exception &exception)
+      {
+        std::istringstream words(exception.what());
+        std::string        message, word;
+        while (words >> word)
+          message += (message.empty() ? "" : " ") + word;
+        return message;
+      }
+    return "";
+  }
+
+
+
+  /// A law in a body.
+  struct Sample
+  {
+    Sample(const std::string &name,
+           const std::string &entries,
+           const Stiffness   &stiffness = isotropic)
+      : name(name + ", " + entries)
+      , stiffness(stiffness)
+    {
+      ParameterHandler prm;
+      declare_viscoplastic_law_parameters(prm);
+      prm.parse_input_from_string("subsection " + name + "\n" + entries +
+                                  "\nend\n");
+      law   = make_viscoplastic_law(name, prm);
+      point = law->point(Point<3>(), 0.);
+    }
+
+    Tensor2
+    z(const Tensor2 &strain, const Tensor2 &old_z, const double k) const
+    {
+      return implicit_irreversible_stress(
+        *law, strain, old_z, k, stiffness, point, old_z);
+    }
+
+    Tensor2
+    stress(const Tensor2 &strain, const Tensor2 &old_z, const double k) const
+    {
+      return stiffness.stress(strain) + z(strain, old_z, k);
+    }
+
+    Tensor4
+    tangent(const Tensor2 &stress, const Tensor2 &strain, const double k) const
+    {
+      return algorithmic_tangent(*law, stress, strain, k, stiffness, point);
+    }
+
+    std::string                      name;
+    Stiffness                        stiffness;
+    std::unique_ptr<ViscoplasticLaw> law;
+    LawPoint                         point;
+  };
+
+  const std::array<double, 6> products = {{0.01, 0.1, 1., 10., 100., 1000.}};
+
+
+
+  /// Where an increasing function vanishes between 0 and @p right.
+  double
+  bisect(const std::function<double(double)> &f, double right)
+  {
+    double left = 0.;
+    for (unsigned int i = 0; i < 200; ++i)
+      {
+        const double middle             = 0.5 * (left + right);
+        (f(middle) < 0. ? left : right) = middle;
+      }
+    return left;
+  }
+
+
+
+  /// The stress with the deviator of the trial stress shortened.
+  void
+  expect_shortened(const Sample  &sample,
+                   const Tensor2 &strain,
+                   const Tensor2 &old_z,
+                   const double   k,
+                   const double   length)
+  {
+    const Tensor2 trial    = isotropic.stress(strain) + old_z;
+    const Tensor2 expected = trace(trial) / 3. * unit_symmetric_tensor<3>() +
+                             length / deviator(trial).norm() * deviator(trial);
+    EXPECT_LE((sample.stress(strain, old_z, k) - expected).norm(),
+              1e-10 * trial.norm())
+      << sample.name << ", k = " << k;
+  }
+
+
+
+  TEST(BackwardEuler, MaxwellAndZenerByHand)
+  {
+    const Sample  maxwell("maxwell", "set Viscosity = 0.5");
+    const Sample  zener("zener",
+                       "set Long-term Young's modulus = 0.5\nset Long-term "
+                        "Poisson's ratio = 0.1\nset Relaxation time = 0.7");
+    const auto    soft = Stiffness::isotropic(0.5, 0.1);
+    RandomTensors random;
+    for (const double kr : products)
+      {
+        const Tensor2 strain = random(), old_z = random();
+        const Tensor2 trial = isotropic.stress(strain) + old_z;
+        const double  r     = mu / 0.5;
+        expect_shortened(
+          maxwell, strain, old_z, kr / r, deviator(trial).norm() / (1. + kr));
+        EXPECT_LE((zener.stress(strain, old_z, 0.7 * kr) -
+                   (trial + kr * soft.stress(strain)) / (1. + kr))
+                    .norm(),
+                  1e-12);
+      }
+  }
+
+
+
+  TEST(BackwardEuler, PerzynaByHand)
+  {
+    const Sample sample("perzyna", "set Yield radius = 0.5\nset Viscosity = 2");
+    RandomTensors random;
+    for (const double kr : products)
+      for (const double size : {0.1, 0.9999999, 1.0000001, 1.1, 30.})
+        {
+          // |dev of the trial stress| = size times the yield radius.
+          const Tensor2 strain = random();
+          Tensor2       old_z  = random();
+          const Tensor2 trial  = isotropic.stress(strain) + old_z;
+          const double  length = 0.5 * size;
+          old_z += (length / deviator(trial).norm() - 1.) * deviator(trial);
+          const double k = kr * 2. / (2. * mu);
+          expect_shortened(sample,
+                           strain,
+                           old_z,
+                           k,
+                           size < 1. ? length :
+                                       (length + kr * 0.5) / (1. + kr));
+          if (size < 1.)
+            EXPECT_EQ(sample.z(strain, old_z, k), old_z);
+        }
+  }
+
+
+
+  TEST(BackwardEuler, HardeningByHand)
+  {
+    // Everything along one deviator.
+    RandomTensors random;
+    for (const double H : {0.08, 0.8, 8.})
+      {
+        const Sample sample("perzyna",
+                            "set Yield radius = 0.1\nset Viscosity = "
+                            "2\nset Hardening modulus = " +
+                              std::to_string(H));
+        const double h = H * from_tensor / (2. * mu);
+        for (const double kr : products)
+          {
+            const Tensor2 strain  = random();
+            const Tensor2 elastic = 2. * mu * deviator(strain);
+            const Tensor2 old_z   = -0.3 * elastic;
+            const double  a = kr / (1. + h), k = a * 2. / (2. * mu);
+            expect_shortened(sample,
+                             strain,
+                             old_z,
+                             k,
+                             (0.7 * elastic.norm() +
+                              a * (0.1 + h * elastic.norm())) /
+                               (1. + a + a * h));
+          }
+      }
+  }
+
+
+
+  TEST(BackwardEuler, NortonAndParsedByBisection)
+  {
+    struct Case
+    {
+      Sample                                sample;
+      std::function<double(double, double)> f; // of von Mises stress and p
+    };
+    const auto power = [](const double n, const double cap) {
+      return [=](const double q, const double) {
+        return q <= cap ? std::pow(q, n) :
+                          std::pow(cap, n) * (1. + n * (q / cap - 1.));
+      };
+    };
+    std::vector<Case> cases;
+    cases.push_back(
+      {{"norton",
+        "set Rate factor = 1\nset Exponent = 3\nset Stress cap = 0.8"},
+       power(3., 0.8)});
+    cases.push_back(
+      {{"norton",
+        "set Rate factor = 1\nset Exponent = 10\nset Stress cap = 100"},
+       power(10., 100.)});
+    cases.push_back(
+      {{"parsed", "set Strain rate = max(0, sigma_eq - max(0, 0.2 + 0.5*p))"},
+       [](const double q, const double p) {
+         return std::max(0., q - std::max(0., 0.2 + 0.5 * p));
+       }});
+    cases.push_back({{"parsed", "set Strain rate = sigma_eq^2*exp(-2*p)"},
+                     [](const double q, const double p) {
+                       return q * q * std::exp(-2. * p);
+                     }});
+
+    RandomTensors random;
+    for (const Case &c : cases)
+      for (const double kr : products)
+        for (unsigned int i = 0; i < 5; ++i)
+          {
+            const Tensor2 strain = random(), old_z = 0.5 * deviator(random());
+            const Tensor2 trial = isotropic.stress(strain) + old_z;
+            const double  p     = -trace(trial) / 3.;
+            const double  q     = von_mises(trial);
+            // r at the trial stress, nearly
+            const double k = kr * q / (3. * mu * std::max(c.f(q, p), 1e-3));
+            expect_shortened(c.sample,
+                             strain,
+                             old_z,
+                             k,
+                             from_tensor *
+                               bisect(
+                                 [&](const double x) {
+                                   return x + 3. * mu * k * c.f(x, p) - q;
+                                 },
+                                 q));
+          }
+  }
+
+
+
+  std::vector<Sample>
+  all_samples()
+  {
+    std::vector<Sample> samples;
+    for (const Stiffness &E : {isotropic, anisotropic()})
+      {
+        const auto add = [&](const char *name, const char *entries) {
+          samples.emplace_back(name, entries, E);
+        };
+        add("maxwell", "set Viscosity = 0.5");
+        add("zener",
+            "set Long-term Young's modulus = 0.3\nset Long-term Poisson's "
+            "ratio = 0.1\nset Relaxation time = 0.7");
+        add("perzyna", "set Yield radius = 0.3\nset Viscosity = 2");
+        add("norton",
+            "set Rate factor = 1\nset Exponent = 3\nset Stress cap = 0.8");
+        add("norton",
+            "set Rate factor = 1\nset Exponent = 10\nset Stress cap = 1.5");
+        add("perzyna",
+            "set Yield radius = 0.2\nset Viscosity = 2\nset Hardening "
+            "modulus = 0.3");
+        add("perzyna",
+            "set Yield radius = 0.2\nset Viscosity = 2\nset Hardening "
+            "modulus = 10");
+        add("parsed",
+            "set Strain rate = max(0, sigma_eq - max(0, 0.2 + 0.5*p))");
+        add("parsed",
+            "set Strain rate = sigma_eq*exp(-eps_eq)*(1 + tanh(2*p))");
+      }
+    return samples;
+  }
+
+
+
+  /// With |C - C^T| in the sense of a : C : b.
+  double
+  asymmetry(const Tensor4 &C)
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < 6; ++i)
+      for (unsigned int j = 0; j < i; ++j)
+        sum = std::max(sum,
+                       std::fabs(C.access_raw_entry(6 * i + j) -
+                                 C.access_raw_entry(6 * j + i)));
+    return sum / C.norm();
+  }
+
+
+
+  TEST(BackwardEuler, StressesSolveTheirEquation)
+  {
+    RandomTensors random;
+    for (const Sample &sample : all_samples())
+      for (const double kr : products)
+        for (unsigned int i = 0; i < 5; ++i)
+          {
+            const Tensor2 strain = random(), old_z = deviator(random());
+            const Tensor2 trial = sample.stiffness.stress(strain) + old_z;
+            const double  k     = kr / sample.law->relaxation_rate(trial,
+                                                              strain,
+                                                              sample.stiffness,
+                                                              sample.point);
+            const Tensor2 z     = sample.z(strain, old_z, k);
+            const Tensor2 G =
+              sample.law->rate(sample.stiffness.stress(strain) + z,
+                               strain,
+                               sample.stiffness,
+                               sample.point);
+            // Up to an error of z of 1e-12, which r multiplies.
+            EXPECT_LE((z - old_z - k * G).norm(), 1e-10 * (1. + kr))
+              << sample.name << ", k r = " << kr;
+          }
+  }
+
+
+
+  TEST(BackwardEuler, TangentsAgainstDifferences)
+  {
+    RandomTensors random;
+    for (const Sample &sample : all_samples())
+      {
+        double largest = 0.;
+        for (const double kr : products)
+          for (unsigned int i = 0; i < 5; ++i)
+            {
+              const Tensor2 strain = random(), old_z = deviator(random());
+              const Tensor2 trial = sample.stiffness.stress(strain) + old_z;
+              const double  k =
+                kr / sample.law->relaxation_rate(trial,
+                                                 strain,
+                                                 sample.stiffness,
+                                                 sample.point);
+              const Tensor4 C =
+                sample.tangent(sample.stress(strain, old_z, k), strain, k);
+              largest         = std::max(largest, asymmetry(C));
+              const double  h = 1e-5;
+              const Tensor2 d = random();
+              const Tensor2 difference =
+                (sample.stress(strain + h * d, old_z, k) -
+                 sample.stress(strain - h * d, old_z, k)) /
+                (2. * h);
+              EXPECT_LE((C * d - difference).norm(),
+                        2e-5 * (sample.stiffness.stress(d)).norm())
+                << sample.name << ", k r = " << kr;
+            }
+        if (sample.law->has_symmetric_tangents())
+          EXPECT_LE(largest, 1e-10) << sample.name;
+        else
+          EXPECT_GE(largest, 1e-3) << sample.name;
+      }
+  }
+
+
+
+  TEST(BackwardEuler, TangentAtTheYieldStress)
+  {
+    const Sample sample("perzyna", "set Yield radius = 0.5\nset Viscosity = 2");
+    RandomTensors random;
+    for (const double kr : products)
+      {
+        const double  k         = kr * 2. / (2. * mu);
+        const Tensor2 direction = deviator(random());
+        const Tensor2 at_yield = 0.5 / (2. * mu) / direction.norm() * direction;
+        const auto    stress   = [&](const double size) {
+          return sample.stress(size * at_yield, {}, k);
+        };
+        const Tensor4 inside =
+          sample.tangent(stress(1. - 1e-9), (1. - 1e-9) * at_yield, k);
+        const Tensor4 outside =
+          sample.tangent(stress(1. + 1e-9), (1. + 1e-9) * at_yield, k);
+        EXPECT_EQ(inside, isotropic.tensor());
+        EXPECT_LE(
+          (outside * direction - 2. * mu / (1. + kr) * direction).norm(), 1e-7);
+        // One of the two on the surface itself.
+        const Tensor4 on =
+          sample.tangent(0.5 / direction.norm() * direction, at_yield, k);
+        EXPECT_LE(std::min((on - inside).norm(), (on - outside).norm()), 1e-7);
+      }
+  }
+
+
+
+  TEST(BackwardEuler, DefiniteTangents)
+  {
+    RandomTensors random;
+    unsigned int  n_changed = 0;
+    for (const Sample &sample : all_samples())
+      for (const double kr : products)
+        {
+          const Tensor2 strain = random(), old_z = deviator(random());
+          const Tensor2 trial = sample.stiffness.stress(strain) + old_z;
+          const double  k     = kr / sample.law->relaxation_rate(trial,
+                                                            strain,
+                                                            sample.stiffness,
+                                                            sample.point);
+          const Tensor4 C =
+            sample.tangent(sample.stress(strain, old_z, k), strain, k);
+          const Tensor4 definite = definite_tangent(C, sample.stiffness);
+          EXPECT_LE(asymmetry(definite), 1e-14) << sample.name;
+          EXPECT_GT(spectrum(definite).values[0], 0.) << sample.name;
+          // Its quadratic form is that of C unless C has none that is positive.
+          Tensor4 symmetric_part;
+          for (unsigned int i = 0; i < 6; ++i)
+            for (unsigned int j = 0; j < 6; ++j)
+              symmetric_part.access_raw_entry(6 * i + j) =
+                0.5 *
+                (C.access_raw_entry(6 * i + j) + C.access_raw_entry(6 * j + i));
+          if (spectrum(symmetric_part).values[0] > 1e-6)
+            EXPECT_LE((definite - symmetric_part).norm(), 1e-14) << sample.name;
+          else
+            ++n_changed;
+        }
+    EXPECT_GT(n_changed, 0u); // else this tests half of it
+  }
+
+
+
+  TEST(BackwardEuler, SaysWhereThereIsNoStress)
+  {
+    // Flow that does not vanish with the stress has no answer below 3 mu k.
+    const Sample  sample("parsed", "set Strain rate = 1");
+    const Tensor2 none;
+    Tensor2       strain;
+    strain[0][1] = 0.1;
+    EXPECT_NE(message_of([&] { sample.z(strain, none, 1.); })
+                .find("The stress of backward Euler at x = (0 0 0), t = 0 "
+                      "cannot be found for the time step 1: its law of flow "
+                      "may soften or jump there; take more steps in "
+                      "'Time/Phases'."),
+              std::string::npos)
+      << message_of([&] { sample.z(strain, none, 1.); });
+    // Above, it has.
+    expect_shortened(sample,
+                     strain,
+                     none,
+                     0.1,
+                     deviator(isotropic.stress(strain)).norm() -
+                       from_tensor * 3. * mu * 0.1);
+  }
+} // namespace

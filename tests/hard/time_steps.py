@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness import EXECUTABLE, run
+from harness import run
 from suite import case
 
 GROUP = "Time"
@@ -16,7 +16,6 @@ THETA = 1.3  # mu/eta = 1/THETA for the Maxwell bodies of these scenes
 LIMIT = 2 * THETA  # of k for explicit schemes
 EXPLICIT = "forward Euler", "Heun"
 SCHEMES = *EXPLICIT, "backward Euler"
-PROGRAM = Path(EXECUTABLE).name[:15]  # as /proc shows it
 COLUMNS = "point0_x", "stored_energy", "friction_force_x"
 
 
@@ -254,10 +253,10 @@ def load_kinks(size, report):
 
 
 class Memory:
-    """Samples the resident memory of the children of this process, in MB."""
+    """Samples the resident memory of the program that runs, in MB."""
 
-    def __init__(self, seconds=0.05):
-        self.samples, self.seconds = [], seconds
+    def __init__(self, seconds=0.02):
+        self.samples, self.seconds = [], seconds  # (bytes of statistics.csv, MB)
         self.stop = threading.Event()
         self.thread = threading.Thread(target=self.watch)
 
@@ -271,32 +270,33 @@ class Memory:
 
     def watch(self):
         while not self.stop.wait(self.seconds):
-            for status in children():
+            for process in children():
+                statistics = process / "cwd" / "results" / "statistics.csv"
                 try:
-                    fields = dict(
-                        line.split(":", 1) for line in status.read_text().splitlines()
-                    )
-                except OSError:  # it has ended
+                    status = (process / "status").read_text()
+                    size = statistics.stat().st_size
+                except OSError:  # not begun, or ended
                     continue
-                if "VmRSS" in fields and fields["Name"].strip() == PROGRAM:
-                    self.samples.append(int(fields["VmRSS"].split()[0]) / 1024)
+                resident = status.partition("VmRSS:")[2].split()
+                if resident:
+                    self.samples.append((size, int(resident[0]) / 1024))
 
-    def growth(self):
-        """In the second half of the run, when everything has been set up, up to
-        the closing words."""
-        half = self.samples[len(self.samples) // 2 :]
-        return np.median(half[-len(half) // 4 : -1]) - half[0]
+    def of_the_steps(self):
+        """From a tenth of the steps to the last but one: without set-up and
+        closing words."""
+        last = max((size for size, _ in self.samples), default=0)
+        return [mb for size, mb in self.samples if 0.1 * last <= size < last]
 
 
 def children():
-    """The status files of the processes whose parent is this one."""
+    """The directories in /proc of the processes whose parent is this one."""
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
             parent = stat.read_text().rpartition(")")[2].split()[1]
         except OSError:
             continue
         if int(parent) == os.getpid():
-            yield stat.with_name("status")
+            yield stat.parent
 
 
 @case(GROUP, "10^5 steps: equilibrium does not drift, the energy defect keeps its share "
@@ -329,7 +329,8 @@ def many_steps(size, report):
             0.9,
             1.1,
         )
-        report.figure("memory samples", len(memory.samples), least=20)
-        report.figure("resident memory, MB", max(memory.samples, default=0))
-        report.figure("its growth, MB", memory.growth(), largest=1)
+        resident = memory.of_the_steps()
+        report.figure("memory samples", len(resident), least=10)
+        report.figure("resident memory, MB", max(resident))
+        report.figure("its growth, MB", max(resident) - resident[0], largest=1)
     report.figure("order of the energy defect", np.log2(defects[0] / defects[1]), 1)

@@ -13,7 +13,7 @@ from pathlib import Path
 from suite import CASES, Size, run_case, table
 
 # The order is that of the table.
-MODULES = ("elasticity", "creep", "friction", "time_steps", "limits")
+MODULES = ("elasticity", "creep", "friction", "contact_pieces", "time_steps", "limits")
 
 
 def load():

@@ -112,7 +112,8 @@ def tiny_steps(size, report):
     equal = in_steps("1.3: 8, 5.2: 24")
     fine = in_steps(f"5.2: {size(1024, 8192)}", "Heun")
     report.identities(growing, 1e-10)
-    report.figure("smallest and largest step apart, factor", np.ptp(np.log10(growing["k"][1:])))
+    steps = np.log10(growing["k"][1:])
+    report.figure("smallest and largest step apart, decades", np.ptp(steps))
     report.figure(
         "steps that grow from 1e-8, error of that of equal steps",
         relative_error(growing, fine) / relative_error(equal, fine),

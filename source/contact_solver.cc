@@ -39,6 +39,39 @@ namespace Viscoplastic
 
 
 
+    /// Bring points to rest whose slip is nothing but rounding, an error of the
+    /// size of @p rounding in the energy norm: its direction means nothing, but
+    /// would be that of a force of the size of the bound. @p change takes part.
+    void
+    stop_rounding(const FrictionFace              &face,
+                  const std::vector<double>       &bounds,
+                  const std::vector<Tensor<2, 3>> &diagonal,
+                  const double                     rounding,
+                  Vector<double>                  &x,
+                  Vector<double>                  &change,
+                  FrictionState                   &state)
+    {
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        {
+          const unsigned int p = face.first_point[node];
+          if (face.n_node_points(node) != 1 || state.sticks[p] ||
+              bounds[p] == 0.)
+            continue;
+          const Tensor<1, 3> here = face.node_values(x, node);
+          const Tensor<1, 3> part =
+            node_force(face.points[p], slip(face.points[p], here));
+          if (part * (diagonal[node] * part) > square(rounding))
+            continue;
+          face.set_node_values(here - part, node, x);
+          face.set_node_values(face.node_values(change, node) - part,
+                               node,
+                               change);
+          state.sticks[p] = true;
+        }
+    }
+
+
+
     /// J(u + step w) - J(u) and its derivative to the right, without the bulk
     /// terms: the sum over the points.
     struct FrictionAlongLine
@@ -318,6 +351,14 @@ namespace Viscoplastic
             for (unsigned int node = face.n_nodes(); node-- > 0;)
               relax(node);
           }
+        // rounding_error() is a hundred units of rounding.
+        stop_rounding(face,
+                      bounds,
+                      diagonal,
+                      0.01 * bulk.rounding_error(),
+                      x,
+                      change,
+                      state);
         bulk.move_face(change);
         bulk.face_residual(residual);
         update_slips(face, bounds, x, state);
@@ -327,9 +368,14 @@ namespace Viscoplastic
         const FaceTruncation truncation =
           make_truncation(face, bounds, state, inverse);
         bulk.set_truncation(truncation);
-        const Certificate certificate =
-          certify(face, bounds, residual, diagonal, state, force);
-        const double size =
+        const Certificate certificate = certify(face,
+                                                bounds,
+                                                residual,
+                                                diagonal,
+                                                state,
+                                                force,
+                                                bulk.rounding_error());
+        const double      size =
           std::max(bulk.energy_norm(), bulk.rounding_error() / tolerance);
         const auto bound = [&](const double dual_norm) {
           report.duality_gap = 0.5 * square(dual_norm) + certificate.defect;

@@ -276,7 +276,8 @@ namespace Viscoplastic
           const Vector<double>            &residual,
           const std::vector<Tensor<2, 3>> &diagonal,
           const FrictionState             &state,
-          const Vector<double>            &force)
+          const Vector<double>            &force,
+          const double                     rounding)
   {
     Certificate result;
     result.force = force;
@@ -288,9 +289,12 @@ namespace Viscoplastic
             state.sticks[p] || bounds[p] == 0.)
           continue;
         const Tensor<1, 2> here = slip(point, face.node_values(residual, node));
-        const double       misses = (here - state.multiplier[p]).norm();
-        if (misses > 1e-5 * bounds[p] ||
-            misses <= diagonal[node].norm() * state.slip[p].norm())
+        const double       misses    = (here - state.multiplier[p]).norm();
+        const double       stiffness = diagonal[node].norm();
+        const double       size      = state.slip[p].norm();
+        const double       blur      = rounding / (std::sqrt(stiffness) * size);
+        if (misses > std::max(1e-5, blur) * bounds[p] ||
+            misses <= stiffness * size)
           continue;
         const Tensor<1, 2> multiplier = clip(here, bounds[p]);
         result.defect += std::max(0.,

@@ -248,7 +248,8 @@ namespace Viscoplastic
     const DistributedVector &old_u = old_forces.u;
     DistributedVector        u(old_u), velocity(old_u);
     space.to_frames(guess.velocity, velocity);
-    u.add(new_state.k, velocity);
+    // Not beyond the last increment: it may have been a jump in a tiny step.
+    u.add(std::min(new_state.k, guess.k), velocity);
     if (d.face)
       {
         const FrictionFace &face = d.face->layout();
@@ -289,7 +290,8 @@ namespace Viscoplastic
     Discretisation             &d     = *discretisation;
     const AdmissibleSpace<dim> &space = d.space;
 
-    // What rounding leaves of displacements and of loads that cancel.
+    // What rounding leaves of displacements, of their increments, in which the
+    // face is solved, and of loads that cancel.
     double rounding = 0.;
     for (std::size_t i = 0; i < space.excluded().size(); ++i)
       if (!space.excluded()[i])
@@ -297,7 +299,8 @@ namespace Viscoplastic
           const double stiffness = d.diagonal.begin()[i];
           const auto   square    = [](const double x) { return x * x; };
           rounding +=
-            stiffness * square(u.begin()[i]) +
+            stiffness *
+              (square(u.begin()[i]) + square(old_forces.u.begin()[i])) +
             (square(load.values.begin()[i]) + square(right_side.begin()[i])) /
               stiffness;
         }

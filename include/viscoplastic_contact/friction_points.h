@@ -71,7 +71,8 @@ namespace Viscoplastic
    * blurred by rounding: its multiplier rho s/|s| misses the residual by more
    * than its slip is worth. There the clipped residual is the better
    * multiplier, at the price of a small defect of complementarity. A miss of
-   * more than 1e-5 of the bound is not rounding.
+   * more than 1e-5 of the bound is not rounding, unless the slip is as small as
+   * @p rounding, an error in the energy norm, makes it.
    */
   Certificate
   certify(const FrictionFace              &face,
@@ -79,7 +80,8 @@ namespace Viscoplastic
           const Vector<double>            &residual,
           const std::vector<Tensor<2, 3>> &diagonal,
           const FrictionState             &state,
-          const Vector<double>            &force);
+          const Vector<double>            &force,
+          double                           rounding);
 
 
   /**

@@ -18,6 +18,7 @@ MODULES = (
     "cells",
     "creep",
     "friction",
+    "contact_pieces",
     "time_steps",
     "step_control",
     "limits",

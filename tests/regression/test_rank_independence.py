@@ -166,9 +166,12 @@ def several(name, scene, ranks=RANKS):
 
 
 class SameOnAllRanks(TestCase):
-    def check(self, name, scene, ranks=RANKS):
+    def check(self, name, scene, ranks=RANKS, identities=False):
         runs = several(name, scene, ranks)
         alone = runs[0]
+        if identities:
+            for one in runs:
+                self.check_identities(one)
         for n, other in zip(ranks[1:], runs[1:]):
             self.assertEqual(int(other.info["n_mpi_ranks"]), n)
             found = compare(alone, other)
@@ -189,10 +192,10 @@ class SameOnAllRanks(TestCase):
                 file=sys.stderr,
             )
 
-    def check_group(self, group):
+    def check_group(self, group, **options):
         for name, scene in SCENES[group].items():
             with self.subTest(name):
-                self.check(name, scene)
+                self.check(name, scene, **options)
 
 
 class Scenes(SameOnAllRanks):
@@ -213,10 +216,10 @@ class Scenes(SameOnAllRanks):
         self.check_group("corners")
 
     def test_space(self):
-        self.check_group("space")
+        self.check_group("space", identities=True)
 
     def test_adaptive(self):
-        self.check_group("adaptive")
+        self.check_group("adaptive", identities=True)
 
     def test_laws(self):
         self.check_group("laws")
@@ -252,7 +255,8 @@ class MoreRanksThanCells(SameOnAllRanks):
     def check_both(self, changes):
         for name, few, ranks in self.PLANE, self.SPACE:
             with self.subTest(name):
-                self.check(name, Scene({**few, **EVERYTHING, **changes}), ranks)
+                scene = Scene({**few, **EVERYTHING, **changes})
+                self.check(name, scene, ranks, identities=True)
 
     def test_forward_euler(self):
         self.check_both({})

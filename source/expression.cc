@@ -41,7 +41,8 @@ namespace Viscoplastic
 
 
     /// What muParser takes, but nobody means: the last of a list `0,5' as its
-    /// value, an assignment `x = 1' for a comparison.
+    /// value, an assignment `x = 1' for a comparison; and random numbers, which
+    /// differ from run to run and from rank to rank.
     void
     refuse_slips(const std::string &text, const std::string &entry)
     {
@@ -51,6 +52,10 @@ namespace Viscoplastic
                                excerpt(Utilities::trim(text)) + "' of '" +
                                entry + "' " + why));
       };
+      for (const char *function : {"rand", "rand_seed"})
+        if (mentions(text, function))
+          refuse("has random numbers ('" + std::string(function) +
+                 "'), with which no run can be repeated.");
       int depth = 0;
       for (std::size_t i = 0; i < text.size(); ++i)
         {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/distributed/grid_refinement.h>
 #include <deal.II/fe/fe_dgq.h>
 
+#include <viscoplastic_contact/marking_threshold.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
 
-#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace Viscoplastic
 {
@@ -34,10 +35,62 @@ namespace Viscoplastic
 
 
     /**
+     * Flag the cells with the largest estimates that make up a fraction of
+     * their sum for refinement, and those with the smallest for coarsening.
+     */
+    template <int dim>
+    void
+    flag_fractions(parallel::distributed::Triangulation<dim> &triangulation,
+                   const Vector<double>                      &squared_estimate,
+                   const RefinementParameters                &parameters)
+    {
+      const MPI_Comm comm = triangulation.get_communicator();
+      std::vector<std::pair<double, double>> estimates;
+      double                                 total = 0.;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const double value = squared_estimate[cell->active_cell_index()];
+            estimates.emplace_back(value, value);
+            total += value;
+          }
+      total = Utilities::MPI::sum(total, comm);
+
+      // A sum that hits the fraction exactly, as of equal cells, has reached
+      // it, whatever rounding says.
+      const double slack        = 1e-3;
+      const double refined      = parameters.refinement_fraction;
+      const double coarsened    = parameters.coarsening_fraction;
+      const double infinity     = std::numeric_limits<double>::infinity();
+      double       refine_above = refined >= 1. ? -1. : infinity;
+      if (total > 0. && refined > 0. && refined < 1.)
+        refine_above = marking_threshold(estimates,
+                                         (1. - slack) * refined * total,
+                                         ThresholdSide::below,
+                                         comm);
+      double coarsen_below = coarsened >= 1. ? infinity : 0.;
+      if (total > 0. && coarsened > 0. && coarsened < 1.)
+        coarsen_below =
+          marking_threshold(estimates,
+                            (1. - (1. + slack) * coarsened) * total,
+                            ThresholdSide::below,
+                            comm);
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const double value = squared_estimate[cell->active_cell_index()];
+            if (value > refine_above)
+              cell->set_refine_flag();
+            else if (value < coarsen_below)
+              cell->set_coarsen_flag();
+          }
+    }
+
+
+
+    /**
      * Withdraw the smallest of the marked cells until at most @p n_allowed of
-     * all ranks are left. The threshold is found to a relative precision that
-     * keeps cells together whose estimates differ by rounding only, so that the
-     * choice does not depend on the number of ranks.
+     * all ranks are left.
      */
     template <int dim>
     void
@@ -45,38 +98,18 @@ namespace Viscoplastic
                      const Vector<double> &squared_estimate,
                      const double          n_allowed)
     {
-      const MPI_Comm      comm = triangulation.get_communicator();
-      std::vector<double> marked;
+      std::vector<std::pair<double, double>> marked;
       for (const auto &cell : triangulation.active_cell_iterators())
         if (cell->is_locally_owned() && cell->refine_flag_set())
-          marked.push_back(squared_estimate[cell->active_cell_index()]);
-      const auto n_above = [&](const double threshold) {
-        return Utilities::MPI::sum(
-          static_cast<double>(std::count_if(marked.begin(),
-                                            marked.end(),
-                                            [threshold](const double value) {
-                                              return value > threshold;
-                                            })),
-          comm);
-      };
-      double upper = 0.;
-      for (const double value : marked)
-        upper = std::max(upper, value);
-      upper        = Utilities::MPI::max(upper, comm);
-      double lower = 0.;
-      if (n_above(lower) <= n_allowed)
-        upper = lower;
-      while (upper - lower > 1e-6 * upper)
-        {
-          const double middle = 0.5 * (lower + upper);
-          if (n_above(middle) <= n_allowed)
-            upper = middle;
-          else
-            lower = middle;
-        }
+          marked.emplace_back(squared_estimate[cell->active_cell_index()], 1.);
+      const double threshold =
+        marking_threshold(marked,
+                          std::floor(n_allowed) + 1.,
+                          ThresholdSide::above,
+                          triangulation.get_communicator());
       for (const auto &cell : triangulation.active_cell_iterators())
         if (cell->is_locally_owned() &&
-            squared_estimate[cell->active_cell_index()] <= upper)
+            squared_estimate[cell->active_cell_index()] <= threshold)
           cell->clear_refine_flag();
     }
   } // namespace
@@ -92,13 +125,7 @@ namespace Viscoplastic
     AssertDimension(squared_estimate.size(), triangulation.n_active_cells());
     const MPI_Comm comm = triangulation.get_communicator();
 
-    // The L1 norm: entries are squares already, and add up.
-    parallel::distributed::GridRefinement::refine_and_coarsen_fixed_fraction(
-      triangulation,
-      squared_estimate,
-      parameters.refinement_fraction,
-      parameters.coarsening_fraction,
-      VectorTools::NormType::L1_norm);
+    flag_fractions(triangulation, squared_estimate, parameters);
 
     unsigned int n_refined = 0;
     for (const auto &cell : triangulation.active_cell_iterators())

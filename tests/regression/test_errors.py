@@ -384,6 +384,13 @@ class Refused(TestCase):
             **{"Boundary 2/Friction bound": "if(x=1, 0.1, 0.2)"},
         )
 
+    def test_random_numbers(self):
+        for expression in "0.1*rand()", "0.1 + 0*rand_seed(3)":
+            self.refused(
+                r"Friction bound' has random numbers \('rand",
+                **{"Boundary 2/Friction bound": expression},
+            )
+
     def test_comparisons_are_no_assignments(self):
         run("slab", {**SMALL, "Time/Phases": "0.1: 1",
                      "Boundary 2/Friction bound":

@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One to four MPI ranks give the same active sets and the same numbers.
+
+Every scene of prm/ is here, shortened. One rank has the direct solver wherever
+`automatic' chooses it, several have multigrid. A scene that is added to prm/ and
+not to SCENES or ELSEWHERE fails test_no_scene_is_missing.
+
+The contact tolerance of all runs is at most 1e-10 of the energy norm. Forces and
+displacements then agree to some 1e-8, and stresses of single cells and the
+fields, which VTU keeps in single precision, to some 1e-7.
+"""
+
+import dataclasses
+import os
+import re
+import sys
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+
+from harness import SOURCE, TestCase, main, run, scene_file
+from rank_comparison import compare
+from test_restart import Job
+from test_study import Folder
+
+RANKS = 1, 2, 3, 4
+AGREE = 1e-7  # of the largest value of a column
+AGREE_IN_FIELDS = 1e-6  # of the largest value of a field
+
+MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
+
+# Two ranks that wait by spinning starve each other on busy cores.
+os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
+
+
+def cells(*numbers, to, colorize="true"):
+    """Arguments of subdivided_hyper_rectangle from the origin."""
+    origin = ", ".join("0" for _ in numbers)
+    numbers = ", ".join(map(str, numbers))
+    return {"Geometry/Arguments": f"{numbers} : {origin} : {to} : {colorize}"}
+
+
+def phases(text):
+    return {"Time/Phases": text}
+
+
+def refined(n):
+    return {"Geometry/Global refinements": n}
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    """How to shorten a scene, and what is known of it."""
+
+    changes: dict = dataclasses.field(default_factory=dict)
+    law: str = ""  # the file is a material to go after the scene tresca_2d
+    ties: bool = False  # the whole face reaches its bound at once
+
+
+# By group, each a test of its own for CTest; names are files in prm/.
+SCENES = {
+    "plane": {
+        # more than the 2000 unknowns that multigrid leaves to its coarsest level
+        "verification/slab": Scene({**cells(48, 24, to="2, 1"), **phases("1: 6, 2: 6")}),
+        "verification/conveyor_2d": Scene(phases("1: 5, 2: 5")),
+        "verification/coulomb_block_2d": Scene(phases("1: 2, 2: 4, 4: 8")),
+        "verification/half_clamped_block": Scene(refined(1)),
+        "verification/junction_2d": Scene(refined(1)),
+        "verification/kinked_load_2d": Scene(refined(1)),
+        "verification/passenger_2d": Scene(),
+        "verification/elastic_frictionless": Scene(),
+    },
+    "corners": {
+        "verification/corner_coulomb_90_2d": Scene(),
+        "verification/corner_singularity_2d": Scene(),
+        "verification/corner_tresca_150_2d": Scene(),
+        "verification/corner_tresca_90_3d": Scene(),
+        "verification/shear_layer_2d": Scene(ties=True),
+        "verification/shear_layer_rotated_2d": Scene(ties=True),
+        "verification/shear_layer_3d": Scene(ties=True),
+        "verification/shear_layer_rotated_3d": Scene(ties=True),
+    },
+    "space": {
+        "verification/pad": Scene({**cells(9, 9, 9, to="1, 1, 1"), **phases("1.5: 6")}),
+        "verification/conveyor_3d": Scene(phases("1.5: 8")),
+        "verification/coulomb_block_3d": Scene(phases("1: 2, 3: 10")),
+        "verification/coulomb_pad_3d": Scene(),
+    },
+    "adaptive": {
+        "verification/slab_adaptive": Scene(phases("1: 10, 2: 10")),
+        "verification/pad_adaptive": Scene(
+            {**phases("1.5: 8"), "Mesh refinement/Cell budget": 700}
+        ),
+    },
+    "laws": {
+        "verification/cantilever_creep": Scene(phases("2.6: 10")),
+        "verification/layers": Scene(),
+        "verification/uniform_strain": Scene(),
+        "verification/perzyna_compression_2d": Scene(phases("1: 20, 4: 20")),
+        "verification/perzyna_compression_3d": Scene(phases("1: 20, 4: 20")),
+    },
+    "manufactured": {
+        "verification/manufactured/tresca_2d": Scene(),
+        "verification/manufactured/coulomb_2d": Scene(),
+        "verification/manufactured/tresca_3d": Scene(phases("1: 5")),
+        "verification/manufactured/coulomb_3d": Scene(phases("1: 5")),
+        **{
+            # twelve steps: below the stability limit of all of them
+            f"verification/manufactured/law_{law}": Scene(phases("1: 12"), law)
+            for law in (
+                "elastic",
+                "norton",
+                "parsed",
+                "perzyna",
+                "perzyna_hardening",
+                "zener",
+            )
+        },
+    },
+    "demos": {
+        "demos/brake_pad_3d": Scene(
+            {**cells(12, 6, 3, to="0.1, 0.05, 0.012"), **phases("0.1: 4, 1: 8")}
+        ),
+        "demos/rod_seal_2d": Scene(
+            {
+                "Geometry/File": SOURCE / "prm" / "demos" / "rod_seal_2d.msh",
+                **refined(0),
+                **phases("1: 5, 2.5: 6, 3.5: 4, 5: 4"),
+            }
+        ),
+        "demos/salt_pillar_2d": Scene(
+            {**cells(16, 8, to="6, 3"), **phases("8.64e5: 20")}
+        ),
+        "demos/sheared_slab_2d": Scene(
+            {**cells(24, 4, to="0.12, 0.02"), **phases("180: 24")}
+        ),
+        "demos/tread_block_3d": Scene(
+            {
+                **cells(6, 4, 2, to="0.03, 0.02, 0.008"),
+                **phases("1e-3: 2, 4e-3: 4, 7e-3: 4, 1.1e-2: 4"),
+            }
+        ),
+        "demos/tunnel_lining_2d": Scene(refined(1)),
+    },
+}
+
+# Folders of prm/ that are judged elsewhere.
+ELSEWHERE = {"verification/hard": "the suite of hard cases (tests/hard) judges them"}
+
+
+def several(name, scene, ranks=RANKS):
+    """Runs of a scene on each of the numbers of ranks."""
+    changes = {
+        "Output/Fields every": 1,
+        "Output/Fields interval": 0,
+        "Solver/Contact tolerance": 1e-10,
+        **scene.changes,
+    }
+    text = scene_file(name.partition("/")[2]).read_text()
+    if scene.law:
+        base = (MANUFACTURED / "tresca_2d.prm").read_text()
+        text = base.replace("set Law             = maxwell", "") + text
+    with ThreadPoolExecutor(2) as pool:
+        return list(
+            pool.map(lambda n: run(name, changes, ranks=n, text=text), ranks)
+        )
+
+
+class SameOnAllRanks(TestCase):
+    def check(self, name, scene, ranks=RANKS, identities=False):
+        runs = several(name, scene, ranks)
+        alone = runs[0]
+        if identities:
+            for one in runs:
+                self.check_identities(one)
+        for n, other in zip(ranks[1:], runs[1:]):
+            self.assertEqual(int(other.info["n_mpi_ranks"]), n)
+            found = compare(alone, other)
+            what = f"{name} on {ranks[0]} and {n} ranks"
+            self.assertEqual(found.unlike, [], what)
+            self.assertEqual(found.flips, [], f"active sets of {what}")
+            if not scene.ties:
+                self.assertEqual(found.n_ties, 0, f"ties of {what}")
+            if "friction_dissipation" in alone.statistics:
+                self.assertGreater(found.n_points, 0, what)
+            for kind, bound in ("columns", AGREE), ("fields", AGREE_IN_FIELDS):
+                largest, where = found.worst(kind)
+                self.assertLessEqual(largest, bound, f"{where} of {what}")
+            print(
+                f"{what}: {found.n_points} points, {found.n_ties} ties,",
+                "columns %.1e (%s)," % found.worst("columns"),
+                "fields %.1e (%s)" % found.worst("fields"),
+                file=sys.stderr,
+            )
+
+    def check_group(self, group, **options):
+        for name, scene in SCENES[group].items():
+            with self.subTest(name):
+                self.check(name, scene, **options)
+
+
+class Scenes(SameOnAllRanks):
+    def test_no_scene_is_missing(self):
+        here = {name for group in SCENES.values() for name in group}
+        folder = SOURCE / "prm"
+        files = {
+            str(path.relative_to(folder).with_suffix(""))
+            for path in folder.rglob("*.prm")
+            if str(path.relative_to(folder).parent) not in ELSEWHERE
+        }
+        self.assertEqual(files, here)
+
+    def test_plane(self):
+        self.check_group("plane")
+
+    def test_corners(self):
+        self.check_group("corners")
+
+    def test_space(self):
+        self.check_group("space", identities=True)
+
+    def test_adaptive(self):
+        self.check_group("adaptive", identities=True)
+
+    def test_laws(self):
+        self.check_group("laws")
+
+    def test_manufactured(self):
+        self.check_group("manufactured")
+
+    def test_demos(self):
+        self.check_group("demos")
+
+
+# Two cells, and one, of the slab and the pad.
+TWO_CELLS = {**cells(2, 1, to="2, 1"), **phases("1: 4, 2: 4")}
+ONE_CELL = {**cells(1, 1, 1, to="1, 1, 1"), **phases("1.5: 5")}
+EVERYTHING = {
+    "Material/Stress history": "quadrature points",
+    "Error control/Error bar": "true",
+}
+GROWING = {
+    "Mesh refinement/Strategy": "residual",
+    "Mesh refinement/Every n steps": 1,
+    "Mesh refinement/Refinement fraction": 0.5,
+    "Mesh refinement/Maximal level": 2,
+}
+
+
+class MoreRanksThanCells(SameOnAllRanks):
+    """Ranks without cells, without contact faces, and what they take part in."""
+
+    PLANE = "verification/slab", TWO_CELLS, (1, 4)
+    SPACE = "verification/pad", ONE_CELL, (1, 3)
+
+    def check_both(self, changes):
+        for name, few, ranks in self.PLANE, self.SPACE:
+            with self.subTest(name):
+                scene = Scene({**few, **EVERYTHING, **changes})
+                self.check(name, scene, ranks, identities=True)
+
+    def test_forward_euler(self):
+        self.check_both({})
+
+    def test_backward_euler(self):
+        self.check_both({"Time/Scheme": "backward Euler"})
+
+    def test_heun(self):
+        self.check_both({"Time/Scheme": "Heun"})
+
+    def test_meshes_that_grow(self):
+        self.check_both(GROWING)
+
+    def test_foundation_on_one_rank(self):
+        """Two faces of contact at a corner, most ranks without any."""
+        self.check("verification/corner_tresca_150_2d", Scene(refined(1)))
+
+    def test_checkpoints_go_to_other_ranks(self):
+        for name, few, (_, most) in self.PLANE, self.SPACE:
+            name = name.partition("/")[2]
+            changes = {
+                **few,
+                **EVERYTHING,
+                **GROWING,
+                "Output/Fields every": 1,
+                "Checkpoint/Every n steps": 1,
+                "Checkpoint/Keep": 1000,
+                "Solver/Contact tolerance": 1e-10,
+            }
+            for before, after in (most, 1), (1, most):
+                with self.subTest(name, before=before, after=after):
+                    with Job(name, changes) as whole:
+                        expected = whole.run(ranks=before)
+                        with Job(name, changes, copy_of=whole) as job:
+                            job.forget_after(2)
+                            resumed = job.run("--restart", ranks=after)
+                            found = compare(expected, resumed)
+                            self.assertEqual(found.unlike + found.flips, [])
+                            self.assertLessEqual(found.worst("columns")[0], AGREE)
+                            self.assertLessEqual(
+                                found.worst("fields")[0], AGREE_IN_FIELDS
+                            )
+
+    def test_check(self):
+        """--check says the same on all ranks, but how many there are."""
+        for name, few, (_, most) in self.PLANE, self.SPACE:
+            with Job(name.partition("/")[2], few) as job:
+                said = [job.run("--check", ranks=n).stdout for n in (1, most)]
+                cells = [re.search(r"(\d+) cells?", text) for text in said]
+                self.assertTrue(all(cells), said)
+                self.assertEqual(cells[0][1], cells[1][1])
+
+    def test_price(self):
+        """The pilot runs of a price begin with two cells."""
+        scene = {
+            "Geometry__Arguments": "2, 1 : 0, 0 : 1, 1 : true",
+            "Geometry__Global_refinements": 0,
+            "Time__Phases": "1: 4",
+        }
+        with Folder(MANUFACTURED / "tresca_2d.prm", **scene) as folder:
+            process = folder.run("--price=0.3", "--check", ranks=4)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertRegex(process.stdout, r"Error 0\.3: h = ")
+
+
+if __name__ == "__main__":
+    main()

@@ -18,36 +18,22 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Update slips from the increment; a slipping point that does not move
-     * sticks. So does one in the plane whose slip is no more than rounding (an
-     * energy norm), as when a whole face reaches its bound at once: the
-     * direction of such a slip means nothing, and corrections that follow it
-     * never finish.
-     */
+    /// Update slips from the increment; a slipping point that does not move
+    /// sticks.
     void
-    update_slips(const FrictionFace              &face,
-                 const std::vector<double>       &bounds,
-                 const std::vector<Tensor<2, 3>> &diagonal,
-                 const double                     rounding,
-                 const Vector<double>            &x,
-                 FrictionState                   &state)
+    update_slips(const FrictionFace        &face,
+                 const std::vector<double> &bounds,
+                 const Vector<double>      &x,
+                 FrictionState             &state)
     {
       for (unsigned int p = 0; p < face.points.size(); ++p)
         {
-          const FrictionFace::Point &point = face.points[p];
-          state.slip[p]                    = Tensor<1, 2>();
+          state.slip[p] = Tensor<1, 2>();
           if (!state.sticks[p])
-            state.slip[p] = slip(point, face.node_values(x, point.node));
-          const double smallest =
-            point.n_tangents == 2 ?
-              rounding / std::sqrt(diagonal[point.node].norm()) :
-              0.;
-          if (bounds[p] > 0. && state.slip[p].norm() <= smallest)
-            {
-              state.slip[p]   = Tensor<1, 2>();
-              state.sticks[p] = true;
-            }
+            state.slip[p] =
+              slip(face.points[p], face.node_values(x, face.points[p].node));
+          if (bounds[p] > 0. && state.slip[p].norm() == 0.)
+            state.sticks[p] = true;
         }
     }
 
@@ -375,7 +361,7 @@ namespace Viscoplastic
                       state);
         bulk.move_face(change);
         bulk.face_residual(residual);
-        update_slips(face, bounds, diagonal, bulk.rounding_error(), x, state);
+        update_slips(face, bounds, x, state);
 
         // Where does that leave the error?
         fit_multipliers(face, bounds, residual, state, force);

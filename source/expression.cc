@@ -40,8 +40,18 @@ namespace Viscoplastic
 
 
 
+    /// muParser's words with the full stop that most of them lack.
+    std::string
+    as_sentence(const std::string &words)
+    {
+      return words.empty() || words.back() == '.' ? words : words + '.';
+    }
+
+
+
     /// What muParser takes, but nobody means: the last of a list `0,5' as its
-    /// value, an assignment `x = 1' for a comparison.
+    /// value, an assignment `x = 1' for a comparison, numbers that differ each
+    /// time.
     void
     refuse_slips(const std::string &text, const std::string &entry)
     {
@@ -67,6 +77,10 @@ namespace Viscoplastic
               last != '<' && last != '>')
             refuse("has a single '='; comparisons are written '=='.");
         }
+      for (const char *name : {"rand", "rand_seed"})
+        if (mentions(text, name))
+          refuse(std::string("has the function ") + name +
+                 ", but data have to be the same whenever they are asked for.");
     }
   } // namespace
 
@@ -103,7 +117,8 @@ namespace Viscoplastic
                     ExcMessage(
                       "The expression '" + excerpt(Utilities::trim(text)) +
                       "' of '" + entry + "' cannot be parsed: " +
-                      excerpt(why.empty() ? reason(exception) : why, 200)));
+                      as_sentence(
+                        excerpt(why.empty() ? reason(exception) : why, 200))));
       }
     return parser;
   }
@@ -156,6 +171,9 @@ namespace Viscoplastic
     for (const std::string &variable : Utilities::split_string_list(variables))
       position_dependent = position_dependent || mentions(text, variable);
     constant = parser->value(Point<dim>());
+    // Not everybody asks a constant for its value.
+    if (!time_dependent && !position_dependent)
+      value(Point<dim>(), 0.);
   }
 
 

@@ -50,7 +50,7 @@ def rewrite_manifest(checkpoint, files, extra=lambda text: text):
             continue
         if line.startswith(b"file "):
             file = checkpoint / line.split()[1].decode("latin-1")
-            if file.is_file() and file in files:
+            if file in files and file.is_file():
                 data = file.read_bytes()
                 line = b"file %s %d %d" % (file.name.encode(), len(data), zlib.crc32(data))
         lines.append(line)
@@ -90,7 +90,7 @@ def damage(random, directory):
         if action == 0:
             file.write_bytes(mangle(random, data))
         elif action == 1:
-            file.write_bytes(data[: random.randrange(len(data))])
+            file.write_bytes(data[: random.randrange(max(1, len(data)))])
         elif action == 2:
             file.write_bytes(b"")
         elif action == 3:

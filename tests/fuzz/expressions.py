@@ -105,7 +105,6 @@ BROKEN = (
     "sum()",
     "max(,)",
     "min(1,)",
-    "1;",
     "x(1)",
     "sin sin 1",
     "1 < ",
@@ -132,7 +131,7 @@ def random_expression(random, variables, depth):
     if choice < 3:
         return f"({inner()} {random.choice(OPERATORS[:5 if choice else None])} {inner()})"
     if choice == 3:
-        return f"-{inner()}"
+        return f"(-{inner()})"
     n = random.choice((1, 1, 2, 3))
     name = random.choice(FUNCTIONS[n])
     return f"{name}({', '.join(inner() for _ in range(n))})"
@@ -181,7 +180,7 @@ def case(random, context):
     elif action == "broken":
         text = random.choice(BROKEN)
         # what is broken remains so within what is not
-        wrap = random.choice(("{}", "{}", "{}", "1 + {}", "({})*0", "0*{}"))
+        wrap = random.choice(("{}", "{}", "{}", "1 + {}", "({})*0"))
         exempt = {"#": "x", "x #": "x"}  # the comment of a parameter file
         if text in exempt:
             wrap = "{}"

@@ -50,7 +50,11 @@ class Context:
 
     def __init__(self, executable, scratch):
         description = subprocess.run(
-            [executable, "--describe"], capture_output=True, text=True, check=True
+            [executable, "--describe"],
+            env=environment(),
+            capture_output=True,
+            text=True,
+            check=True,
         ).stdout
         self.entries = entries_of(description)
         self.mpi = shutil.which("mpirun") is not None

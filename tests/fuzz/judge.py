@@ -14,13 +14,13 @@ import re
 
 # What is not ours, or not for the user: libraries that speak, types, functions.
 FOREIGN = re.compile(
-    r"stacktrace|an error occurred|additional information|exception on processing"
-    r"|terminate called|violated condition|name of the exception|exc[A-Z]\w+"
+    r"(?i:stacktrace|an error occurred|additional information|exception on processing"
+    r"|terminate called|violated condition|name of the exception"
     r"|std::|__cxx|dealii::|basic_string|vector::|\bstoul\b|\bstod\b|\bstoi\b"
     r"|half-open range|failed condition|\(none\)|bad_alloc|bad_cast|segfault"
     r"|not equal to \d|invalid argument|filesystem error|regex_error|MPI_ABORT"
-    r"|assertion|no_error|<unspecified>|bad variant|bad optional|map::at",
-    re.I,
+    r"|assertion|no_error|<unspecified>|bad variant|bad optional|map::at)"
+    r"|\bExc[A-Z]\w+"
 )
 SANITIZER = re.compile(r"AddressSanitizer|runtime error:|UndefinedBehaviorSanitizer")
 NOT_FINITE = re.compile(r"(?<![\w'])[-+]?(nan|inf)(?!\w)", re.I)

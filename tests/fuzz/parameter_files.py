@@ -134,7 +134,8 @@ def name_case(random, context, name, entries):
     parts[i] = parts[i][:letter] + noise + parts[i][letter:]
     wrong = "/".join(parts)
     entries = {wrong if key == path else key: entries[key] for key in entries}
-    blank = noise.isspace() and letter in (0, len(parts[i]) - len(noise))
+    # blanks around a name or before a number are none of it
+    blank = noise.isspace()
     return Case(
         texts_of(entries),
         ["--check", "scene.prm"],

@@ -57,7 +57,8 @@ def run_program(executable, work, arguments, limits):
             stdin=subprocess.DEVNULL,
             stdout=out,
             stderr=err,
-            env=environment(),
+            # Open MPI's files here, where no other run cleans up
+            env={**environment(), "TMPDIR": str(work)},
             preexec_fn=limits.apply,
         )
         try:

@@ -40,6 +40,15 @@ namespace Viscoplastic
 
 
 
+    /// muParser's words with the full stop that most of them lack.
+    std::string
+    as_sentence(const std::string &words)
+    {
+      return words.empty() || words.back() == '.' ? words : words + '.';
+    }
+
+
+
     /// What muParser takes, but nobody means: the last of a list `0,5' as its
     /// value, an assignment `x = 1' for a comparison; and random numbers, which
     /// differ from run to run and from rank to rank.
@@ -108,7 +117,8 @@ namespace Viscoplastic
                     ExcMessage(
                       "The expression '" + excerpt(Utilities::trim(text)) +
                       "' of '" + entry + "' cannot be parsed: " +
-                      excerpt(why.empty() ? reason(exception) : why, 200)));
+                      as_sentence(
+                        excerpt(why.empty() ? reason(exception) : why, 200))));
       }
     return parser;
   }
@@ -161,6 +171,9 @@ namespace Viscoplastic
     for (const std::string &variable : Utilities::split_string_list(variables))
       position_dependent = position_dependent || mentions(text, variable);
     constant = parser->value(Point<dim>());
+    // Not everybody asks a constant for its value.
+    if (!time_dependent && !position_dependent)
+      value(Point<dim>(), 0.);
   }
 
 

@@ -203,10 +203,18 @@ namespace Viscoplastic
       }
     catch (const std::exception &exception)
       {
+        // deal.II describes types of C++ at length where they do not fit.
+        std::string why = reason(exception);
+        if (why.find("does not match the pattern") != std::string::npos)
+          why = "they must be separated by colons and of the types that "
+                "deal.II's GridGenerator documents.";
+        else if (why.find("not implemented") != std::string::npos)
+          why = "there is no such generator in " + std::to_string(dim) + "D.";
         AssertThrow(false,
-                    ExcMessage("The mesh generator '" + geometry.generator +
+                    ExcMessage("The mesh generator '" +
+                               excerpt(geometry.generator) +
                                "' refuses the arguments '" +
-                               geometry.arguments + "': " + reason(exception)));
+                               excerpt(geometry.arguments) + "': " + why));
       }
     AssertThrow(triangulation.all_reference_cells_are_hyper_cube(),
                 ExcMessage("The mesh must consist of quadrilaterals or "

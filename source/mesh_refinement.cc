@@ -27,18 +27,20 @@ namespace Viscoplastic
       const std::string                               &text,
       const parallel::distributed::Triangulation<dim> &triangulation)
     {
-      const std::string entry = "'Geometry/Boundary refinements' = " + text;
+      const std::string entry =
+        "'Geometry/Boundary refinements' = " + excerpt(text);
       std::map<types::boundary_id, unsigned int> result;
       const std::set<types::boundary_id> ids = boundary_ids(triangulation);
       const std::regex                   pair("(\\d{1,9})\\s*:\\s*(\\d{1,2})");
       for (const std::string &part : Utilities::split_string_list(text, ','))
         {
           std::smatch match;
-          AssertThrow(std::regex_match(part, match, pair),
+          // Matching takes a stack as deep as the text is long.
+          AssertThrow(part.size() < 100 && std::regex_match(part, match, pair),
                       ExcMessage(entry +
                                  " consists of `boundary id: times' separated "
                                  "by commas, but has '" +
-                                 part + "'."));
+                                 excerpt(part) + "'."));
           const types::boundary_id id = std::stoul(match[1]);
           AssertThrow(ids.count(id) == 1,
                       ExcMessage(

@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/messages.h>
 
+#include <cctype>
 #include <new>
 #include <sstream>
 
@@ -23,6 +24,12 @@ namespace Viscoplastic
     std::string        line, word;
     while (words >> word)
       line += (line.empty() ? "" : " ") + word;
+    // What libraries say does not always end as a sentence does.
+    const bool is_theirs =
+      dynamic_cast<const dealii::ExceptionBase *>(&exception) != nullptr;
+    if (is_theirs && !line.empty() &&
+        std::isalnum(static_cast<unsigned char>(line.back())) != 0)
+      line += '.';
     return line;
   }
 

@@ -96,7 +96,7 @@ namespace Viscoplastic
       const std::string name =
         (includer.empty() ? "The parameter file '" :
                             includer + ": the included file '") +
-        file + "' ";
+        excerpt(file, 200) + "' ";
       std::error_code error;
       AssertThrow(std::filesystem::exists(file, error),
                   ExcMessage(name + "does not exist."));

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/checkpoint_store.h>
 #include <viscoplastic_contact/statistics.h>
 
+#include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
@@ -87,6 +88,24 @@ namespace Viscoplastic
                 ExcMessage("The columns of '" + name +
                            "' are not those of this run, which cannot go on "
                            "with it."));
+    // A result that is none must not pass for one. No limit is imposed where
+    // nothing flows.
+    for (const auto &[column, value] : row)
+      {
+        const bool is_limit = column == "step_limit" && value > 0.;
+        // Not known between the times of a reference.
+        const bool is_unknown =
+          column.rfind("error_", 0) == 0 || column.rfind("exact_", 0) == 0;
+        if (std::isfinite(value) || is_limit || is_unknown)
+          continue;
+        std::ostringstream message;
+        message << "In step " << row[0].second << ", '" << column << "' is "
+                << value
+                << "; it must be finite: the numbers of this scene leave the "
+                   "range of floating-point numbers, choose other units or "
+                   "look for a datum that is too large or too small.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
     file << std::setprecision(12);
     for (unsigned int i = 0; i < row.size(); ++i)
       file << (i == 0 ? "" : ",") << row[i].second;

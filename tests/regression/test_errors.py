@@ -451,6 +451,43 @@ class Refused(TestCase):
             result = self.refused("Body force", **{"Loads/Body force": text})
             self.assertLess(len(result.stderr), 500)
 
+    def test_constant_without_value(self):
+        """Also where nobody asks for it: what does not change does not move."""
+        self.refused(
+            "'Boundary 2/Foundation motion' has the value -?nan",
+            **{"Boundary 2/Foundation motion": "0/0; 0"},
+        )
+
+    def test_words_of_libraries_become_sentences(self):
+        for text in "1 +", "sin(", "()":
+            self.refused(
+                r"Body force' cannot be parsed: .*[a-z0-9\"]\.$",
+                **{"Loads/Body force": f"{text}; 0"},
+            )
+        result = self.refused(
+            r"separated by colons and of the types .* documents\.$",
+            **{"Geometry/Arguments": "4 : nan"},
+        )
+        self.assertNotIn("Tuple", result.stderr)
+
+    def test_long_blanks_in_a_list(self):
+        """They took a stack as deep as they are long."""
+        result = self.refused(
+            "Boundary refinements' = .* consists of `boundary id: times'",
+            **{"Geometry/Boundary refinements": "2" + 300000 * " " + ": 1"},
+        )
+        self.assertLess(len(result.stderr), 500)
+
+    def test_long_names_of_files(self):
+        self.refused_text(f"include {'x' * 5000}\n", r"x{100}\.\.\.' does not exist")
+
+    def test_numbers_beyond_all_measure(self):
+        """Squares of what is finite need not be."""
+        self.refused(
+            r"In step \d+, '\w+' is -?(inf|nan); it must be finite",
+            **{"Boundary 0/Traction": "1e300*t; 0"},
+        )
+
     def test_too_many_steps(self):
         """More than the type of their number holds: 5032704 after wrapping."""
         self.refused(

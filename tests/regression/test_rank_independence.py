@@ -104,8 +104,8 @@ SCENES = {
         "verification/manufactured/tresca_3d": Scene(phases("1: 5")),
         "verification/manufactured/coulomb_3d": Scene(phases("1: 5")),
         **{
-            # twelve steps: below the stability limit of all of them
-            f"verification/manufactured/law_{law}": Scene(phases("1: 12"), law)
+            # steps below the stability limit of all of them
+            f"verification/manufactured/law_{law}": Scene(phases("0.5: 8"), law)
             for law in (
                 "elastic",
                 "norton",

@@ -51,8 +51,8 @@ def rewrite_manifest(checkpoint, files, extra=lambda text: text):
         if line.startswith(b"file "):
             file = checkpoint / line.split()[1].decode("latin-1")
             if file in files and file.is_file():
-                data = file.read_bytes()
-                line = b"file %s %d %d" % (file.name.encode(), len(data), zlib.crc32(data))
+                data, name = file.read_bytes(), file.name.encode()
+                line = b"file %s %d %d" % (name, len(data), zlib.crc32(data))
         lines.append(line)
     text = b"\n".join(lines).rstrip(b"\n") + b"\n"
     (checkpoint / "manifest.txt").write_bytes(
@@ -64,8 +64,9 @@ def mangle_words(random, data):
     """Binary numbers exchanged for others at the edges of their types."""
     data = bytearray(data)
     for _ in range(random.choice((1, 1, 2, 8))):
+        reals = 0.0, -1.0, 1e300, float("nan"), float("inf")
         values = (
-            struct.pack("<d", random.choice((0.0, float("nan"), float("inf"), 1e300, -1.0))),
+            struct.pack("<d", random.choice(reals)),
             struct.pack("<Q", random.choice((0, 1, 2**32, 2**63, 2**64 - 1, 2**40))),
             struct.pack("<I", random.choice((0, 1, 2, 30, 2**31, 2**32 - 1))),
             bytes([random.choice((0, 1, 2, 255))]),
@@ -129,10 +130,10 @@ def forge(random, directory):
                 file.write_bytes((checkpoints[0] / file.name).read_bytes())
         rewrite_manifest(checkpoint, files)
     else:
-        key = random.choice((b"version", b"dimension", b"ranks", b"step", b"time", b"file"))
+        key = random.choice(b"version dimension ranks step time file".split())
         value = random.choice(
-            (b"", b"-1", b"0", b"1", b"2", b"3", b"4294967295", b"4294967296", b"nan")
-            + (b"1e999", b"x", b"../../x 1 1", b"run.bin 99999999999999999999 0", b"9" * 5000)
+            b"-1 0 1 2 3 4294967295 4294967296 nan 1e999 x".split()
+            + [b"", b"../../x 1 1", b"run.bin 99999999999999999999 0", b"9" * 5000]
         )
 
         def edit(text):
@@ -148,7 +149,7 @@ def forge(random, directory):
 
 def case(random, context):
     name = random.choice(NAMES)
-    action = random.choice(("damage", "damage", "forge", "forge", "forge", "none", "other"))
+    action = random.choice("damage damage forge forge forge none other".split())
     ranks = random.choice((1, 1, 1, 2)) if context.mpi else 1
     place, expected = context.originals.of(name, ranks)
     arguments = ["--restart", "scene.prm"]

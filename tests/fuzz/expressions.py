@@ -2,9 +2,7 @@
 """Expressions: random ones from a grammar, broken ones, and such as muParser
 takes but that mean nothing."""
 
-import math
-
-from case import NUMBERS, Case, mangle
+from case import Case, mangle
 from scenes import SCENES, as_prm
 
 # (scene, entry, value with {} for the expression, variables)
@@ -171,7 +169,7 @@ def case(random, context):
     scene, path, value, variables = random.choice(PLACES)
     entries = dict(SCENES[scene])
     action = random.choice(("grammar",) * 4 + ("broken",) * 3 + ("tower", "mangled"))
-    nonsense = sense = ""
+    nonsense = ""
     if action == "grammar":
         text = random_expression(random, variables, random.randint(1, 5))
         # what gives another value whenever it is asked for, and a name of one
@@ -181,13 +179,12 @@ def case(random, context):
         text = random.choice(BROKEN)
         # what is broken remains so within what is not
         wrap = random.choice(("{}", "{}", "{}", "1 + {}", "({})*0"))
-        exempt = {"#": "x", "x #": "x"}  # the comment of a parameter file
-        if text in exempt:
+        # `free' is a value of one entry, and what follows # is a comment
+        has_meaning = text == "free" and path == "Boundary 5/Displacement"
+        if has_meaning or "#" in text:
             wrap = "{}"
-        free = text == "free" and path == "Boundary 5/Displacement"
-        known = text.startswith(("free", "t t")) or text in exempt
         text = wrap.format(text)
-        if not (free or known and wrap == "{}"):
+        if not (has_meaning or "#" in text):
             nonsense = f"'{text}' for '{path}'"
     elif action == "tower":
         text = tower(random, variables)
@@ -205,6 +202,5 @@ def case(random, context):
         {"scene.prm": data},
         arguments,
         nonsense=nonsense,
-        sense=sense,
         told=[f"{path} = {text[:60]}"],
     )

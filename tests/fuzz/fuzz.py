@@ -138,7 +138,8 @@ class Fuzzer:
             else:
                 answer = outcome
         if answer is None:
-            result = run_program(self.options.executable, work, case.arguments, self.limits)
+            program = self.options.executable
+            result = run_program(program, work, case.arguments, self.limits)
             answer = judge(case, work, *result)
         if answer.kind == "defect" or self.options.only is not None:
             self.keep(kind, number, case, answer)
@@ -148,8 +149,11 @@ class Fuzzer:
     def keep(self, kind, number, case, answer):
         place = Path(self.options.keep) / f"{kind}_{self.options.seed}_{number}"
         self.lay_out(kind, number, place)
-        command = shlex.join([str(Path(self.options.executable).resolve()), *case.arguments])
-        (place / "again").write_text(f'#!/bin/sh\ncd "$(dirname "$0")" && exec {command}\n')
+        program = str(Path(self.options.executable).resolve())
+        command = shlex.join([program, *case.arguments])
+        (place / "again").write_text(
+            f'#!/bin/sh\ncd "$(dirname "$0")" && exec {command}\n'
+        )
         (place / "again").chmod(0o755)
         (place / "reason").write_text(f"{answer.kind}: {answer.reason}\n{case.told}\n")
 
@@ -170,7 +174,9 @@ def main():
     parser.add_argument("--only", type=int, help="number of the only case, which is kept")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--seconds", type=float, default=20, help="of processor time a case")
+    parser.add_argument(
+        "--seconds", type=float, default=20, help="of processor time a case"
+    )
     parser.add_argument(
         "--executable",
         default=os.environ.get(
@@ -206,7 +212,8 @@ def main():
                     if answer.kind == "refused":
                         fuzzer.shapes[shape(answer.reason)] += 1
                     if answer.kind == "defect" or options.only is not None:
-                        print(f"{kind} {number}: {answer.kind}: {answer.reason}", flush=True)
+                        verdict = f"{answer.kind}: {answer.reason}"
+                        print(f"{kind} {number}: {verdict}", flush=True)
             n_defects += counts["defect"]
             print(
                 f"{kind}: {sum(counts.values())} cases, {counts['ok']} ok, "

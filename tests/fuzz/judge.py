@@ -92,10 +92,10 @@ def judge(case, work, code, stdout, stderr):
         return Outcome("defect", "timeout" if timeout else f"signal {-code}")
     if code in (1, 2):
         reason = defect_of_sentence(stderr)
+        if not reason and case.sense:
+            reason = f"refused, but it is {case.sense}"
         if reason:
             return Outcome("defect", f"{reason}: {stderr[:300]}")
-        if case.sense:
-            return Outcome("defect", f"refused, but it is {case.sense}: {stderr[:300]}")
         return Outcome("refused", stderr.strip())
     if code != 0:
         return Outcome("defect", f"exit code {code}: {stderr[:300]}")

@@ -71,7 +71,8 @@ def run_program(executable, work, arguments, limits):
 
 
 def words(work):
-    return [(work / name).read_bytes().decode("utf-8", "replace") for name in ("stdout", "stderr")]
+    files = work / "stdout", work / "stderr"
+    return [file.read_bytes().decode("utf-8", "replace") for file in files]
 
 
 class Server:

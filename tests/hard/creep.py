@@ -264,7 +264,7 @@ def difference(one, other, names=COURSES):
     "limit it is Maxwell's law, for both schemes and histories",
 )
 def no_hardening(size, report):
-    n = size(8, 64)
+    n = size(8, 32)
 
     for scheme in "forward Euler", "backward Euler":
         for history in size((POINTS,), (MEANS, POINTS)):

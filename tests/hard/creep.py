@@ -35,9 +35,11 @@ def long_creep(size, report):
             "hard/long_creep",
             {"Geometry/Arguments": f"{4 * n}, {n} : 0, 0 : 4, 1 : true", **more},
         )
-        # Relative to u, which grows to 600 times the elastic one while the
-        # forces stay as they are.
-        report.identities(result, 1e-8)
+        if "Material/Law" not in more:
+            # Relative to u, which grows to 700 times the elastic one while the
+            # forces stay as they are.  Not of the fluid, which is a reference
+            # whose condition is that of nu = 0.499999.
+            report.identities(result, 1e-8)
         return result
 
     # The fluid on the same mesh, up to the ratio mu/lambda.
@@ -49,10 +51,8 @@ def long_creep(size, report):
             "Time/Phases": "1: 1",
         }
     )["point0_y"][-1]
-    fine = cantilever(**{"Time/Phases": f"{1000 * theta}: 1000"})
-    tip = fine["point0_y"][-1]
+    tip = cantilever(**{"Time/Phases": f"{1000 * theta}: 1000"})["point0_y"][-1]
     for name, scheme, steps in (
-        ("backward Euler, k = theta", "backward Euler", 1000),
         ("backward Euler, k = 10 theta", "backward Euler", 100),
         ("backward Euler, k = 100 theta", "backward Euler", 10),
         ("forward Euler, k = theta", "forward Euler", 1000),
@@ -67,7 +67,7 @@ def long_creep(size, report):
             1e-4,
         )
         report.figure(
-            f"{name}: tip at 1000 theta / that of small steps - 1",
+            f"{name}: tip at 1000 theta / that of backward Euler, k = theta, - 1",
             result["point0_y"][-1] / tip - 1,
             # the transient takes a few theta of the 1000
             -5e-3,
@@ -88,10 +88,15 @@ def long_creep(size, report):
         speed(locked) / fluid,
     )
     report.figure(
-        "cell means: change of the velocity in the last half",
-        speed(locked, last=5) / speed(locked) - 1,
-        -1e-2,
-        1e-2,
+        "the same: tip at 1000 theta / that of quadrature points",
+        locked["point0_y"][-1] / tip,
+    )
+    # What is elastic takes over from what flows: slower and slower.
+    report.figure(
+        "cell means: velocity of the last step / of the one before",
+        speed(locked) / speed(locked, last=2),
+        0,
+        1 + 1e-6,
     )
 
 
@@ -190,6 +195,8 @@ def limit_load(size, report):
             report.figure(
                 f"{name}: Newton iterations a step", result["newton_iterations"][1:].mean()
             )
+            if "times the size of the body" not in result.stdout:
+                raise AssertionError(f"{name}: the program does not say so")
     # Far beyond the limit the flow is that of a fluid with an offset of the
     # load: the velocity goes down to zero near the limit load.
     onset = 1.5 - 0.5 * steady[1.5] / (steady[2] - steady[1.5])
@@ -257,7 +264,7 @@ def difference(one, other, names=COURSES):
     "limit it is Maxwell's law, for both schemes and histories",
 )
 def no_hardening(size, report):
-    n = size(8, 64)
+    n = size(8, 32)
 
     for scheme in "forward Euler", "backward Euler":
         for history in size((POINTS,), (MEANS, POINTS)):

@@ -118,7 +118,9 @@ def smallest_eigenvalue(a, b):
         return scipy.linalg.eigh(
             a.toarray(), b.toarray(), eigvals_only=True, subset_by_index=(0, 0)
         )[0]
-    return scipy.sparse.linalg.eigsh(a, 1, b, sigma=0, return_eigenvectors=False)[0]
+    return scipy.sparse.linalg.eigsh(
+        a, 1, b, sigma=0, tol=1e-8, return_eigenvectors=False
+    )[0]
 
 
 def answer(a, load):

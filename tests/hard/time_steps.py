@@ -65,7 +65,7 @@ def step_sizes_implicit(size, report):
     since, theta = 1.3, THETA
     for factor in size((1, 1000), (0.1, 1, 10, 100, 1000)):
         last = since + 8 * factor * theta
-        fine = in_steps(f"{since}: 16, {last!r}: {size(512, 4096)}", "backward Euler")
+        fine = in_steps(f"{since}: 16, {last!r}: {size(512, 2048)}", "backward Euler")
         result = in_steps(f"{since}: 16, {last!r}: 8", "backward Euler")
         report.identities(result, 1e-10)
         # Under constant load the rate decays to that of the steady flow, so the

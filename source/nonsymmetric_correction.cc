@@ -115,6 +115,7 @@ namespace Viscoplastic
   {
     const NonsymmetricCorrection &step;
     const FaceTruncation         &truncation;
+    unsigned int                 &iterations; // of its own
 
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
@@ -124,14 +125,15 @@ namespace Viscoplastic
       y                          = 0.;
       if (!step.face)
         {
-          step.solver.solve(x, y, tolerance);
+          iterations += step.solver.solve(x, y, tolerance);
           return;
         }
       const unsigned int n = step.face->layout().n_dofs();
       Vector<double>     face_part(n);
       step.solver.begin(x, y);
       step.solver.set_truncation(truncation, /* may_rebuild = */ false);
-      step.solver.correct(Vector<double>(n), tolerance, face_part);
+      iterations +=
+        step.solver.correct(Vector<double>(n), tolerance, face_part);
       step.solver.search_terms(face_part);
       step.solver.take_step(1.);
       step.solver.finish();
@@ -334,13 +336,13 @@ namespace Viscoplastic
               Operator{*this, flow, truncation, space.ghosted_vector()},
               w,
               right_side,
-              Preconditioner{*this, truncation});
+              Preconditioner{*this, truncation, result.iterations});
           }
         catch (const SolverControl::NoConvergence &)
           {
             // What there is may do.
           }
-        result.iterations = control.last_step();
+        result.iterations = std::max(result.iterations, control.last_step());
         for (double share = 1.; share > 0.1; share *= 0.5)
           {
             NewtonIterate<dim> trial = move(iterate, w, share);

@@ -69,7 +69,7 @@ namespace Viscoplastic
     {
       /// The share of the correction that was taken; 0 if none is of use.
       double share;
-      /// Of GMRES.
+      /// Linear iterations: of GMRES, or of the preconditioner's solves.
       unsigned int iterations;
     };
 

@@ -465,6 +465,120 @@ class Slab(TestCase):
         self.compare(direct, multigrid)
 
 
+def pressure(k_r, k):
+    """Yield stress and friction between grains: flow that depends on pressure
+    but preserves volume, so that its tangent is far from symmetric. r is
+    3 mu F."""
+    return {
+        "Material/Law": "parsed",
+        "Material/parsed/Strain rate": "max(0, sigma_eq - max(0, 0.1 + p))",
+        "Material/parsed/Factor": k_r / k / (3 / 2.6),
+    }
+
+
+def hardening(k_r, k, modulus=0.1):
+    return {
+        **PERZYNA,
+        "Material/perzyna/Hardening modulus": modulus,
+        "Material/perzyna/Viscosity": (2 / 2.6 + np.sqrt(2 / 3) * modulus) * k / k_r,
+        "Boundary 0/Traction": "0.3*min(t, 2 - t); 0",
+    }
+
+
+class NonSymmetric(TestCase):
+    """Laws without a potential, where the symmetric part of the tangent alone
+    is not enough."""
+
+    COARSE = {"Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true"}
+
+    def slab(self, entries, steps=4, ranks=1, **more):
+        result = run(
+            "slab",
+            {
+                **BACKWARD,
+                **self.COARSE,
+                "Time/Phases": f"1: {steps}, 2: {steps}",
+                **entries,
+                **more,
+            },
+            ranks=ranks,
+        )
+        self.check_identities(result)
+        return result
+
+    def test_iterations_stay_few(self):
+        """The iteration with the symmetric part fails for `pressure' from k =
+        10/r on, and takes up to 15 iterations for `hardening'."""
+        for law in pressure, hardening:
+            for k_r in 1, 10, 100, 1000:
+                with self.subTest(f"{law.__name__}, k r = {k_r}"):
+                    count = self.slab(law(k_r, 0.25))["newton_iterations"][1:]
+                    print(f"{law.__name__}, k r = {k_r}: {count.mean()}, {count.max()}")
+                    self.assertLess(count.mean(), 6)
+                    self.assertLess(count.max(), 11)
+
+    def test_as_small_steps_of_forward_euler(self):
+        """At k = 100/r, against 50 times as many steps below 2/r."""
+        for law in pressure, hardening:
+            with self.subTest(law.__name__):
+                entries = law(100, 1 / 16)
+                coarse = self.slab(entries, steps=16)
+                fine = self.slab(
+                    entries, steps=1000, **{"Time/Scheme": "forward Euler"}
+                )
+                self.assertGreater((coarse["k"] / coarse["step_limit"]).max(), 49)
+                for name in "point0_x", "friction_force_x", "stored_energy":
+                    for t in 1, 2:
+                        scale = abs(fine[name]).max()
+                        # 0.0023 is the largest, of point0_x with hardening
+                        self.assertClose(
+                            coarse[name][coarse.row(t)],
+                            fine[name][fine.row(t)],
+                            absolute=0.005 * scale,
+                            what=f"{law.__name__}, {name} at t = {t}",
+                        )
+
+    def test_gmres_only_where_it_is_needed(self):
+        """With the direct solver each Newton iteration counts one linear
+        iteration, and GMRES its own."""
+        for entries in {**PERZYNA}, NORTON:
+            result = self.slab(entries)
+            self.assertEqual(
+                list(result["linear_iterations"]), list(result["newton_iterations"])
+            )
+        result = self.slab(pressure(10, 0.25))
+        self.assertGreater(
+            result["linear_iterations"].sum(), 3 * result["newton_iterations"].sum()
+        )
+
+    def test_ranks_and_multigrid(self):
+        entries = {**pressure(10, 0.25), "Time/Phases": "1: 4, 1.5: 2"}
+        one = self.slab(entries)
+        for ranks in 1, 3:
+            with self.subTest(f"{ranks} ranks"):
+                other = self.slab(
+                    entries, ranks=ranks, **{"Solver/Linear solver": "multigrid"}
+                )
+                Slab.compare(self, one, other)
+
+    def test_in_3d_with_hanging_nodes(self):
+        """Where slip turns, on a foundation with hanging nodes."""
+        law = pressure(20, 0.1)
+        law["Material/parsed/Strain rate"] = "max(0, sigma_eq - max(0, 0.025 + p))"
+        for history in "cell means", "quadrature points":
+            more = {
+                **BACKWARD,
+                **law,
+                "Time/Phases": "0.4: 4",
+                "Material/Stress history": history,
+            }
+            one = run("pad_adaptive", more)
+            self.check_identities(one)
+            self.assertGreater(one["cells"][-1], one["cells"][0])
+            self.assertLess(one["newton_iterations"].max(), 11)
+            Slab.compare(self, one, run("pad_adaptive", more, ranks=2))
+
+
 class Adaptive(TestCase):
     """Hanging nodes, also on the face with friction, in 3D."""
 

@@ -118,6 +118,17 @@ namespace
       return stiffness.stress(strain) + z(strain, old_z, k);
     }
 
+    /// kr/r at this stress, or at a small r where nothing flows.
+    double
+    step_size(const double   kr,
+              const Tensor2 &stress,
+              const Tensor2 &strain) const
+    {
+      return kr /
+             std::max(0.1,
+                      law->relaxation_rate(stress, strain, stiffness, point));
+    }
+
     Tensor4
     tangent(const Tensor2 &stress, const Tensor2 &strain, const double k) const
     {
@@ -212,7 +223,9 @@ namespace
                            size < 1. ? length :
                                        (length + kr * 0.5) / (1. + kr));
           if (size < 1.)
-            EXPECT_EQ(sample.z(strain, old_z, k), old_z);
+            {
+              EXPECT_EQ(sample.z(strain, old_z, k), old_z);
+            }
         }
   }
 
@@ -233,13 +246,13 @@ namespace
           {
             const Tensor2 strain  = random();
             const Tensor2 elastic = 2. * mu * deviator(strain);
-            const Tensor2 old_z   = -0.3 * elastic;
+            const Tensor2 old_z   = -0.05 * elastic;
             const double  a = kr / (1. + h), k = a * 2. / (2. * mu);
             expect_shortened(sample,
                              strain,
                              old_z,
                              k,
-                             (0.7 * elastic.norm() +
+                             (0.95 * elastic.norm() +
                               a * (0.1 + h * elastic.norm())) /
                                (1. + a + a * h));
           }
@@ -362,12 +375,9 @@ namespace
       for (const double kr : products)
         for (unsigned int i = 0; i < 5; ++i)
           {
-            const Tensor2 strain = random(), old_z = deviator(random());
+            const Tensor2 strain = random(), old_z = 0.05 * deviator(random());
             const Tensor2 trial = sample.stiffness.stress(strain) + old_z;
-            const double  k     = kr / sample.law->relaxation_rate(trial,
-                                                              strain,
-                                                              sample.stiffness,
-                                                              sample.point);
+            const double  k     = sample.step_size(kr, trial, strain);
             const Tensor2 z     = sample.z(strain, old_z, k);
             const Tensor2 G =
               sample.law->rate(sample.stiffness.stress(strain) + z,
@@ -391,13 +401,10 @@ namespace
         for (const double kr : products)
           for (unsigned int i = 0; i < 5; ++i)
             {
-              const Tensor2 strain = random(), old_z = deviator(random());
-              const Tensor2 trial = sample.stiffness.stress(strain) + old_z;
-              const double  k =
-                kr / sample.law->relaxation_rate(trial,
-                                                 strain,
-                                                 sample.stiffness,
-                                                 sample.point);
+              const Tensor2 strain = random(),
+                            old_z  = 0.05 * deviator(random());
+              const Tensor2 trial  = sample.stiffness.stress(strain) + old_z;
+              const double  k      = sample.step_size(kr, trial, strain);
               const Tensor4 C =
                 sample.tangent(sample.stress(strain, old_z, k), strain, k);
               largest         = std::max(largest, asymmetry(C));
@@ -455,12 +462,9 @@ namespace
     for (const Sample &sample : all_samples())
       for (const double kr : products)
         {
-          const Tensor2 strain = random(), old_z = deviator(random());
+          const Tensor2 strain = random(), old_z = 0.05 * deviator(random());
           const Tensor2 trial = sample.stiffness.stress(strain) + old_z;
-          const double  k     = kr / sample.law->relaxation_rate(trial,
-                                                            strain,
-                                                            sample.stiffness,
-                                                            sample.point);
+          const double  k     = sample.step_size(kr, trial, strain);
           const Tensor4 C =
             sample.tangent(sample.stress(strain, old_z, k), strain, k);
           const Tensor4 definite = definite_tangent(C, sample.stiffness);

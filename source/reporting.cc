@@ -152,7 +152,7 @@ namespace Viscoplastic
         text << "Warning: forces balance only to " << balance_defect
              << " of the largest at t = " << time_step.t
              << "; a smaller 'Solver/Contact tolerance' mends this unless "
-                "Poisson's ratio is next to 1/2.";
+                "Poisson's ratio is next to 1/2 or the body hardly resists.";
         console.remark(text.str());
       }
 

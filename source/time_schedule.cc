@@ -43,8 +43,12 @@ namespace Viscoplastic
           {
             if (parts.size() == 2)
               {
-                end     = Utilities::string_to_double(parts[0]);
-                n_steps = Utilities::string_to_int(parts[1]);
+                end = Utilities::string_to_double(parts[0]);
+                // Not as an integer, which large numbers would wrap.
+                const double number = Utilities::string_to_double(parts[1]);
+                if (number == std::floor(number))
+                  n_steps = static_cast<int>(
+                    std::clamp(number, 0., 2. * max_n_steps));
               }
           }
         catch (const std::exception &)
@@ -60,6 +64,12 @@ namespace Viscoplastic
                                excerpt(phase) +
                                "' must be finite and lie after " +
                                std::to_string(start) + "."));
+        const double step = (end - start) / n_steps;
+        AssertThrow(step > 1e-12 * end,
+                    ExcMessage("'Time/Phases': the steps of '" +
+                               excerpt(phase) + "' are shorter than 1e-12 of "
+                               "its end time, which is what rounding leaves "
+                               "of times; take fewer steps."));
         n_all_steps += n_steps;
         AssertThrow(n_all_steps <= max_n_steps,
                     ExcMessage("'Time/Phases' has more than 1e9 steps up to '" +

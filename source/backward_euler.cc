@@ -292,15 +292,7 @@ namespace Viscoplastic
         failure = reason(exception);
       }
     // A sample without a solution fails the step, so on all ranks.
-    const MPI_Comm     comm    = sampling.space.communicator;
-    const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(comm);
-    const unsigned int first   = Utilities::MPI::min(
-      failure.empty() ? n_ranks : Utilities::MPI::this_mpi_process(comm), comm);
-    if (first < n_ranks)
-      {
-        failure = Utilities::MPI::broadcast(comm, failure, first);
-        AssertThrow(false, ExcMessage(failure));
-      }
+    agree_on_failure(failure, sampling.space.communicator);
     return z;
   }
 

@@ -2,7 +2,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/backward_euler.h>
-#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/nonsymmetric_correction.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
@@ -152,19 +151,8 @@ namespace Viscoplastic
     const auto z_for = [&](const DistributedVector  &ghosted_u,
                            const IrreversibleStress &guess) {
       TimerOutput::Scope phase(timer, "rate");
-      IrreversibleStress result;
-      std::string        failure; // on this rank alone
-      try
-        {
-          result = implicit_irreversible_stress<dim>(
-            laws, sampling, ghosted_u, target, k, guess);
-        }
-      catch (const std::exception &exception)
-        {
-          failure = reason(exception);
-        }
-      agree_on_failure(failure, communicator);
-      return result;
+      return implicit_irreversible_stress<dim>(
+        laws, sampling, ghosted_u, target, k, guess);
     };
 
     DistributedVector u =

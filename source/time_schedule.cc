@@ -47,8 +47,8 @@ namespace Viscoplastic
                 // Not as an integer, which large numbers would wrap.
                 const double number = Utilities::string_to_double(parts[1]);
                 if (number == std::floor(number))
-                  n_steps = static_cast<int>(
-                    std::clamp(number, 0., 2. * max_n_steps));
+                  n_steps =
+                    static_cast<int>(std::clamp(number, 0., 2. * max_n_steps));
               }
           }
         catch (const std::exception &)
@@ -67,7 +67,8 @@ namespace Viscoplastic
         const double step = (end - start) / n_steps;
         AssertThrow(step > 1e-12 * end,
                     ExcMessage("'Time/Phases': the steps of '" +
-                               excerpt(phase) + "' are shorter than 1e-12 of "
+                               excerpt(phase) +
+                               "' are shorter than 1e-12 of "
                                "its end time, which is what rounding leaves "
                                "of times; take fewer steps."));
         n_all_steps += n_steps;

@@ -81,6 +81,10 @@ namespace Viscoplastic
             double damping = 1.;
             for (;; damping *= 0.5)
               {
+                // All that rounding leaves; beside a kink of the law, a shorter
+                // step does better.
+                if (damping < 1e-3 && step_size <= 1e-9 * scale)
+                  return z + step;
                 if (damping < 1e-9)
                   return {};
                 const SymmetricTensor<2, 3> trial = z + damping * step;
@@ -93,9 +97,6 @@ namespace Viscoplastic
                     size = new_size;
                     break;
                   }
-                // All that rounding leaves.
-                if (damping == 1. && step_size <= 1e-9 * scale)
-                  return z + step;
               }
           }
         return {};

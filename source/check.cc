@@ -127,7 +127,7 @@ namespace Viscoplastic
       Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
                           communicator) +
       solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct) +
-      (is_implicit() ?
+      (is_implicit() || changes_scheme() ?
          // A second matrix, and two tensors of rank 4 a sample.
          dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
            2. * sizeof(SymmetricTensor<4, 3>) * d.sampling.n_samples *

@@ -164,10 +164,11 @@ namespace Viscoplastic
     const bool   is_last = varies ? step.done >= 1. : step.n == n_steps;
 
     // A line for each of max_lines equal parts of the run.
-    const double done = varies ? step.done : step.n / all;
-    const bool   is_another_part =
-      std::floor(done * max_lines) > std::floor(last_done * max_lines);
-    last_done = done;
+    const std::uint64_t part =
+      varies ? static_cast<std::uint64_t>(step.done * max_lines) :
+               std::uint64_t(step.n) * max_lines / n_steps;
+    const bool is_another_part = part > last_part;
+    last_part                  = part;
     if (step.n == 1 || is_last || is_another_part)
       {
         const std::string line = in_words(step, n_steps, elapsed, left);

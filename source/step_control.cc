@@ -13,14 +13,14 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The controller aims a little below the tolerance, so that most steps
-    /// are accepted.
-    constexpr double safety = 0.9;
+    /// The ratio of error and allowed error that the controller aims at, so
+    /// that most steps are accepted.
+    constexpr double aim = 0.9;
     /// How much a step may be longer or shorter than the one before.
     constexpr double largest_growth = 2., growth_after_event = 5.,
                      least_growth = 0.2;
-    /// A change of the step below this is not worth it: backward Euler factors
-    /// a matrix for each step size.
+    /// Where a step could be longer by less than that, it is not worth it:
+    /// backward Euler factors a matrix for each step size.
     constexpr double least_change = 1.2;
     /// A ratio of nearly zero says nothing.
     constexpr double least_ratio = 1e-4;
@@ -209,9 +209,10 @@ namespace Viscoplastic
       {
         ++n.rejected;
         was_rejected = true;
-        wanted       = std::max(
-          smallest(step.t_old),
-          step.k * std::clamp(safety * std::pow(ratio, -1. / order), 0.1, 0.9));
+        wanted =
+          std::max(smallest(step.t_old),
+                   step.k *
+                     std::clamp(std::pow(aim / ratio, 1. / order), 0.1, 0.9));
         return false;
       }
     if (has_event && parameters.resolve_events && step.k > event_gap)
@@ -230,9 +231,12 @@ namespace Viscoplastic
     if (ratio > 0.)
       {
         const double present = std::max(ratio, least_ratio);
-        factor               = safety * std::pow(present, -0.7 / order);
+        const double best    = std::pow(aim / present, 1. / order);
+        factor               = std::pow(aim / present, 0.3 / order);
         if (last_ratio > 0.)
-          factor *= std::pow(last_ratio, 0.4 / order);
+          factor *= std::pow(last_ratio / present, 0.4 / order);
+        if (best >= 1. && best < least_change)
+          factor = 1.;
         last_ratio = present;
       }
     // Up to the event, steps do not grow; behind it, they do quickly.
@@ -244,8 +248,6 @@ namespace Viscoplastic
                         is_before || (was_rejected && !has_event) ? 1. :
                                       has_event ? growth_after_event :
                                                   largest_growth);
-    if (factor > 1. && factor < least_change)
-      factor = 1.;
     // A step that a time has cut short does not tell the next one.
     const double before = was_rejected ? 0. : wanted;
     wanted = std::min(std::max(factor * step.k, factor >= 1. ? before : 0.),

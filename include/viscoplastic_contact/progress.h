@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/console.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -74,7 +75,9 @@ namespace Viscoplastic
     Console           &console;
     const unsigned int n_steps;
     RemainingTime      remaining;
-    double             last_elapsed = 0., last_shown = -1., last_done = 0.;
+    double             last_elapsed = 0., last_shown = -1.;
+    /// Of max_lines equal parts of the run, those that are done.
+    std::uint64_t last_part = 0;
   };
 
 

@@ -164,7 +164,7 @@ namespace
     {
       StepControl control(parameters, "refuse", schedule, 1, 0.);
       const auto  done = steps(control, 1., no_error, {}, 0.013);
-      EXPECT_LE(largest(done), 0.013);
+      EXPECT_LE(largest(done), 0.013 * (1. + 1e-12)); // t carries rounding
       EXPECT_LE(done.size(), 80u);
     }
     {

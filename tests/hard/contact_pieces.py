@@ -175,8 +175,8 @@ ADAPTIVE = {
 }
 
 
-@case(GROUP, "hanging nodes on the face, fixed or chosen anew in each step: radial "
-             "return of homogeneous shear all the same")
+@case(GROUP, "hanging nodes on the face: radial return of homogeneous shear all the "
+             "same; an adaptive mesh stays as it is in a uniform state")
 def hanging_nodes(size, report):
     fixed = scene(
         "hanging_nodes_3d",
@@ -190,7 +190,8 @@ def hanging_nodes(size, report):
     check_homogeneous(report, fixed, 3)
     corrections(report, fixed)
 
-    changing = scene(
+    # What is left of the estimate is no reason to change the mesh.
+    uniform = scene(
         "hanging_nodes_3d",
         **ADAPTIVE,
         **{
@@ -198,12 +199,8 @@ def hanging_nodes(size, report):
             "Time/Phases": size("1: 2, 2: 16", "1: 2, 3: 64"),
         },
     )
-    report.identities(changing, 1e-10)
-    cells = changing["cells"]
-    report.figure("adapted mesh, changes", (np.diff(cells) != 0).sum(), least=10)
-    report.figure("largest number of cells", cells.max())
-    check_homogeneous(report, changing, 3)
-    corrections(report, changing)
+    changes = (np.diff(uniform["cells"]) != 0).sum()
+    report.figure("changes of an adaptive mesh in the uniform state", changes, 0, 0)
 
 
 @case(GROUP, "an adapted mesh under slip that turns and a bound that varies: identities, "

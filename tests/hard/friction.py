@@ -57,7 +57,7 @@ def round_the_circle(t):
 
 
 def box(cells):
-    return {"Geometry/Arguments": f"{cells}, {cells} : -0.5, -0.5, 0 : 0.5, 0.5, 1 : true"}
+    return {"Geometry/Arguments": f"{cells} : -0.5, -0.5, 0 : 0.5, 0.5, 1 : true"}
 
 
 # ---------------------------------------------------------------- bounds

@@ -57,9 +57,10 @@ class Rotated(TestCase):
             of = "energy_norm" if name.startswith("estimate_") else name
             scale = abs(straight[of]).max()
             self.assertClose(b, a, absolute=AGREE * scale, what=name)
+        # the critical cell is a place, and one of many equal ones
         vectors = {
             name[:-2] for name in straight.statistics if name.endswith("_x")
-        }
+        } - {"critical_cell"}
         self.assertIn("friction_force", vectors)
         for name in vectors:
             a, b = straight.vector(name) @ matrix.T, turned.vector(name)

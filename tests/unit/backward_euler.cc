@@ -231,6 +231,35 @@ namespace
 
 
 
+  TEST(BackwardEuler, BesideTheYieldSurfaceFromInside)
+  {
+    // Strains are large, the stress is beyond the yield surface by 1e-10 of
+    // them, and the search begins inside, where a step goes to the trial
+    // stress, which is no better.
+    const Sample sample("perzyna", "set Yield radius = 0.5\nset Viscosity = 2");
+    RandomTensors random;
+    const double  kr = 100., k = kr * 2. / (2. * mu);
+    for (unsigned int i = 0; i < 20; ++i)
+      {
+        const Tensor2 strain = 100. * random();
+        Tensor2       old_z  = random() - isotropic.stress(strain);
+        const Tensor2 trial  = isotropic.stress(strain) + old_z;
+        const Tensor2 normal = deviator(trial) / deviator(trial).norm();
+        const double  excess = 5e-8;
+        old_z += (0.5 + excess) * normal - deviator(trial);
+        const Tensor2 start = old_z - 1.01 * excess * normal;
+        const Tensor2 z     = implicit_irreversible_stress(
+          *sample.law, strain, old_z, k, isotropic, sample.point, start);
+        const Tensor2 stress = isotropic.stress(strain) + z;
+        // Rounding of strains is 1e-14.
+        EXPECT_NEAR(deviator(stress).norm() - 0.5,
+                    excess / (1. + kr),
+                    0.01 * excess);
+      }
+  }
+
+
+
   TEST(BackwardEuler, HardeningByHand)
   {
     // Everything along one deviator.

@@ -65,10 +65,10 @@ namespace Viscoplastic
                                "' must be finite and lie after " +
                                std::to_string(start) + "."));
         const double step = (end - start) / n_steps;
-        AssertThrow(step > 1e-12 * end,
+        AssertThrow(step > 1e-14 * end,
                     ExcMessage("'Time/Phases': the steps of '" +
                                excerpt(phase) +
-                               "' are shorter than 1e-12 of "
+                               "' are shorter than 1e-14 of "
                                "its end time, which is what rounding leaves "
                                "of times; take fewer steps."));
         n_all_steps += n_steps;

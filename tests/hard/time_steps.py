@@ -256,7 +256,7 @@ def load_kinks(size, report):
 class Memory:
     """Samples the resident memory of the program that runs, in MB."""
 
-    def __init__(self, seconds=0.02):
+    def __init__(self, seconds=0.005):
         self.samples, self.seconds = [], seconds  # (bytes of statistics.csv, MB)
         self.stop = threading.Event()
         self.thread = threading.Thread(target=self.watch)
@@ -304,7 +304,7 @@ def children():
              "of what is dissipated and is of second order, memory is constant")
 def many_steps(size, report):
     defects = []
-    for n_periods, steps in (50, 20), (size(50, 2500), 40):
+    for n_periods, steps in (250, 20), (size(250, 2500), 40):
         with Memory() as memory:
             result = scene(
                 "many_steps_2d", **{"Time/Phases": f"{n_periods}: {n_periods * steps}"}

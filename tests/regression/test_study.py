@@ -378,7 +378,7 @@ class Refused(TestCase):
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
             text = (folder.study / "study.md").read_text()
-            self.assertRegex(text, r"`uniform_h0_k0`: failed: The time step")
+            self.assertRegex(text, r"`uniform_h0_k0`: failed: Step 1 .*: the time step")
             self.assertIn("uniform_h3_k3", folder.finished())
 
     def test_price(self):

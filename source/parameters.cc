@@ -302,7 +302,8 @@ namespace Viscoplastic
     prm.add_parameter("Event tolerance",
                       event_tolerance,
                       "How exactly the times of such events are found, "
-                      "relative to the length of the phase.",
+                      "relative to the length of the phase, but not below "
+                      "`Smallest step'.",
                       Patterns::Double(1e-12, 1.));
     prm.add_parameter("Largest step",
                       largest_step,

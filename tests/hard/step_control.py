@@ -118,6 +118,7 @@ def slip_events(size, report):
             "Step control/Tolerance": 0.01,
             "Step control/Largest step": 0.3,
             "Step control/Event tolerance": tolerance,
+            "Step control/Smallest step": 0.1 * tolerance,
         },
     )
     t, k = result["t"], result["k"]

@@ -48,7 +48,7 @@ def rewrite_manifest(checkpoint, files, extra=lambda text: text):
     for line in extra(text).split(b"\n"):
         if line.startswith(b"checksum "):
             continue
-        if line.startswith(b"file "):
+        if line.startswith(b"file ") and len(line.split()) > 1:
             file = checkpoint / line.split()[1].decode("latin-1")
             if file in files and file.is_file():
                 data, name = file.read_bytes(), file.name.encode()

@@ -281,19 +281,12 @@ namespace Viscoplastic
         }
     };
 
-    std::string failure;
-    try
-      {
-        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-          if (laws.law(c) != nullptr)
-            solve_cell(c);
-      }
-    catch (const std::exception &exception)
-      {
-        failure = reason(exception);
-      }
-    // A sample without a solution fails the step, so on all ranks.
-    agree_on_failure(failure, sampling.space.communicator);
+    // A sample without a solution fails the step.
+    fail_together(sampling.space.communicator, [&] {
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        if (laws.law(c) != nullptr)
+          solve_cell(c);
+    });
     return z;
   }
 

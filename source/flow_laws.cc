@@ -227,47 +227,39 @@ namespace Viscoplastic
                 const typename ExactSolution<dim>::Side side)
   {
     const StressSampling<dim> &sampling = laws.sampling;
+    const MPI_Comm             comm     = sampling.space.communicator;
     const auto                 now      = laws.at(t);
     FlowRate                   result{IrreversibleStress(z.size()), 0., 0.};
     std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
     CriticalSample                     worst;
     // An expression without a value there, on some rank.
-    std::string failure;
-    try
-      {
-        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-          {
-            if (laws.source_solution)
-              for (unsigned int s = 0; s < sampling.n_samples; ++s)
-                result.rate[c * sampling.n_samples + s] =
-                  laws.source(now, c, s, side);
-            const ViscoplasticLaw *law = now.law(c);
-            if (law == nullptr)
-              continue;
-            const Stiffness &stiffness = sampling.moduli(c);
-            sampling.strains(c, ghosted_u.begin(), strain.data());
+    fail_together(comm, [&] {
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        {
+          if (laws.source_solution)
             for (unsigned int s = 0; s < sampling.n_samples; ++s)
-              {
-                const std::size_t           i     = c * sampling.n_samples + s;
-                const LawPoint              point = now.point(c, s);
-                const SymmetricTensor<2, 3> stress =
-                  stiffness.stress(strain[s]) + z[i];
-                result.rate[i] +=
-                  law->rate(stress, strain[s], stiffness, point);
-                const double r =
-                  law->relaxation_rate(stress, strain[s], stiffness, point);
-                worst.add(r, position(sampling, c, s));
-                if (law->is_beyond_cap(stress, point))
-                  result.capped_volume += sampling.weight(c, s);
-              }
-          }
-      }
-    catch (const std::exception &exception)
-      {
-        failure = reason(exception);
-      }
-    const MPI_Comm comm = sampling.space.communicator;
-    agree_on_failure(failure, comm);
+              result.rate[c * sampling.n_samples + s] =
+                laws.source(now, c, s, side);
+          const ViscoplasticLaw *law = now.law(c);
+          if (law == nullptr)
+            continue;
+          const Stiffness &stiffness = sampling.moduli(c);
+          sampling.strains(c, ghosted_u.begin(), strain.data());
+          for (unsigned int s = 0; s < sampling.n_samples; ++s)
+            {
+              const std::size_t           i     = c * sampling.n_samples + s;
+              const LawPoint              point = now.point(c, s);
+              const SymmetricTensor<2, 3> stress =
+                stiffness.stress(strain[s]) + z[i];
+              result.rate[i] += law->rate(stress, strain[s], stiffness, point);
+              const double r =
+                law->relaxation_rate(stress, strain[s], stiffness, point);
+              worst.add(r, position(sampling, c, s));
+              if (law->is_beyond_cap(stress, point))
+                result.capped_volume += sampling.weight(c, s);
+            }
+        }
+    });
     worst.reduce(comm);
     result.relaxation_rate   = worst.largest;
     result.critical_position = worst.position;

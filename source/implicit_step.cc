@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/backward_euler.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/nonsymmetric_correction.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
@@ -141,11 +142,13 @@ namespace Viscoplastic
     // A source is known.
     IrreversibleStress target = old_state.z;
     if (d.laws.source_solution)
-      for (std::size_t i = 0; i < target.size(); ++i)
-        target[i] += k * d.laws.source(laws,
-                                       i / sampling.n_samples,
-                                       i % sampling.n_samples,
-                                       ExactSolution<dim>::Side::before);
+      fail_together(space.communicator, [&] {
+        for (std::size_t i = 0; i < target.size(); ++i)
+          target[i] += k * d.laws.source(laws,
+                                         i / sampling.n_samples,
+                                         i % sampling.n_samples,
+                                         ExactSolution<dim>::Side::before);
+      });
     const bool is_symmetric =
       d.tangent->is_constant || have_symmetric_tangents(d.laws, time_step.t);
     const auto z_for = [&](const DistributedVector  &ghosted_u,

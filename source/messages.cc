@@ -36,9 +36,18 @@ namespace Viscoplastic
 
 
   void
-  agree_on_failure(const std::string &failure, const MPI_Comm communicator)
+  fail_together(const MPI_Comm communicator, const std::function<void()> &work)
   {
-    namespace MPI              = dealii::Utilities::MPI;
+    namespace MPI = dealii::Utilities::MPI;
+    std::string failure;
+    try
+      {
+        work();
+      }
+    catch (const std::exception &exception)
+      {
+        failure = reason(exception);
+      }
     const unsigned int n_ranks = MPI::n_mpi_processes(communicator);
     const unsigned int first =
       MPI::min(failure.empty() ? n_ranks : MPI::this_mpi_process(communicator),

@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/backward_euler.h>
 #include <viscoplastic_contact/friction_points.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/nonsymmetric_correction.h>
 
 #include <cmath>
@@ -25,23 +26,25 @@ namespace Viscoplastic
       const auto                         now      = laws.at(t);
       std::vector<SymmetricTensor<4, 3>> result(sampling.n_cells() * n);
       std::vector<SymmetricTensor<2, 3>> strain(n);
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-        if (const ViscoplasticLaw *law = now.law(c))
-          {
-            const Stiffness            &stiffness = sampling.moduli(c);
-            const SymmetricTensor<4, 3> E         = stiffness.tensor();
-            sampling.strains(c, at.ghosted_u.begin(), strain.data());
-            for (unsigned int s = 0; s < n; ++s)
-              result[c * n + s] =
-                algorithmic_tangent(*law,
-                                    stiffness.stress(strain[s]) +
-                                      at.z[c * n + s],
-                                    strain[s],
-                                    k,
-                                    stiffness,
-                                    now.point(c, s)) -
-                E;
-          }
+      fail_together(sampling.space.communicator, [&] {
+        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+          if (const ViscoplasticLaw *law = now.law(c))
+            {
+              const Stiffness            &stiffness = sampling.moduli(c);
+              const SymmetricTensor<4, 3> E         = stiffness.tensor();
+              sampling.strains(c, at.ghosted_u.begin(), strain.data());
+              for (unsigned int s = 0; s < n; ++s)
+                result[c * n + s] =
+                  algorithmic_tangent(*law,
+                                      stiffness.stress(strain[s]) +
+                                        at.z[c * n + s],
+                                      strain[s],
+                                      k,
+                                      stiffness,
+                                      now.point(c, s)) -
+                  E;
+            }
+      });
       return result;
     }
   } // namespace

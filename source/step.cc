@@ -31,8 +31,7 @@ namespace Viscoplastic
     if (time_step.k * at.relaxation_rate <= 2. * (1. + 1e-10))
       return;
     std::ostringstream message;
-    message << "Step " << time_step.n << " (t = " << time_step.t
-            << "): the time step " << time_step.k
+    message << "the time step " << time_step.k
             << " exceeds the stability limit 2/r = " << 2. / at.relaxation_rate
             << " of " << parameters.time.scheme
             << ", which is that of the cell at x = (";
@@ -40,7 +39,7 @@ namespace Viscoplastic
       message << (d > 0 ? ", " : "") << at.critical_position[d];
     message << "); take more steps in 'Time/Phases', or set 'Time/Stiffness "
                "policy' or 'Time/Scheme' = backward Euler.";
-    throw StepBeyondStability(message.str());
+    throw StepBeyondStability(time_step.n, time_step.t, message.str());
   }
 
 
@@ -112,10 +111,7 @@ namespace Viscoplastic
       }
     catch (const std::exception &exception)
       {
-        std::ostringstream message;
-        message << "Step " << time_step.n << " (t = " << time_step.t
-                << "): " << reason(exception);
-        throw StepFailure(message.str());
+        throw StepFailure(time_step.n, time_step.t, reason(exception));
       }
     TimerOutput::Scope phase(timer, "balance");
     step.forces =

@@ -13,6 +13,18 @@ namespace Viscoplastic
 {
   namespace
   {
+    std::string
+    sentence_on_step(const unsigned int n,
+                     const double       t,
+                     const std::string &why)
+    {
+      std::ostringstream message;
+      message << "Step " << n << " (t = " << t << "): " << why;
+      return message.str();
+    }
+
+
+
     /// The ratio of error and allowed error that the controller aims at, so
     /// that most steps are accepted.
     constexpr double aim = 0.9;
@@ -55,6 +67,14 @@ namespace Viscoplastic
       return times;
     }
   } // namespace
+
+
+
+  StepFailure::StepFailure(const unsigned int n,
+                           const double       t,
+                           const std::string &why)
+    : std::runtime_error(sentence_on_step(n, t, why))
+  {}
 
 
 

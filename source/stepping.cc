@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/contact_event.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -81,10 +81,16 @@ namespace Viscoplastic
     if (!error_bar)
       return {};
     if (scene.has_viscosity())
-      {
-        TimerOutput::Scope phase(timer, "rate");
-        error_bar->evaluate_rate(discretisation->laws, state, step.state);
-      }
+      try
+        {
+          TimerOutput::Scope phase(timer, "rate");
+          error_bar->evaluate_rate(discretisation->laws, state, step.state);
+        }
+      catch (const std::exception &exception)
+        {
+          // The step has gone where the law has no value.
+          throw StepFailure(step.state.n, step.state.t, reason(exception));
+        }
     TimerOutput::Scope phase(timer, "estimate");
     step.errors =
       error_bar->assess(discretisation->sampling,
@@ -104,12 +110,9 @@ namespace Viscoplastic
                ledger.irreversible_change);
     errors.size = std::max(ledger.energy_norm, ledger.irreversible_norm);
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
-      {
-        std::ostringstream message;
-        message << "Step " << step.state.n << " (t = " << step.state.t
-                << "): the solution is not finite.";
-        throw StepFailure(message.str());
-      }
+      throw StepFailure(step.state.n,
+                        step.state.t,
+                        "the solution is not finite.");
     return errors;
   }
 

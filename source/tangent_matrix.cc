@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/backward_euler.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/tangent_matrix.h>
 
 #include <cmath>
@@ -74,7 +75,6 @@ namespace Viscoplastic
     const double k = is_constant ? without_rounding(k_exact) : k_exact;
     if (is_constant && k == step_size)
       return false;
-    step_size = k;
 
     const StressSampling<dim>         &sampling = laws.sampling;
     const unsigned int                 n        = sampling.n_samples;
@@ -82,25 +82,29 @@ namespace Viscoplastic
     std::vector<SymmetricTensor<4, 3>> new_tangents;
     new_tangents.reserve(sampling.n_cells() * n);
     std::vector<SymmetricTensor<2, 3>> strain(n);
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-      {
-        const ViscoplasticLaw *law       = now.law(c);
-        const Stiffness       &stiffness = sampling.moduli(c);
-        sampling.strains(c, ghosted_u.begin(), strain.data());
-        for (unsigned int s = 0; s < n; ++s)
-          new_tangents.push_back(
-            law ?
-              definite_tangent(algorithmic_tangent(*law,
-                                                   stiffness.stress(strain[s]) +
-                                                     z[c * n + s],
-                                                   strain[s],
-                                                   k,
-                                                   stiffness,
-                                                   now.point(c, s)),
-                               stiffness) :
-              stiffness.tensor());
-      }
-    const MPI_Comm comm = sampling.space.communicator;
+    const MPI_Comm                     comm = sampling.space.communicator;
+    // A law without derivatives at a sample fails the step.
+    fail_together(comm, [&] {
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        {
+          const ViscoplasticLaw *law       = now.law(c);
+          const Stiffness       &stiffness = sampling.moduli(c);
+          sampling.strains(c, ghosted_u.begin(), strain.data());
+          for (unsigned int s = 0; s < n; ++s)
+            new_tangents.push_back(
+              law ?
+                definite_tangent(algorithmic_tangent(
+                                   *law,
+                                   stiffness.stress(strain[s]) + z[c * n + s],
+                                   strain[s],
+                                   k,
+                                   stiffness,
+                                   now.point(c, s)),
+                                 stiffness) :
+                stiffness.tensor());
+        }
+    });
+    step_size = k;
     // Never the same before the first time, also on ranks without cells.
     const bool is_same =
       Utilities::MPI::min(max_nu > -1. && new_tangents == tangents ? 1 : 0,

@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <exception>
+#include <functional>
 #include <set>
 #include <string>
 
@@ -18,12 +19,12 @@ namespace Viscoplastic
 
 
   /**
-   * Throw on all ranks what some rank has met alone, so that they stay together
-   * and a step can be tried again. @p failure is empty where all is well; the
-   * first rank that has one speaks. Collective; throws ExcMessage.
+   * Do @p work, which is not collective, and throw on all ranks if it fails on
+   * some, with the reason() of the first of them: the ranks stay together, and
+   * a step can be tried again. Collective; throws ExcMessage.
    */
   void
-  agree_on_failure(const std::string &failure, const MPI_Comm communicator);
+  fail_together(const MPI_Comm communicator, const std::function<void()> &work);
 
 
   /// Ids of boundaries or materials, separated by commas.

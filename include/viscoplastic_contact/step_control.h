@@ -14,7 +14,8 @@ namespace Viscoplastic
   /// A step could not be made; a shorter one may succeed.
   struct StepFailure : public std::runtime_error
   {
-    using std::runtime_error::runtime_error;
+    /// Step @p n to time @p t, and why as a sentence.
+    StepFailure(const unsigned int n, const double t, const std::string &why);
   };
 
 

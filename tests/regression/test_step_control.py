@@ -140,6 +140,43 @@ class DroppedSteps(TestCase):
         )
         self.assertRegex(result.stdout, r"Steps: \d+ accepted, \d+ that failed")
 
+    def test_failures_on_one_rank(self):
+        """A law without value or derivative where the step goes, in one half."""
+        for scheme, rate, tolerance in (
+            # at rest, no derivative for the first tangent
+            (
+                "backward Euler",
+                "sigma_eq*if(t < 0.3, 1, 1 + sqrt(p + 1e-3*sigma_eq))",
+                0.02,
+            ),
+            # no value beyond a strain that long explicit steps reach
+            ("forward Euler", "50*sigma_eq*exp(log(0.2 - eps_eq))", 10),
+        ):
+            alone, two = (
+                run(
+                    "layers",
+                    {
+                        "Material 2/Law": "parsed",
+                        "Material 2/parsed/Strain rate": rate,
+                        "Time/Phases": "1.5: 1",
+                        "Time/Scheme": scheme,
+                        "Output/Fields every": 0,
+                        "Step control/Tolerance": tolerance,
+                    },
+                    ranks=ranks,
+                )
+                for ranks in (1, 2)
+            )
+            for result in alone, two:
+                self.assertRegex(result.stdout, r"Steps: \d+ acc.*, \d+ that failed")
+            for name in "t", "rejected", "stored_energy", "viscous_dissipation":
+                self.assertClose(
+                    two[name],
+                    alone[name],
+                    absolute=1e-8 * abs(alone[name]).max(),
+                    what=f"{scheme}, {name}",
+                )
+
     def test_divided_steps(self):
         self.same_as_given_steps(
             "slab",

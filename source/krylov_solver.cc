@@ -152,17 +152,27 @@ namespace Viscoplastic
     std::map<types::global_dof_index, unsigned int> face_index;
     for (unsigned int k = 0; k < face_dofs.size(); ++k)
       face_index[face_dofs[k]] = k;
+    // Not by the iterators of the matrix, each of which fills a vector of the
+    // size of the whole matrix.
+    const Epetra_CrsMatrix              &K = matrix.trilinos_matrix();
     std::vector<SparseFaceMatrix::Entry> entries;
     for (unsigned int k = 0; k < face_dofs.size(); ++k)
       if (local_face_dofs[k] != numbers::invalid_unsigned_int)
-        for (auto entry = matrix.begin(face_dofs[k]);
-             entry != matrix.end(face_dofs[k]);
-             ++entry)
-          {
-            const auto column = face_index.find(entry->column());
-            if (column != face_index.end())
-              entries.push_back({k, column->second, entry->value()});
-          }
+        {
+          int     length, *indices;
+          double *values;
+          K.ExtractMyRowView(static_cast<int>(local_face_dofs[k]),
+                             length,
+                             values,
+                             indices);
+          for (int e = 0; e < length; ++e)
+            {
+              const auto column = face_index.find(
+                static_cast<types::global_dof_index>(K.GCID(indices[e])));
+              if (column != face_index.end())
+                entries.push_back({k, column->second, values[e]});
+            }
+        }
     std::vector<SparseFaceMatrix::Entry> all;
     for (const auto &part : Utilities::MPI::all_gather(communicator, entries))
       all.insert(all.end(), part.begin(), part.end());

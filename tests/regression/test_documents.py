@@ -5,10 +5,12 @@ Excerpts of code occur in the files they name, links and named files exist, and
 so do the entries of the parameter file that are mentioned.
 """
 
+import ast
 import os
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import textwrap
 import unittest
@@ -173,6 +175,33 @@ class Documents(unittest.TestCase):
                 with self.subTest(page=page.name, set=entry):
                     self.assertIn(entry, names | {"Name"})
         self.assertGreater(n_entries, 20)
+
+
+class Registration(unittest.TestCase):
+    def test_every_class_with_tests_is_an_entry_of_ctest(self):
+        folder = SOURCE / "tests" / "regression"
+        listed = (folder / "CMakeLists.txt").read_text()
+        missing = []
+        for file in sorted(folder.glob("test_*.py")):
+            for node in ast.parse(file.read_text()).body:
+                if isinstance(node, ast.ClassDef) and any(
+                    getattr(part, "name", "").startswith("test_") for part in node.body
+                ):
+                    name = f"{file.stem}.{node.name}"
+                    if not re.search(rf"\b{re.escape(name)}\b", listed):
+                        missing.append(name)
+        self.assertEqual(missing, [])
+
+    def test_every_hard_case_is_an_entry_of_ctest(self):
+        folder = SOURCE / "tests" / "hard"
+        cases = subprocess.run(
+            [sys.executable, folder / "run.py", "--list"],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
+        ).stdout.split()
+        listed = re.findall(r"^hard_case\((\w+)", (folder / "CMakeLists.txt").read_text(), re.M)
+        self.assertEqual(sorted(cases), sorted(listed))
 
 
 class OwnScene(TestCase):

@@ -3,6 +3,8 @@
 // Backward Euler at one sample: the stress against closed forms and
 // bisection, the tangent against differences of the stress.
 
+#include "refusals.h"
+#include "tensors.h"
 #include <viscoplastic_contact/backward_euler.h>
 #include <viscoplastic_contact/viscoplastic_law.h>
 
@@ -21,9 +23,7 @@ namespace
 {
   using namespace dealii;
   using namespace Viscoplastic;
-
-  using Tensor2 = SymmetricTensor<2, 3>;
-  using Tensor4 = SymmetricTensor<4, 3>;
+  using namespace Viscoplastic::Testing;
 
   // mu = 0.4, K = 2/3.
   constexpr double mu          = 0.4;
@@ -45,45 +45,6 @@ namespace
       }
     C(0, 5) = C(5, 0) = 0.15;
     return Stiffness::anisotropic(C);
-  }
-
-
-
-  class RandomTensors
-  {
-  public:
-    Tensor2
-    operator()()
-    {
-      Tensor2 t;
-      for (unsigned int i = 0; i < Tensor2::n_independent_components; ++i)
-        t.access_raw_entry(i) = distribution(generator);
-      return t;
-    }
-
-  private:
-    std::mt19937                           generator{20260101};
-    std::uniform_real_distribution<double> distribution{-1., 1.};
-  };
-
-
-
-  std::string
-  message_of(const std::function<void()> &action)
-  {
-    try
-      {
-        action();
-      }
-    catch (const std::exception &exception)
-      {
-        std::istringstream words(exception.what());
-        std::string        message, word;
-        while (words >> word)
-          message += (message.empty() ? "" : " ") + word;
-        return message;
-      }
-    return "";
   }
 
 

@@ -6,6 +6,7 @@
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include "body.h"
+#include "refusals.h"
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/krylov_solver.h>
 #include <viscoplastic_contact/schur_solver.h>

@@ -4,6 +4,7 @@
 
 #include "body.h"
 #include "folder.h"
+#include "refusals.h"
 #include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/progress.h>
 

@@ -3,6 +3,7 @@
 // Integrals over stresses: homogeneous states, known by hand.
 
 #include "body.h"
+#include "refusals.h"
 #include <viscoplastic_contact/energy.h>
 
 #include <cmath>

@@ -8,6 +8,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include "body.h"
+#include "refusals.h"
 
 #include <cmath>
 #include <set>

@@ -6,6 +6,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include "body.h"
+#include "refusals.h"
 #include <viscoplastic_contact/initial_state.h>
 
 #include <cmath>

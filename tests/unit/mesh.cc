@@ -4,6 +4,7 @@
 // boundaries, normals of pieces, and what is refused. On any number of ranks.
 
 #include "body.h"
+#include "refusals.h"
 #include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_file.h>
 #include <viscoplastic_contact/mesh_ids.h>

@@ -5,6 +5,7 @@
 
 #include "body.h"
 #include "folder.h"
+#include "refusals.h"
 #include <viscoplastic_contact/parameter_description.h>
 #include <viscoplastic_contact/parameter_file.h>
 

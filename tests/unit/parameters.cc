@@ -4,6 +4,7 @@
 // wrong ones are refused. Reading of parameter files is in parameter_files.cc.
 
 #include "body.h"
+#include "refusals.h"
 #include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/time_schedule.h>
 

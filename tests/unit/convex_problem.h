@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+// Small convex problems of friction, and their solutions by projected gradients
+// on the dual.
+
+#include <deal.II/base/tensor.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include "random.h"
+#include <viscoplastic_contact/contact_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace Viscoplastic::Testing
+{
+  using namespace dealii;
+
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+
+
+
+  inline Tensor<1, 2>
+  clip(const Tensor<1, 2> &multiplier, const double bound)
+  {
+    const double size = multiplier.norm();
+    return size <= bound ? multiplier : multiplier * (bound / size);
+  }
+
+
+  /// J(u) = 1/2 u . A u - l . u + sum_c rho_c |s_c|. The unknowns of the face
+  /// are the last ones.
+  struct Problem
+  {
+    FullMatrix<double>  A;
+    Vector<double>      load, u_prev;
+    FrictionFace        face;
+    std::vector<double> bounds;
+
+    unsigned int
+    size() const
+    {
+      return load.size();
+    }
+
+    unsigned int
+    first() const
+    {
+      return size() - face.n_dofs();
+    }
+
+    Vector<double>
+    on_face(const Vector<double> &u) const
+    {
+      return Vector<double>(u.begin() + first(), u.end());
+    }
+
+    std::vector<Tensor<1, 2>>
+    slips(const Vector<double> &u) const
+    {
+      Vector<double> change(u);
+      change -= u_prev;
+      change = on_face(change);
+      std::vector<Tensor<1, 2>> result;
+      for (const auto &point : face.points)
+        result.push_back(slip(point, face.node_values(change, point.node)));
+      return result;
+    }
+
+    /// B^T lambda on all unknowns.
+    Vector<double>
+    force(const std::vector<Tensor<1, 2>> &multipliers) const
+    {
+      Vector<double> result(size());
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        {
+          const unsigned int node = face.points[p].node;
+          const Tensor<1, 3> f    = node_force(face.points[p], multipliers[p]);
+          for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
+            result[first() + face.first_dof[node] + i] += f[i];
+        }
+      return result;
+    }
+
+    /// l - A u.
+    Vector<double>
+    residual(const Vector<double> &u) const
+    {
+      Vector<double> r(size());
+      A.residual(r, u, load);
+      return r;
+    }
+
+    double
+    energy_norm(const Vector<double> &u) const
+    {
+      return std::sqrt(A.matrix_norm_square(u));
+    }
+
+    void
+    add_node(const unsigned int                            n_dofs,
+             const std::vector<std::vector<Tensor<1, 3>>> &planes)
+    {
+      for (const auto &rows : planes)
+        {
+          FrictionFace::Point point;
+          point.node       = face.n_nodes();
+          point.n_tangents = rows.size();
+          std::copy(rows.begin(), rows.end(), point.map.begin());
+          face.points.push_back(point);
+        }
+      face.first_dof.push_back(face.first_dof.back() + n_dofs);
+      face.first_point.push_back(face.points.size());
+    }
+  };
+
+
+
+  inline Vector<double>
+  solve_dense(FullMatrix<double> matrix, const Vector<double> &right_side)
+  {
+    matrix.gauss_jordan();
+    Vector<double> result(right_side.size());
+    matrix.vmult(result, right_side);
+    return result;
+  }
+
+
+
+  inline FullMatrix<double>
+  random_matrix(Random &random, const unsigned int n)
+  {
+    FullMatrix<double> G(n, n), A(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        G(i, j) = random.uniform();
+    G.mTmult(A, G);
+    for (unsigned int i = 0; i < n; ++i)
+      A(i, i) += 0.3;
+    return A;
+  }
+
+
+
+  inline Tensor<1, 3>
+  vector(const double x, const double y, const double z = 0.)
+  {
+    Tensor<1, 3> v;
+    v[0] = x;
+    v[1] = y;
+    v[2] = z;
+    return v;
+  }
+
+
+
+  /// Orthonormal rows in the first n components.
+  inline std::vector<Tensor<1, 3>>
+  random_rows(Random            &random,
+              const unsigned int n_tangents,
+              const unsigned int n)
+  {
+    std::vector<Tensor<1, 3>> rows;
+    while (rows.size() < n_tangents)
+      {
+        Tensor<1, 3> v;
+        for (unsigned int d = 0; d < n; ++d)
+          v[d] = random.uniform();
+        for (const auto &row : rows)
+          v -= (v * row) * row;
+        if (v.norm() > 0.1)
+          rows.push_back(v / v.norm());
+      }
+    return rows;
+  }
+
+
+
+  /// Nodes with bilateral contact (as many components as tangents) and with
+  /// given normal stress (one more).
+  inline Problem
+  random_problem(const unsigned int seed, const unsigned int n_tangents)
+  {
+    Random             random(seed);
+    Problem            problem;
+    const unsigned int n_nodes = random.integer(3, 6);
+    for (unsigned int n = 0; n < n_nodes; ++n)
+      {
+        const unsigned int n_dofs = n_tangents + random.integer(0, 1);
+        problem.add_node(n_dofs, {random_rows(random, n_tangents, n_dofs)});
+      }
+    const unsigned int n = random.integer(2, 6) + problem.face.n_dofs();
+    problem.A            = random_matrix(random, n);
+    problem.load.reinit(n);
+    problem.u_prev.reinit(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        problem.load[i]   = random.uniform();
+        problem.u_prev[i] = random.uniform(-0.3, 0.3);
+      }
+    for (unsigned int c = 0; c < problem.face.points.size(); ++c)
+      problem.bounds.push_back(random.uniform(0., 1.5));
+    return problem;
+  }
+
+
+
+  struct Solution
+  {
+    Vector<double>            u;
+    std::vector<Tensor<1, 2>> multipliers;
+  };
+
+
+
+  /**
+   * Projected gradients with Nesterov's extrapolation, restarted whenever it
+   * points uphill, on the dual
+   *
+   *     min 1/2 lambda . B A^-1 B^T lambda - lambda . B (A^-1 l - u_prev),
+   *     |lambda_c| <= rho_c,
+   *
+   * to rounding.
+   */
+  inline Solution
+  reference_solution(const Problem &problem)
+  {
+    const unsigned int n_points = problem.face.points.size();
+    FullMatrix<double> inverse(problem.A);
+    inverse.gauss_jordan();
+    const auto displacement = [&](const std::vector<Tensor<1, 2>> &lambda) {
+      Vector<double> right_side(problem.load), u(problem.size());
+      right_side -= problem.force(lambda);
+      inverse.vmult(u, right_side);
+      return u;
+    };
+
+    // The dual matrix, entry by entry, for cheap iterations.
+    const unsigned int        m = 2 * n_points;
+    std::vector<Tensor<1, 2>> lambda(n_points);
+    const auto                free_slips = problem.slips(displacement(lambda));
+    std::vector<double>       C(m * m), q(m);
+    for (unsigned int j = 0; j < m; ++j)
+      {
+        q[j]                 = free_slips[j / 2][j % 2];
+        lambda[j / 2][j % 2] = 1.;
+        const auto slips     = problem.slips(displacement(lambda));
+        for (unsigned int i = 0; i < m; ++i)
+          C[i * m + j] = free_slips[i / 2][i % 2] - slips[i / 2][i % 2];
+        lambda[j / 2][j % 2] = 0.;
+      }
+    double largest = 0.; // row sum norm
+    for (unsigned int i = 0; i < m; ++i)
+      {
+        double sum = 0.;
+        for (unsigned int j = 0; j < m; ++j)
+          sum += std::abs(C[i * m + j]);
+        largest = std::max(largest, sum);
+      }
+
+    std::vector<Tensor<1, 2>> extrapolated(lambda), old(lambda);
+    double                    momentum = 1.;
+    for (unsigned int iteration = 0; iteration < 200000; ++iteration)
+      {
+        old           = lambda;
+        double change = 0., size = 0., uphill = 0.;
+        for (unsigned int c = 0; c < n_points; ++c)
+          {
+            Tensor<1, 2> gradient;
+            for (unsigned int a = 0; a < 2; ++a)
+              {
+                gradient[a] = -q[2 * c + a];
+                for (unsigned int j = 0; j < m; ++j)
+                  gradient[a] +=
+                    C[(2 * c + a) * m + j] * extrapolated[j / 2][j % 2];
+              }
+            lambda[c] =
+              clip(extrapolated[c] - gradient / largest, problem.bounds[c]);
+            uphill += (extrapolated[c] - lambda[c]) * (lambda[c] - old[c]);
+            change = std::max(change, (lambda[c] - extrapolated[c]).norm());
+            size   = std::max(size, lambda[c].norm());
+          }
+        if (change <= 1e-15 * size)
+          break;
+        const double next =
+          uphill > 0. ? 1. :
+                        0.5 * (1. + std::sqrt(1. + 4. * momentum * momentum));
+        const double beta = uphill > 0. ? 0. : (momentum - 1.) / next;
+        momentum          = next;
+        for (unsigned int c = 0; c < n_points; ++c)
+          extrapolated[c] = lambda[c] + beta * (lambda[c] - old[c]);
+      }
+    return {displacement(lambda), lambda};
+  }
+} // namespace Viscoplastic::Testing

@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+// The contact solver with a dense stand-in for the bulk.
+
+#include <deal.II/lac/precondition.h>
+#include <deal.II/lac/solver_cg.h>
+
+#include "convex_problem.h"
+#include <viscoplastic_contact/contact_solver.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace Viscoplastic::Testing
+{
+  using namespace dealii;
+
+  /**
+   * A dense stand-in for the bulk. Condensed, it behaves like a direct solver:
+   * the bulk follows the face at once. Frozen, it behaves like an iterative
+   * one: the face matrix is that of a bulk at rest, and corrections are only as
+   * accurate as asked for.
+   */
+  class DenseBulk : public BulkSolver
+  {
+  public:
+    DenseBulk(const Problem &problem, const bool condensed)
+      : u(problem.u_prev)
+      , problem(problem)
+      , condensed(condensed)
+      , inverse(problem.A)
+      , w(problem.size())
+    {
+      inverse.gauss_jordan();
+      const unsigned int first = problem.first(), n = problem.face.n_dofs();
+      FullMatrix<double> K(n, n);
+      if (condensed)
+        {
+          // The Schur complement is the inverse of the inverse's block.
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int j = 0; j < n; ++j)
+              K(i, j) = inverse(first + i, first + j);
+          K.gauss_jordan();
+        }
+      else
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            K(i, j) = problem.A(first + i, first + j);
+      matrix = std::make_unique<DenseFaceMatrix>(problem.face, std::move(K));
+      relax_bulk();
+    }
+
+    Vector<double> u;
+
+    /// Start from a displacement other than u_prev.
+    void
+    start_at(const Vector<double> &start)
+    {
+      u = start;
+      relax_bulk();
+    }
+
+    bool
+    is_exact() const override
+    {
+      return true;
+    }
+
+    std::string
+    name() const override
+    {
+      return "dense";
+    }
+
+    unsigned int
+    solve(const DistributedVector &, DistributedVector &, const double) override
+    {
+      ADD_FAILURE() << "The contact solver has no business here.";
+      return 0;
+    }
+
+    void
+    begin(const DistributedVector &, DistributedVector &) override
+    {
+      ADD_FAILURE() << "The contact solver has no business here.";
+    }
+
+    const FaceMatrix &
+    face_matrix() const override
+    {
+      return *matrix;
+    }
+
+    void
+    face_residual(Vector<double> &r) override
+    {
+      r = problem.on_face(problem.residual(u));
+    }
+
+    void
+    move_face(const Vector<double> &change) override
+    {
+      for (unsigned int i = 0; i < change.size(); ++i)
+        u[problem.first() + i] += change[i];
+      relax_bulk();
+    }
+
+    void
+    set_truncation(const FaceTruncation &truncation_,
+                   const bool /*may_rebuild*/) override
+    {
+      truncation = truncation_;
+    }
+
+    double
+    dual_norm(const Vector<double> &force) override
+    {
+      return std::sqrt(inverse.matrix_norm_square(unbalanced(force)));
+    }
+
+    double
+    confirmed_dual_norm(const Vector<double> &force,
+                        unsigned int & /*iterations*/) override
+    {
+      return dual_norm(force);
+    }
+
+    double
+    energy_norm() const override
+    {
+      return problem.energy_norm(u);
+    }
+
+    unsigned int
+    correct(const Vector<double> &force,
+            const double          tolerance,
+            Vector<double>       &face_part) override
+    {
+      Vector<double> r = unbalanced(force);
+      project(r);
+      w         = 0.;
+      face_part = 0.;
+      if (r.l2_norm() == 0.)
+        return 0;
+      struct Truncated
+      {
+        const DenseBulk &bulk;
+        void
+        vmult(Vector<double> &y, const Vector<double> &x) const
+        {
+          bulk.problem.A.vmult(y, x);
+          const FrictionFace &face = bulk.problem.face;
+          for (unsigned int n = 0; n < face.n_nodes(); ++n)
+            for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+              for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
+                y[bulk.problem.first() + face.first_dof[n] + i] +=
+                  bulk.truncation.spring[n][i][j] *
+                  x[bulk.problem.first() + face.first_dof[n] + j];
+          bulk.project(y);
+        }
+      };
+      // Springs tend to infinity where a point comes to rest.
+      struct Diagonal
+      {
+        const DenseBulk &bulk;
+        void
+        vmult(Vector<double> &y, const Vector<double> &x) const
+        {
+          y                        = x;
+          const FrictionFace &face = bulk.problem.face;
+          for (unsigned int n = 0; n < face.n_nodes(); ++n)
+            {
+              Tensor<2, 3> block = Tensor<2, 3>(unit_symmetric_tensor<3>()) +
+                                   bulk.truncation.spring[n];
+              block = invert(block);
+              for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+                {
+                  const unsigned int at =
+                    bulk.problem.first() + face.first_dof[n];
+                  y[at + i] = 0.;
+                  for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
+                    y[at + i] += block[i][j] * x[at + j];
+                }
+            }
+          bulk.project(y);
+        }
+      };
+      ReductionControl         control(1000, 0., condensed ? 1e-13 : tolerance);
+      SolverCG<Vector<double>> cg(control);
+      try
+        {
+          cg.solve(Truncated{*this}, w, r, Diagonal{*this});
+        }
+      catch (const SolverControl::NoConvergence &)
+        {
+          // As good as rounding lets it be.
+        }
+      face_part = problem.on_face(w);
+      return control.last_step();
+    }
+
+    SearchTerms
+    search_terms(const Vector<double> &face_part) override
+    {
+      for (unsigned int i = 0; i < face_part.size(); ++i)
+        w[problem.first() + i] = face_part[i];
+      if (condensed)
+        {
+          const Vector<double> start(u);
+          u += w;
+          relax_bulk();
+          w = u;
+          w -= start;
+          u = start;
+        }
+      return {problem.residual(u) * w, problem.A.matrix_norm_square(w)};
+    }
+
+    void
+    take_step(const double step) override
+    {
+      u.add(step, w);
+    }
+
+    unsigned int
+    finish() override
+    {
+      is_finished = true;
+      return 0;
+    }
+
+    bool is_finished = false;
+
+  private:
+    Vector<double>
+    unbalanced(const Vector<double> &force) const
+    {
+      Vector<double> r = problem.residual(u);
+      for (unsigned int i = 0; i < force.size(); ++i)
+        r[problem.first() + i] -= force[i];
+      return r;
+    }
+
+    void
+    project(Vector<double> &v) const
+    {
+      Vector<double> c = problem.on_face(v);
+      truncation.project(problem.face, c);
+      for (unsigned int i = 0; i < c.size(); ++i)
+        v[problem.first() + i] = c[i];
+    }
+
+    /// Solve for the unknowns off the face.
+    void
+    relax_bulk()
+    {
+      const unsigned int n = problem.first();
+      if (!condensed || n == 0)
+        return;
+      FullMatrix<double> K(n, n);
+      Vector<double>     r(n);
+      const auto         residual = problem.residual(u);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          r[i] = residual[i];
+          for (unsigned int j = 0; j < n; ++j)
+            K(i, j) = problem.A(i, j);
+        }
+      const Vector<double> change = solve_dense(K, r);
+      for (unsigned int i = 0; i < n; ++i)
+        u[i] += change[i];
+    }
+
+    const Problem                   &problem;
+    const bool                       condensed;
+    FullMatrix<double>               inverse;
+    std::unique_ptr<DenseFaceMatrix> matrix;
+    FaceTruncation                   truncation;
+    Vector<double>                   w;
+  };
+
+
+
+  struct Result
+  {
+    Vector<double> u;
+    FrictionState  state;
+    ContactReport  report;
+  };
+
+
+
+  inline Result
+  solve(const Problem        &problem,
+        const bool            condensed,
+        const double          tolerance,
+        FrictionState         state,
+        const Vector<double> &start,
+        const unsigned int    max_iterations = 60)
+  {
+    DenseBulk bulk(problem, condensed);
+    bulk.start_at(start);
+    Vector<double> increment(start);
+    increment -= problem.u_prev;
+    increment = problem.on_face(increment);
+    const ContactReport report =
+      ContactSolver(max_iterations)
+        .solve(bulk, problem.face, problem.bounds, tolerance, increment, state);
+    EXPECT_TRUE(bulk.is_finished);
+    // The increment returned is that of the displacement.
+    Vector<double> change(bulk.u);
+    change -= problem.u_prev;
+    change = problem.on_face(change);
+    change -= increment;
+    EXPECT_LT(change.l2_norm(), 1e-12 * (1. + increment.l2_norm()));
+    return {bulk.u, state, report};
+  }
+
+
+
+  inline Result
+  solve(const Problem &problem, const bool condensed, const double tolerance)
+  {
+    return solve(problem,
+                 condensed,
+                 tolerance,
+                 FrictionState(problem.face.points.size()),
+                 problem.u_prev);
+  }
+
+
+
+  /// J(u) minus the dual energy of the multipliers: no less than half the
+  /// squared energy error.
+  inline double
+  duality_gap(const Problem &problem, const Result &result)
+  {
+    Vector<double> unbalanced = problem.residual(result.u);
+    unbalanced -= problem.force(result.state.multiplier);
+    double     gap   = 0.5 * (unbalanced * solve_dense(problem.A, unbalanced));
+    const auto slips = problem.slips(result.u);
+    for (unsigned int c = 0; c < slips.size(); ++c)
+      if (slips[c].norm() > 1e-14) // infinite bounds
+        gap += problem.bounds[c] * slips[c].norm() -
+               result.state.multiplier[c] * slips[c];
+    return gap;
+  }
+
+
+
+  /// The friction law, point by point, and the bound of the error.
+  inline void
+  expect_solution(const Problem  &problem,
+                  const Result   &result,
+                  const Solution &reference,
+                  const double    tolerance)
+  {
+    Vector<double> error(result.u);
+    error -= reference.u;
+    const double size = problem.energy_norm(reference.u);
+    EXPECT_LE(result.report.relative_error, tolerance);
+    EXPECT_LE(problem.energy_norm(error), tolerance * size * 1.01 + 1e-12);
+    EXPECT_LE(problem.energy_norm(error),
+              std::sqrt(2. * result.report.duality_gap) * 1.01 + 1e-12);
+
+    const auto   slips      = problem.slips(result.u);
+    const double slip_scale = problem.on_face(result.u).linfty_norm() +
+                              problem.on_face(problem.u_prev).linfty_norm();
+    for (unsigned int c = 0; c < slips.size(); ++c)
+      {
+        const double       bound  = problem.bounds[c];
+        const Tensor<1, 2> lambda = result.state.multiplier[c];
+        EXPECT_LE(lambda.norm(), bound * (1. + 1e-14));
+        EXPECT_LT((slips[c] - result.state.slip[c]).norm(), 1e-13 * slip_scale);
+        if (result.state.sticks[c])
+          {
+            EXPECT_EQ(result.state.slip[c].norm(), 0.);
+          }
+        else if (bound > 0.)
+          {
+            const Tensor<1, 2> s = result.state.slip[c];
+            EXPECT_GT(s.norm(), 0.);
+            // Rounding blurs the direction of a slip that has hardly begun;
+            // the solver then certifies with the residual instead.
+            const bool is_blurred = s.norm() < 1e-9 * result.u.linfty_norm();
+            EXPECT_LE((lambda - bound * s / s.norm()).norm(),
+                      (is_blurred ? 1e-5 : 1e-13) * bound);
+          }
+        else
+          {
+            EXPECT_EQ(lambda.norm(), 0.);
+          }
+      }
+    // Multipliers may not be unique, but their forces are.
+    Vector<double> force = problem.force(result.state.multiplier);
+    force -= problem.force(reference.multipliers);
+    EXPECT_LT(force.l2_norm(),
+              20. * tolerance * (problem.load.l2_norm() + 1.) + 1e-10);
+  }
+
+
+
+  inline void
+  count_sets(const Result &result, unsigned int &n_stick, unsigned int &n_slip)
+  {
+    for (const bool sticks : result.state.sticks)
+      ++(sticks ? n_stick : n_slip);
+  }
+} // namespace Viscoplastic::Testing

@@ -150,6 +150,8 @@ namespace Viscoplastic
     copy(T *target, const std::size_t n)
     {
       AssertThrow(n <= (text.size() - position) / sizeof(T), too_short());
+      if (n == 0)
+        return; // the target may be null, which memcpy() must not be given
       std::memcpy(target, text.data() + position, n * sizeof(T));
       position += n * sizeof(T);
     }

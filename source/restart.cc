@@ -330,8 +330,8 @@ namespace Viscoplastic
     const std::string version =
       VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
     if (checkpoint.version != version)
-      console.remark("Note: the checkpoint is from version " +
-                     excerpt(checkpoint.version) + ", this is " + version +
+      console.remark("Note: the checkpoint is from version '" +
+                     excerpt(checkpoint.version) + "', this is " + version +
                      ".");
     if (!changes.allowed.empty())
       console.remark("Note: changed since the checkpoint: " +

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/study_fit.h>
+#include <viscoplastic_contact/study_cost.h>
 
 #include <optional>
 #include <string>

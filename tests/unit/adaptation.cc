@@ -4,26 +4,18 @@
 // test holds on any number of ranks.
 
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_system.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include "body.h"
 #include <viscoplastic_contact/error_estimator.h>
-#include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
 #include <viscoplastic_contact/residual_estimator.h>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -31,6 +23,9 @@ namespace
 {
   using namespace dealii;
   using namespace Viscoplastic;
+  using Testing::boundary;
+  using Testing::box;
+  using Testing::geometry;
 
   using Stress = SymmetricTensor<2, 3>;
 
@@ -54,57 +49,12 @@ namespace
 
 
 
-  /// Parameters from a text, which each rank reads from a file of its own.
-  std::unique_ptr<Parameters>
-  read_parameters(const std::string &text)
-  {
-    const std::string file =
-      std::filesystem::temp_directory_path() /
-      ("adaptation_" + std::to_string(getpid()) + ".prm");
-    std::ofstream(file) << text;
-    auto result = std::make_unique<Parameters>(file);
-    std::remove(file.c_str());
-    return result;
-  }
-
-
-
-  std::string
-  boundary(const unsigned int id, const std::string &entries)
-  {
-    return "subsection Boundary " + std::to_string(id) + "\n" + entries +
-           "end\n";
-  }
-
-
-
-  std::string
-  geometry(const std::string &generator, const std::string &arguments)
-  {
-    return "subsection Geometry\nset Generator = " + generator +
-           "\nset Arguments = " + arguments + "\nend\n";
-  }
-
-
-
-  /// (0,2) x (0,1)^(dim-1) in 4 x 2 (x 2) cells.
+  /// The box in 4 x 2 (x 2) cells, all of whose faces have one role.
   template <int dim>
   std::string
-  box()
+  box_with(const std::string &entries)
   {
-    return geometry("subdivided_hyper_rectangle",
-                    dim == 2 ? "4, 2 : 0, 0 : 2, 1 : true" :
-                               "4, 2, 2 : 0, 0, 0 : 2, 1, 1 : true");
-  }
-
-
-
-  /// The box, all of whose faces have one role.
-  template <int dim>
-  std::string
-  box(const std::string &entries)
-  {
-    std::string text = box<dim>();
+    std::string text = box<dim>(2);
     for (unsigned int id = 0; id < 2 * dim; ++id)
       text += boundary(id, entries);
     return text;
@@ -112,24 +62,11 @@ namespace
 
 
 
-  /// A scene with its mesh and all that depends on the mesh.
   template <int dim>
-  struct Body
+  struct Body : public Testing::Body<dim>
   {
-    explicit Body(const std::string &text,
-                  const bool         at_quadrature_points = false,
-                  const bool         mean_dilatation      = false)
-      : parameters(read_parameters("set Dimension = " + std::to_string(dim) +
-                                   "\n" + text))
-      , scene(*parameters)
-      , triangulation(MPI_COMM_WORLD)
-      , fe(FE_Q<dim>(1), dim)
-      , dof_handler(triangulation)
-      , at_quadrature_points(at_quadrature_points)
-      , mean_dilatation(mean_dilatation)
-    {
-      make_mesh(parameters->geometry, triangulation);
-    }
+    using Testing::Body<dim>::Body;
+    using Testing::Body<dim>::sampling;
 
     /// Move inner points of the box, so that no cell stays a parallelogram.
     void
@@ -145,50 +82,7 @@ namespace
           y[1] -= 0.15 * bubble * x[0];
           return y;
         },
-        triangulation);
-    }
-
-    void
-    refine_where(const std::function<bool(const Point<dim> &)> &condition)
-    {
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned() && condition(cell->center()))
-          cell->set_refine_flag();
-      triangulation.execute_coarsening_and_refinement();
-    }
-
-    void
-    set_up()
-    {
-      sampling.reset();
-      dof_handler.distribute_dofs(fe);
-      scene.inspect(triangulation);
-      space    = std::make_unique<AdmissibleSpace<dim>>(dof_handler, scene);
-      moduli   = std::make_unique<ElasticModuli<dim>>(*space);
-      sampling = std::make_unique<StressSampling<dim>>(*space,
-                                                       *moduli,
-                                                       at_quadrature_points,
-                                                       mean_dilatation);
-    }
-
-    DistributedVector
-    interpolate(
-      const std::function<Tensor<1, dim>(const Point<dim> &)> &field) const
-    {
-      DistributedVector owned   = space->owned_vector(),
-                        ghosted = space->ghosted_vector();
-      for (const auto &cell : dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
-          for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const auto dof = cell->vertex_dof_index(v, d);
-                if (space->owned.is_element(dof))
-                  owned.begin()[space->owned.index_within_set(dof)] =
-                    field(cell->vertex(v))[d];
-              }
-      ghosted = owned;
-      return ghosted;
+        this->triangulation);
     }
 
     IrreversibleStress
@@ -221,16 +115,6 @@ namespace
         result = std::max(result, (z[i] - exact[i]).norm());
       return Utilities::MPI::max(result, MPI_COMM_WORLD);
     }
-
-    std::unique_ptr<Parameters>               parameters;
-    Scene<dim>                                scene;
-    parallel::distributed::Triangulation<dim> triangulation;
-    FESystem<dim>                             fe;
-    DoFHandler<dim>                           dof_handler;
-    const bool                            at_quadrature_points, mean_dilatation;
-    std::unique_ptr<AdmissibleSpace<dim>> space;
-    std::unique_ptr<ElasticModuli<dim>>   moduli;
-    std::unique_ptr<StressSampling<dim>>  sampling;
   };
 
 
@@ -339,7 +223,8 @@ namespace
     constexpr int dim = TypeParam::value;
     for (const bool at_quadrature_points : {false, true})
       {
-        Body<dim> body(box<dim>("set Role = clamped\n"), at_quadrature_points);
+        Body<dim> body(box_with<dim>("set Role = clamped\n"),
+                       at_quadrature_points);
         body.distort();
         body.refine_where([](const Point<dim> &x) { return x[0] > 0.7; });
         body.set_up();
@@ -401,7 +286,7 @@ namespace
     for (const bool distorted : {false, true})
       for (const bool at_quadrature_points : {false, true})
         {
-          Body<dim> body(box<dim>("set Role = clamped\n"),
+          Body<dim> body(box_with<dim>("set Role = clamped\n"),
                          at_quadrature_points);
           if (distorted)
             body.distort();
@@ -443,7 +328,7 @@ namespace
   TYPED_TEST(Adaptation, TransferLeavesOutWhatIsAbsent)
   {
     constexpr int dim = TypeParam::value;
-    Body<dim>     body(box<dim>("set Role = clamped\n"));
+    Body<dim>     body(box_with<dim>("set Role = clamped\n"));
     body.set_up();
     State<dim> state;
     state.u           = body.interpolate(linear_displacement<dim>);
@@ -492,7 +377,7 @@ namespace
     normal_stress << stress[1][1];
 
     std::string text =
-      box<dim>() + boundary(0, "set Role = clamped\n") +
+      box<dim>(2) + boundary(0, "set Role = clamped\n") +
       boundary(1, "set Role = clamped\n") +
       boundary(2,
                std::string("set Role = contact\n") +
@@ -600,7 +485,7 @@ namespace
   TYPED_TEST(Adaptation, EstimateSeesBodyForce)
   {
     constexpr int dim = TypeParam::value;
-    Body<dim>     body(box<dim>("set Role = clamped\n") +
+    Body<dim>     body(box_with<dim>("set Role = clamped\n") +
                    "subsection Loads\nset Body force = 0; 2*t" +
                    (dim == 3 ? "; 0" : "") + "\nend\n");
     body.set_up();
@@ -625,7 +510,7 @@ namespace
     constexpr int dim = TypeParam::value;
     for (const bool left_is_finer : {false, true})
       {
-        Body<dim> body(box<dim>("set Role = clamped\n"));
+        Body<dim> body(box_with<dim>("set Role = clamped\n"));
         body.refine_where([left_is_finer](const Point<dim> &x) {
           return (x[0] < 1.) == left_is_finer;
         });
@@ -666,7 +551,7 @@ namespace
     // One strain, two moduli: the traction jumps by eps_xx (lambda + 2 mu) and
     // each side is scaled by its own 1/(2 mu).
     constexpr int dim = TypeParam::value;
-    Body<dim>     body(box<dim>("set Role = clamped\n") +
+    Body<dim>     body(box_with<dim>("set Role = clamped\n") +
                    "subsection Material\n"
                        "set Young's modulus = if(x < 1, 1, 3)\n"
                        "set Poisson's ratio = 0\nend\n");
@@ -722,7 +607,7 @@ namespace
   TYPED_TEST(Adaptation, MarkingRespectsLevels)
   {
     constexpr int        dim = TypeParam::value;
-    Body<dim>            body(box<dim>("set Role = clamped\n"));
+    Body<dim>            body(box_with<dim>("set Role = clamped\n"));
     RefinementParameters parameters;
     parameters.refinement_fraction = 0.8;
     parameters.coarsening_fraction = 0.1;
@@ -764,7 +649,7 @@ namespace
   TYPED_TEST(Adaptation, MarkingRespectsTheBudget)
   {
     constexpr int        dim = TypeParam::value;
-    Body<dim>            body(box<dim>("set Role = clamped\n"));
+    Body<dim>            body(box_with<dim>("set Role = clamped\n"));
     RefinementParameters parameters;
     parameters.refinement_fraction = 0.9;
     parameters.coarsening_fraction = 0.02;

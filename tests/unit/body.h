@@ -134,9 +134,14 @@ namespace Viscoplastic::Testing
       triangulation.execute_coarsening_and_refinement();
     }
 
+    /// Also after a change of the mesh.
     void
     set_up()
     {
+      face.reset();
+      loads.reset();
+      laws.reset();
+      sampling.reset();
       scene.inspect(triangulation);
       dof_handler.distribute_dofs(fe);
       space    = std::make_unique<AdmissibleSpace<dim>>(dof_handler, scene);

@@ -347,6 +347,30 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<const Expression<dim> *>
+  BoundaryCondition<dim>::data() const
+  {
+    std::vector<const Expression<dim> *> result;
+    const auto add = [&](const std::optional<Expression<dim>> &datum) {
+      if (datum)
+        result.push_back(&*datum);
+    };
+    for (const auto &component : displacement)
+      add(component);
+    add(foundation_displacement);
+    add(friction_bound);
+    add(friction_coefficient);
+    add(normal_stress);
+    for (const auto *vector : {&traction, &foundation_motion})
+      if (*vector)
+        for (unsigned int d = 0; d < dim; ++d)
+          result.push_back(&(**vector)[d]);
+    return result;
+  }
+
+
+
+  template <int dim>
   bool
   BoundaryCondition<dim>::bound_depends_on_time() const
   {

@@ -220,6 +220,20 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  Expression<dim>::may_jump() const
+  {
+    if (!parser || !time_dependent)
+      return false;
+    bool result = text.find_first_of("<>=!?") != std::string::npos;
+    for (const char *function : {"if", "int", "ceil", "floor", "rint", "sign"})
+      result = result || mentions(text, function);
+    return result;
+  }
+
+
+
+  template <int dim>
   Tensor<1, dim>
   Expression<dim>::gradient(const Point<dim> &x, const double t) const
   {

@@ -2,6 +2,7 @@
 #include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <viscoplastic_contact/jump_in_time.h>
 #include <viscoplastic_contact/mesh_ids.h>
 #include <viscoplastic_contact/mesh_pieces.h>
 #include <viscoplastic_contact/messages.h>
@@ -130,6 +131,9 @@ namespace Viscoplastic
     inspect_unused_entries();
     inspect_flatness(triangulation);
     inspect_junctions(triangulation);
+    const std::string jumps = warning_of_jumps(*this, triangulation);
+    if (!jumps.empty())
+      warnings.push_back(jumps);
     make_materials(material_ids(triangulation));
     if (exact_solution)
       {

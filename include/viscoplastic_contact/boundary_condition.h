@@ -138,6 +138,10 @@ namespace Viscoplastic
       return all || role == BoundaryRole::clamped || is_glued();
     }
 
+    /// All of the data, those of the friction bound included.
+    std::vector<const Expression<dim> *>
+    data() const;
+
     /// Names of the entries that are given in @p parameters (the ones that it
     /// was made of), but mean nothing for this role and friction law.
     std::vector<std::string>

@@ -81,6 +81,18 @@ namespace Viscoplastic
       return position_dependent;
     }
 
+    /// Whether it depends on time and has conditions or steps in it; poles are
+    /// not looked for.
+    bool
+    may_jump() const;
+
+    /// The parameter that gives it.
+    const std::string &
+    name_of_entry() const
+    {
+      return entry;
+    }
+
     /// True for a constant expression of value zero.
     bool
     is_zero() const

@@ -195,6 +195,10 @@ def load_jumps(size, report):
                 "load_jump_2d", **{"Time/Phases": phases, "Time/Scheme": scheme}
             )
             report.identities(result, 1e-10)
+            if "Data jump in time ('Boundary 0/Traction' at t = 0.5," not in (
+                result.stdout
+            ):
+                raise AssertionError("the program does not say so")
             k = result["k"].max()
             report.figure(
                 f"{scheme}, jump {name}: error, of what creeps in a step",

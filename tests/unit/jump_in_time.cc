@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Jumps of data in time, and what is none: kinks, steep ramps, loads that
+// wander.
+
+#include <viscoplastic_contact/jump_in_time.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+
+  std::optional<double>
+  jump_of(const std::string &text, const std::string &phases = "0.5: 3, 2: 40")
+  {
+    std::vector<Point<2>> places;
+    for (unsigned int i = 0; i < 64; ++i)
+      places.emplace_back((i + 0.5) / 64., 1.);
+    return find_jump(Expression<2>(text, "Traction"),
+                     places,
+                     TimeSchedule(phases));
+  }
+
+
+
+  TEST(JumpInTime, IsFoundWhereItIs)
+  {
+    for (const char *time : {"0.37", "0.5", "1.23456789", "1.999999"})
+      {
+        const std::string t = time;
+        for (const std::string &text : {"if(t < " + t + ", 0, 1)",
+                                        "(t >= " + t + ")*x",
+                                        "1e-9*sin(t)*(t < " + t + " ? 1 : 2)",
+                                        "1e5*(1 + floor(min(1, t/" + t + ")))"})
+          {
+            const auto jump = jump_of(text);
+            ASSERT_TRUE(jump) << text;
+            EXPECT_NEAR(*jump, std::stod(t), 1e-11) << text;
+          }
+      }
+    // Right after the initial state.
+    EXPECT_NEAR(jump_of("if(t > 0, 1, 0)").value_or(1.), 0., 1e-11);
+    // On a part of the boundary.
+    EXPECT_NEAR(jump_of("if(x < 0.2 && t > 1, 1, 0)").value_or(0.), 1., 1e-11);
+    // In a phase that is a billionth of the others, and for once.
+    EXPECT_TRUE(
+      jump_of("if(t < 0.5000000005, 0, 1)", "0.5: 10, 0.500000001: 1, 1: 10"));
+    EXPECT_TRUE(jump_of("if(abs(t - 1) < 0.01, 0, 1)"));
+  }
+
+
+
+  TEST(JumpInTime, OtherThingsAreNone)
+  {
+    for (const char *text : {"if(t < 1, t, 2 - t)",               // a kink
+                             "if(t < 1, 0, min(1, 1e6*(t - 1)))", // a ramp
+                             "if(x < 0.5, t, 0)",                 // in space
+                             "if(abs(x - t) < 0.2, 1, 0)",        // wanders
+                             "if(t < 1, 0, 0.02) + sin(t)",       // small
+                             "if(t < 1, 0, 0)",
+                             "if(t < 1, t, 1/(2 - t))",
+                             "if(t > 2, 1, 0)", // later
+                             "min(t, 2 - t)*exp(-x)",
+                             "if(x > 2, 1, 0)"})
+      EXPECT_FALSE(jump_of(text)) << text << ": " << *jump_of(text);
+  }
+
+
+
+  TEST(JumpInTime, IsLookedForWhereItMayBe)
+  {
+    for (const char *text : {"if(t > 1, 1, 0)", "t > 1", "rint(t)", "t != 1"})
+      EXPECT_TRUE(Expression<2>(text, "").may_jump()) << text;
+    for (const char *text :
+         {"min(t, 1)", "if(x > 1, 1, 0)", "sin(pi*t)", "1", "abs(t - 1)"})
+      EXPECT_FALSE(Expression<2>(text, "").may_jump()) << text;
+  }
+} // namespace

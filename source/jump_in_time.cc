@@ -75,6 +75,8 @@ namespace Viscoplastic
     std::vector<Point<dim>>
     places_in(const std::vector<Iterator> &parts)
     {
+      if (parts.empty())
+        return {};
       const std::size_t stride =
         std::max<std::size_t>(1, parts.size() / n_places);
       const double       in_each = double(n_places) * stride / parts.size();

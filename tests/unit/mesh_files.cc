@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Mesh files: the same meshes in all formats, those of other programs, and what
+// is refused. On any number of ranks.
+
+#include "meshes.h"
+#include <viscoplastic_contact/mesh_file.h>
+#include <viscoplastic_contact/mesh_pieces.h>
+
+using namespace Viscoplastic;
+using namespace Viscoplastic::Testing;
+
+namespace
+{
+  const std::string directory =
+    std::string(VISCOPLASTIC_SOURCE_DIR) + "/prm/verification/meshes/";
+
+  /// The files with two materials: the same mesh in all formats.
+  template <int dim>
+  std::vector<std::string>
+  two_materials()
+  {
+    const std::string name = dim == 2 ? "two_materials" : "two_materials_3d";
+    std::vector<std::string> files;
+    for (const char *end : {"_2.msh", "_4.msh", ".ucd", ".vtk", ".inp"})
+      files.push_back(directory + name + end);
+    return files;
+  }
+
+
+
+  std::string
+  content(const std::string &file)
+  {
+    std::ifstream     input(file);
+    std::stringstream text;
+    text << input.rdbuf();
+    EXPECT_FALSE(text.str().empty()) << file;
+    return text.str();
+  }
+
+
+
+  /// A mesh file with that text is refused with the end of the sentence.
+  void
+  expect_text_refused(const std::string &text,
+                      const std::string &suffix,
+                      const std::string &reason)
+  {
+    const TemporaryFile file(text, suffix);
+    expect_mesh_refused<2>(from_file(file.name),
+                           "The mesh file '" + file.name + "' cannot be read");
+    expect_mesh_refused<2>(from_file(file.name), reason);
+  }
+} // namespace
+
+
+
+template <typename Dim>
+struct MeshFiles : public testing::Test
+{};
+TYPED_TEST_SUITE(MeshFiles, Dimensions, );
+
+
+
+TYPED_TEST(MeshFiles, HaveTheSameIdsInAllFormats)
+{
+  constexpr int dim = TypeParam::value;
+  for (const std::string &file : two_materials<dim>())
+    {
+      SCOPED_TRACE(file);
+      const auto mesh = make<dim>(from_file(file));
+      expect_measures(volumes(*mesh), {{10, 1.}, {20, 1.}});
+      std::map<unsigned int, double> expected{{1, 2.},
+                                              {2, 1.},
+                                              {3, 2.},
+                                              {4, 1.}};
+      if (dim == 3)
+        expected.insert({{5, 2.}, {6, 2.}});
+      expect_measures(areas(*mesh), expected);
+      EXPECT_DOUBLE_EQ(piece_normal(*mesh, 1).normal[1], -1.);
+      EXPECT_DOUBLE_EQ(piece_normal(*mesh, 2).normal[0], 1.);
+      for (const auto &cell : mesh->active_cell_iterators())
+        {
+          if (cell->is_locally_owned())
+            {
+              EXPECT_EQ(cell->material_id(),
+                        cell->center()[0] < 1. ? 10u : 20u);
+            }
+        }
+    }
+}
+
+
+
+TYPED_TEST(MeshFiles, AreRefinedAndMovedAsOthers)
+{
+  constexpr int      dim        = TypeParam::value;
+  GeometryParameters geometry   = from_file(two_materials<dim>()[1]);
+  geometry.rotation_angle       = 90.;
+  geometry.translation          = dim == 2 ? "3, 0" : "3, 0, 0";
+  geometry.global_refinements   = 1;
+  geometry.boundary_refinements = "4: 2, 2: 1";
+  const auto mesh               = make<dim>(geometry);
+  expect_measures(volumes(*mesh), {{10, 1.}, {20, 1.}});
+  EXPECT_NEAR(areas(*mesh)[4], 1., 1e-12);
+  EXPECT_NEAR(areas(*mesh)[3], 2., 1e-12);
+  // 4 was at x = 0 and is at y = 0 now.
+  EXPECT_NEAR(piece_normal(*mesh, 4).normal[1], -1., 1e-14);
+  EXPECT_EQ(mesh->n_global_levels(), 4u);
+  // Hanging nodes on boundary 1, whose faces have several sizes.
+  double smallest = 1., largest = 0.;
+  for (const auto &cell : mesh->active_cell_iterators())
+    if (cell->is_locally_owned())
+      for (const unsigned int f : cell->face_indices())
+        if (cell->at_boundary(f) && cell->face(f)->boundary_id() == 1)
+          {
+            smallest = std::min(smallest, cell->face(f)->diameter());
+            largest  = std::max(largest, cell->face(f)->diameter());
+          }
+  smallest = Utilities::MPI::min(smallest, MPI_COMM_WORLD);
+  largest  = Utilities::MPI::max(largest, MPI_COMM_WORLD);
+  EXPECT_NEAR(largest / smallest, 4., 1e-10);
+}
+
+
+
+TEST(MeshFilesRefused, WhereThereIsNoFile)
+{
+  const std::string none = directory + "absent.msh";
+  expect_mesh_refused<2>(from_file(none),
+                         "The mesh file '" + none + "' does not exist.");
+  expect_mesh_refused<2>(from_file(directory), "is a directory.");
+  expect_mesh_refused<2>(from_file("/dev/zero"), "is not a regular file.");
+  const TemporaryFile empty("\n \n", ".msh");
+  expect_mesh_refused<2>(from_file(empty.name), "is empty.");
+  const TemporaryFile other(content(two_materials<2>()[0]), ".grid");
+  expect_mesh_refused<2>(from_file(other.name),
+                         "cannot be told from its name; set 'Geometry/File "
+                         "format' to msh, ucd, vtk or abaqus.");
+  GeometryParameters geometry = from_file(other.name);
+  geometry.file_format        = "msh";
+  EXPECT_EQ(make<2>(geometry)->n_global_active_cells(), 8u);
+  geometry.file_format = "vtk";
+  expect_mesh_refused<2>(geometry,
+                         "as vtk: line 1: expected #, found '$MeshFormat'.");
+}
+
+
+
+TEST(MeshFilesRefused, OfAnotherDimension)
+{
+  for (const std::string &file : two_materials<3>())
+    expect_mesh_refused<2>(from_file(file), "'Dimension' is 2");
+  for (const std::string &file : two_materials<2>())
+    expect_mesh_refused<3>(from_file(file),
+                           "it has no hexahedra but quadrilaterals, and "
+                           "'Dimension' is 3");
+  expect_text_refused(replaced(content(two_materials<2>()[2]),
+                               "2 0.0 0.5 0.0",
+                               "2 0.0 0.5 0.1"),
+                      ".ucd",
+                      "not in a plane z = const.");
+}
+
+
+
+TEST(MeshFilesRefused, WithOtherCells)
+{
+  expect_text_refused("3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 0 tri 1 2 3\n",
+                      ".ucd",
+                      "line 5: this element is a triangle; only quadrilaterals "
+                      "and hexahedra with nodes at their corners are "
+                      "supported (in Gmsh, set Mesh.RecombineAll = 1");
+  expect_text_refused("*NODE\n1, 0, 0\n2, 1, 0\n3, 0, 1\n"
+                      "*ELEMENT, TYPE=CPE3\n1, 1, 2, 3\n",
+                      ".inp",
+                      "line 6: this element is a CPE3; only");
+  expect_text_refused(replaced(content(two_materials<2>()[0]),
+                               "\n1 1 2 1 1 1 4\n",
+                               "\n1 8 2 1 1 1 4 7\n"),
+                      ".msh",
+                      "this element is a line of second order; only");
+}
+
+
+
+TEST(MeshFilesRefused, WithNumbersBeyondMeasure)
+{
+  const std::string ucd = content(two_materials<2>()[2]);
+  // strtol turns the first two into the ends of its range.
+  for (const std::string number :
+       {"-99999999999999999999999", "99999999999999999999999", "1000000000001"})
+    expect_text_refused(replaced(ucd, "\n1 0.0", "\n" + number + " 0.0"),
+                        ".ucd",
+                        "expected the number of a node, found '" + number);
+}
+
+
+
+TEST(MeshFilesRefused, ThatAreAxisymmetric)
+{
+  const std::string inp = content(two_materials<2>()[4]);
+  expect_text_refused(replaced(inp, "CPE4", "CAX4R"),
+                      ".inp",
+                      "this element is a CAX4R, which is axisymmetric; bodies "
+                      "in 2D are in plane strain");
+}
+
+
+
+TEST(MeshFilesRefused, WithSetsThatContainThemselves)
+{
+  const std::string inp  = content(two_materials<2>()[4]);
+  std::string       line = "B";
+  for (unsigned int i = 0; i < 30; ++i)
+    line += ",B";
+  std::string lines = "*ELSET, ELSET=B\n1\n";
+  for (unsigned int i = 0; i < 8; ++i)
+    lines += line + "\n";
+  expect_text_refused(inp + lines, ".inp", "the set 'B' contains itself");
+}
+
+
+
+TEST(MeshFilesRefused, ThatContradictThemselves)
+{
+  const auto        files = two_materials<2>();
+  const std::string msh = content(files[0]), msh4 = content(files[1]),
+                    ucd = content(files[2]), vtk = content(files[3]),
+                    inp = content(files[4]);
+  expect_text_refused(replaced(msh, "2.2 0 8", "2.2 1 8"),
+                      ".msh",
+                      "line 2: it is binary");
+  expect_text_refused(replaced(msh, "2.2 0 8", "1.0 0 8"),
+                      ".msh",
+                      "line 2: versions 2, 4.0 and 4.1 are supported");
+  expect_text_refused(replaced(msh, "$Nodes\n15\n", "$Nodes\n4000000000\n"),
+                      ".msh",
+                      "line 5: the number of nodes is 4000000000, which the "
+                      "rest of the file cannot hold");
+  expect_text_refused(replaced(msh, "$Nodes\n15\n", "$Nodes\n14\n"),
+                      ".msh",
+                      "expected $EndNodes, found '15'");
+  expect_text_refused(replaced(msh, "0.5", "nan"),
+                      ".msh",
+                      "expected a coordinate, found 'nan'");
+  expect_text_refused(replaced(msh, "\n2 0.0", "\n1 0.0"),
+                      ".msh",
+                      "line 7: the node 1 is there twice");
+  expect_text_refused(replaced(msh4, " 1 1 0\n", " 2 1 2 0\n"),
+                      ".msh",
+                      "is in 2 physical groups; it can have one id only");
+  expect_text_refused(replaced(ucd, "quad 1 4 5 2", "quad 1 4 5 99"),
+                      ".ucd",
+                      "there is no node 99");
+  expect_text_refused(replaced(ucd, "quad 1 4 5 2", "quad 1 4 5 5"),
+                      ".ucd",
+                      "a cell has a node twice");
+  expect_text_refused(replaced(ucd, "quad 1 4 5 2", "quad 2 5 6 3"),
+                      ".ucd",
+                      "this cell is already in line");
+  expect_text_refused(replaced(ucd, "line 1 4", "line 1 5"),
+                      ".ucd",
+                      "line 18: this boundary element is not a face of any "
+                      "cell");
+  expect_text_refused(replaced(ucd, "2 1 line 4 7", "2 3 line 1 4"),
+                      ".ucd",
+                      "line 19: this boundary element is already in line 18");
+  expect_text_refused(replaced(ucd, "1 1 line", "1 -1 line"),
+                      ".ucd",
+                      "the id -1 is not between 0 and 999999999");
+  expect_text_refused(replaced(vtk, "ASCII", "BINARY"), ".vtk", "it is binary");
+  expect_text_refused(replaced(vtk, "4 0 3 4 1", "4 0 3 4 77"),
+                      ".vtk",
+                      "there is no node 77");
+  expect_text_refused(replaced(vtk, "4 0 3 4 1", "3 0 3 4"),
+                      ".vtk",
+                      "a quadrilateral cannot have 3 nodes");
+  expect_text_refused(replaced(inp, "1, S4", "1, S7"),
+                      ".inp",
+                      "expected elements and one of their faces S1, S2");
+  expect_text_refused(replaced(inp, "1, S4", "1, S5"),
+                      ".inp",
+                      "a cell has no face 5");
+  expect_text_refused(replaced(inp, "\n1, 2, 3, 4\n", "\n1, 2, 3, 400\n"),
+                      ".inp",
+                      "there is no element 400");
+}
+
+
+
+TEST(MeshFilesRefused, ThatEndTooEarly)
+{
+  // Wherever a file is cut, it is refused with a sentence or is a mesh.
+  for (const std::string &name : two_materials<2>())
+    {
+      const std::string text   = content(name);
+      const std::string suffix = std::filesystem::path(name).extension();
+      for (std::size_t size = 1; size < text.size(); size += 13)
+        {
+          const TemporaryFile file(text.substr(0, size), suffix);
+          const std::string   message =
+            message_of([&] { make<2>(from_file(file.name)); });
+          // ABAQUS files are complete before their surfaces.
+          EXPECT_TRUE(
+            message.find("The mesh") != std::string::npos ||
+            (message.empty() && (size > text.size() / 2 || suffix == ".inp")))
+            << name << " cut at " << size << ": " << message;
+        }
+    }
+}
+
+
+
+TEST(MeshFilesOfOthers, Gmsh)
+{
+  // Version 4.0; and lines that are no boundary, but where materials meet.
+  const TemporaryFile file("$MeshFormat\n4 0 8\n$EndMeshFormat\n"
+                           "$Comments\nquad and line\n$EndComments\n"
+                           "$Entities\n0 2 1 0\n"
+                           "1 0 0 0 1 0 0 1 4 0\n2 1 0 0 1 1 0 1 5 0\n"
+                           "1 0 0 0 2 1 0 1 9 0\n$EndEntities\n"
+                           "$Nodes\n1 6\n1 2 1 6\n"
+                           "1 0 0 0 0 0\n2 1 0 0 0 0\n3 2 0 0 0 0\n"
+                           "4 2 1 0 0 0\n5 1 1 0 0 0\n6 0 1 0 0 0\n$EndNodes\n"
+                           "$Elements\n3 4\n1 1 1 1\n1 1 2\n2 1 1 1\n2 2 5\n"
+                           "1 2 3 2\n3 1 2 5 6\n4 2 3 4 5\n$EndElements\n",
+                           ".msh");
+  const auto          mesh = make<2>(from_file(file.name));
+  expect_measures(areas(*mesh), {{0, 5.}, {4, 1.}});
+  expect_measures(volumes(*mesh), {{9, 2.}});
+}
+
+
+
+TEST(MeshFilesOfOthers, AbaqusWithLinesAndRanges)
+{
+  // As Gmsh writes boundaries, and ABAQUS ranges of elements.
+  const TemporaryFile file(
+    "*Heading\n*Part, name=body\n*Node\n1, 0., 0.\n2, 1., 0.\n3, 2., 0.\n"
+    "4, 2., 1.\n5, 1., 1.\n6, 0., 1.\n*Element, type=CPE4R\n"
+    "11, 1, 2, 5, 6\n12, 2, 3,\n4, 5\n"
+    "*Element, type=T3D2, elset=Line1\n13, 1, 2\n14, 2, 3\n"
+    "*Elset, elset=\"floor 8\"\n14\n"
+    "*Elset, elset=all, generate\n11, 12, 1\n"
+    "*Solid Section, elset=all, material=Steel-3\n,\n*End Part\n"
+    "*Assembly, name=whole\n*Instance, name=one, part=body\n*End Instance\n"
+    "*Node\n1, 5., 5., 0.\n"
+    "*Elset, elset=_end_S2, internal, instance=one\n12\n"
+    "*Surface, type=ELEMENT, name=end-4\n_end_S2, S2\n*End Assembly\n",
+    ".inp");
+  const auto mesh = make<2>(from_file(file.name));
+  expect_measures(areas(*mesh), {{0, 3.}, {1, 1.}, {4, 1.}, {8, 1.}});
+  expect_measures(volumes(*mesh), {{3, 2.}});
+}
+
+
+
+TEST(MeshFilesOfOthers, AbaqusWithSetsOfSets)
+{
+  // Each has the one before twice; the first gets the last, too. Copies of
+  // their elements would be 2^40.
+  std::string text =
+    "*NODE\n1, 0, 0\n2, 1, 0\n3, 2, 0\n4, 2, 1\n5, 1, 1\n6, 0, 1\n"
+    "*ELEMENT, TYPE=CPS4\n11, 1, 2, 5, 6\n12, 2, 3, 4, 5\n"
+    "*ELSET, ELSET=S100\n12\n";
+  for (unsigned int i = 101; i <= 140; ++i)
+    {
+      const std::string before = "S" + std::to_string(i - 1);
+      text += "*ELSET, ELSET=S" + std::to_string(i) + "\n" + before + ", " +
+              before + "\n";
+    }
+  text += "*ELSET, ELSET=S100\nS140\n";
+  const TemporaryFile file(text, ".inp");
+  expect_measures(volumes(*make<2>(from_file(file.name))),
+                  {{0, 1.}, {100, 1.}});
+}
+
+
+
+TEST(MeshFilesOfOthers, VtkOfVersion5)
+{
+  const TemporaryFile file(
+    "# vtk DataFile Version 5.1\n\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+    "POINTS 6 double\n0 0 0 1 0 0 2 0 0\n0 1 0 1 1 0 2 1 0\n"
+    "METADATA\nINFORMATION 0\n\n"
+    "CELLS 4 10\nOFFSETS vtktypeint64\n0 2 6 10\nCONNECTIVITY vtktypeint64\n"
+    "0 1 0 1 3 4 1 2 5 4\nCELL_TYPES 3\n3\n8\n9\n"
+    "CELL_DATA 3\nSCALARS density double\nLOOKUP_TABLE default\n1. 2. 3.\n"
+    "FIELD FieldData 2\ngmsh:physical 1 3 vtktypeint32\n4 5 6\n"
+    "gmsh:geometrical 1 3 vtktypeint32\n7 8 9\n",
+    ".vtk");
+  const auto mesh = make<2>(from_file(file.name));
+  expect_measures(areas(*mesh), {{0, 5.}, {4, 1.}});
+  expect_measures(volumes(*mesh), {{5, 1.}, {6, 1.}});
+}

@@ -265,17 +265,7 @@ namespace
       }
     for (unsigned int n = 0; n < 3; ++n)
       problem.add_node(dim, {random_rows(random, dim - 1, dim)});
-    const unsigned int n = 3 + problem.face.n_dofs();
-    problem.A            = random_matrix(random, n);
-    problem.load.reinit(n);
-    problem.u_prev.reinit(n);
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        problem.load[i]   = random.uniform();
-        problem.u_prev[i] = random.uniform(-0.3, 0.3);
-      }
-    for (unsigned int p = 0; p < problem.face.points.size(); ++p)
-      problem.bounds.push_back(random.uniform(0.05, 1.));
+    fill_at_random(problem, random, 3, 0.05, 1.);
     return problem;
   }
 

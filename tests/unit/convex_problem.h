@@ -181,6 +181,30 @@ namespace Viscoplastic::Testing
 
 
 
+  /// The rest of a problem whose nodes are there: with @p n_bulk unknowns
+  /// besides those of the face, and bounds in an interval.
+  inline void
+  fill_at_random(Problem           &problem,
+                 Random            &random,
+                 const unsigned int n_bulk,
+                 const double       least_bound,
+                 const double       largest_bound)
+  {
+    const unsigned int n = n_bulk + problem.face.n_dofs();
+    problem.A            = random_matrix(random, n);
+    problem.load.reinit(n);
+    problem.u_prev.reinit(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        problem.load[i]   = random.uniform();
+        problem.u_prev[i] = random.uniform(-0.3, 0.3);
+      }
+    for (unsigned int p = 0; p < problem.face.points.size(); ++p)
+      problem.bounds.push_back(random.uniform(least_bound, largest_bound));
+  }
+
+
+
   /// Nodes with bilateral contact (as many components as tangents) and with
   /// given normal stress (one more).
   inline Problem
@@ -194,17 +218,7 @@ namespace Viscoplastic::Testing
         const unsigned int n_dofs = n_tangents + random.integer(0, 1);
         problem.add_node(n_dofs, {random_rows(random, n_tangents, n_dofs)});
       }
-    const unsigned int n = random.integer(2, 6) + problem.face.n_dofs();
-    problem.A            = random_matrix(random, n);
-    problem.load.reinit(n);
-    problem.u_prev.reinit(n);
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        problem.load[i]   = random.uniform();
-        problem.u_prev[i] = random.uniform(-0.3, 0.3);
-      }
-    for (unsigned int c = 0; c < problem.face.points.size(); ++c)
-      problem.bounds.push_back(random.uniform(0., 1.5));
+    fill_at_random(problem, random, random.integer(2, 6), 0., 1.5);
     return problem;
   }
 

@@ -3,19 +3,16 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/checkpoint_store.h>
+#include <viscoplastic_contact/files.h>
 #include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/spelling.h>
 
 #include <boost/crc.hpp>
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
+#include <regex>
 #include <sstream>
 
 namespace Viscoplastic
@@ -26,8 +23,12 @@ namespace Viscoplastic
   namespace
   {
     const std::string manifest_name = "manifest.txt";
-    const std::string first_line    = "viscoplastic_contact checkpoint 1";
+    const std::string any_format    = "viscoplastic_contact checkpoint ";
+    const std::string first_line    = any_format + "1";
     const std::string unfinished = ".unfinished", outdated = ".outdated";
+    // What an unfinished checkpoint has instead of a manifest.
+    const std::string list_name       = "unfinished.txt";
+    const std::string first_of_a_list = "viscoplastic_contact list of files 1";
 
 
 
@@ -41,88 +42,12 @@ namespace Viscoplastic
 
 
 
-    /// A file descriptor that is put to disk and closed, with errors.
-    class Descriptor
-    {
-    public:
-      Descriptor(const std::string &name, const int flags)
-        : name(name)
-        , descriptor(open(name.c_str(), flags | O_CLOEXEC, 0666))
-      {
-        check(descriptor >= 0);
-      }
-
-      ~Descriptor()
-      {
-        if (descriptor >= 0)
-          close(descriptor);
-      }
-
-      Descriptor(const Descriptor &) = delete;
-      Descriptor &
-      operator=(const Descriptor &) = delete;
-
-      void
-      write_all(const std::string &bytes) const
-      {
-        std::size_t written = 0;
-        while (written < bytes.size())
-          {
-            const ssize_t n =
-              write(descriptor, bytes.data() + written, bytes.size() - written);
-            check(n > 0 || errno == EINTR);
-            written += std::max<ssize_t>(n, 0);
-          }
-      }
-
-      void
-      synchronise() const
-      {
-        // Some file systems cannot do it for directories.
-        check(fsync(descriptor) == 0 || errno == EINVAL);
-      }
-
-    private:
-      void
-      check(const bool success) const
-      {
-        AssertThrow(success,
-                    ExcMessage("'" + name + "' cannot be written: " +
-                               std::strerror(errno) + "."));
-      }
-
-      const std::string name;
-      const int         descriptor;
-    };
-
-
-
-    void
-    write_file(const std::string &name, const std::string &bytes)
-    {
-      Descriptor file(name, O_WRONLY | O_CREAT | O_TRUNC);
-      file.write_all(bytes);
-      file.synchronise();
-    }
-
-
-
-    void
-    synchronise_directory(const std::string &name)
-    {
-      Descriptor(name, O_RDONLY | O_DIRECTORY).synchronise();
-    }
-
-
-
     std::string
     read_file(const std::string &name)
     {
-      std::ifstream file(name, std::ios::binary);
-      AssertThrow(file, ExcMessage("'" + name + "' cannot be read."));
-      std::ostringstream bytes;
-      bytes << file.rdbuf();
-      return bytes.str();
+      const std::optional<std::string> bytes = read_file_if_any(name);
+      AssertThrow(bytes, ExcMessage("'" + name + "' cannot be read."));
+      return *bytes;
     }
 
 
@@ -252,6 +177,107 @@ namespace Viscoplastic
         }
       return manifest;
     }
+
+
+
+    std::string
+    list_of_files(const std::vector<std::string> &names)
+    {
+      std::string text = first_of_a_list + '\n';
+      for (const std::string &name : names)
+        text += "file " + name + '\n';
+      return text;
+    }
+
+
+
+    /**
+     * The files of a directory that are the program's, as its manifest or list
+     * there says, which come last: whatever ends the program while it removes
+     * them in this order, what remains is still known. Empty for a directory
+     * of somebody else.
+     */
+    std::vector<std::string>
+    own_files(const std::string &directory)
+    {
+      std::vector<std::string> names, lists;
+      for (const auto &[name, beginning] :
+           {std::make_pair(manifest_name, any_format),
+            std::make_pair(list_name, first_of_a_list + '\n')})
+        {
+          const auto text = read_file_if_any(directory + '/' + name);
+          if (!text)
+            continue;
+          const bool is_ours =
+            text->compare(0, beginning.size(), beginning) == 0;
+          // A list that is cut short is alone: the other files come after it.
+          const bool is_begun =
+            name == list_name &&
+            beginning.compare(0, text->size(), *text) == 0 &&
+            std::distance(fs::directory_iterator(directory), {}) == 1;
+          if (!is_ours && !is_begun)
+            continue;
+          lists.push_back(name);
+          std::istringstream lines(*text);
+          std::string        line, key, file;
+          while (std::getline(lines, line))
+            if (std::istringstream words(line);
+                words >> key >> file && key == "file")
+              names.push_back(file);
+        }
+      names.insert(names.end(), lists.begin(), lists.end());
+      return names;
+    }
+
+
+
+    /**
+     * Remove what the program has written in a directory, and the directory
+     * unless something else is in it. Returns whether it was a checkpoint; @p
+     * remarks takes a sentence if the directory stays.
+     */
+    bool
+    remove_own(const std::string &path, std::vector<std::string> &remarks)
+    {
+      const std::string note = "Note: '" + path + "' stays, since ";
+      if (!fs::is_directory(fs::symlink_status(path)))
+        {
+          remarks.push_back(note + "this program has made no such file.");
+          return false;
+        }
+      const std::vector<std::string> names = own_files(path);
+      for (const std::string &name : names)
+        {
+          const fs::path file = fs::path(path) / name;
+          if (name.find('/') == std::string::npos &&
+              fs::is_regular_file(fs::symlink_status(file)))
+            fs::remove(file);
+        }
+      std::vector<std::string> others;
+      for (const auto &entry : fs::directory_iterator(path))
+        others.push_back(excerpt(entry.path().filename().string()));
+      if (others.empty())
+        fs::remove(path);
+      else
+        {
+          std::sort(others.begin(), others.end());
+          remarks.push_back(note + "no manifest of this program names " +
+                            enumeration(others, 3) + " in it.");
+        }
+      return !names.empty();
+    }
+
+
+
+    /// @p path, or with a number after it, so that there is no such file.
+    std::string
+    unused(const std::string &path)
+    {
+      std::string result = path;
+      for (unsigned int i = 2; fs::exists(fs::symlink_status(result)); ++i)
+        result = path + '_' + std::to_string(i);
+      return result;
+    }
   } // namespace
 
 
@@ -274,24 +300,38 @@ namespace Viscoplastic
 
 
 
-  std::vector<unsigned int>
-  CheckpointStore::steps() const
+  std::vector<CheckpointStore::Entry>
+  CheckpointStore::entries() const
   {
-    std::vector<unsigned int> result;
-    std::error_code           error;
-    for (const auto &entry : fs::directory_iterator(directory, error))
+    static const std::regex name("step_([0-9]{6,9})([.](" +
+                                 unfinished.substr(1) + '|' +
+                                 outdated.substr(1) + ")(_[0-9]+)?)?");
+    std::vector<Entry>      result;
+    std::error_code         error;
+    fs::directory_iterator  place(directory, error);
+    if (error == std::errc::no_such_file_or_directory)
+      return result;
+    for (; !error && place != fs::directory_iterator(); place.increment(error))
       {
-        const std::string name = entry.path().filename().string();
-        const std::string digits =
-          name.substr(std::min<std::size_t>(name.size(), std::strlen("step_")));
-        if (digits.size() < 6 || digits.size() > 9 ||
-            digits.find_first_not_of("0123456789") != std::string::npos)
+        const std::string file = place->path().filename().string();
+        std::smatch       parts;
+        std::error_code   none;
+        if (!std::regex_match(file, parts, name) || !place->is_directory(none))
           continue;
-        const unsigned int n = std::stoul(digits);
-        if (directory + name == path(n))
-          result.push_back(n);
+        Entry entry;
+        entry.path        = directory + file;
+        entry.n           = std::stoul(parts[1]);
+        entry.is_complete = parts[2].length() == 0;
+        if (!entry.is_complete || entry.path == path(entry.n))
+          result.push_back(entry);
       }
-    std::sort(result.begin(), result.end());
+    AssertThrow(!error,
+                ExcMessage("The directory '" + directory +
+                           "' for checkpoints cannot be read: " +
+                           error.message() + '.'));
+    std::sort(result.begin(), result.end(), [](const Entry &a, const Entry &b) {
+      return std::make_pair(a.n, a.path) < std::make_pair(b.n, b.path);
+    });
     return result;
   }
 
@@ -314,32 +354,46 @@ namespace Viscoplastic
 
 
 
-  void
+  std::vector<std::string>
   CheckpointStore::write(CheckpointManifest                        manifest,
                          const std::map<std::string, std::string> &files,
                          const unsigned int                        n_kept) const
   {
-    const std::string final_path = path(manifest.n);
-    const std::string temporary  = final_path + unfinished + '/';
-    const auto        check      = [&](const std::string &failure) {
+    const std::string        final_path = path(manifest.n);
+    std::string              temporary;
+    std::vector<std::string> remarks;
+    const auto               check = [&](const std::string &failure) {
       const std::string text = common_failure(failure, communicator);
       if (text.empty())
         return;
       // Make room; the checkpoints before are what counts.
-      std::error_code ignored;
-      if (rank == 0)
-        fs::remove_all(temporary, ignored);
+      if (rank == 0 && !temporary.empty())
+        attempt([&]() { remove_own(temporary, remarks); });
       AssertThrow(false,
                   ExcMessage("The checkpoint of step " +
                              std::to_string(manifest.n) + " failed: " + text));
     };
 
+    // Rank 0 says which files are to come before any of them is there.
+    std::vector<std::string> names;
+    for (const auto &file : files)
+      names.push_back(file.first);
+    const auto names_of_all = Utilities::MPI::gather(communicator, names);
     check(attempt([&]() {
       if (rank != 0)
         return;
-      fs::remove_all(temporary);
+      const std::string wanted = final_path + unfinished;
+      if (fs::exists(wanted))
+        remove_own(wanted, remarks);
+      temporary = unused(wanted) + '/';
       fs::create_directories(temporary);
+      names.clear();
+      for (const auto &part : names_of_all)
+        names.insert(names.end(), part.begin(), part.end());
+      names.push_back(manifest_name);
+      write_file(temporary + list_name, list_of_files(names));
     }));
+    temporary = Utilities::MPI::broadcast(communicator, temporary);
 
     std::vector<CheckpointManifest::File> mine;
     check(attempt([&]() {
@@ -367,28 +421,29 @@ namespace Viscoplastic
             manifest.files.push_back(file);
         }
       write_file(temporary + manifest_name, to_text(manifest));
+      fs::remove(temporary + list_name);
       synchronise_directory(temporary);
       // A directory cannot replace another one.
-      std::error_code none;
-      if (fs::exists(final_path, none))
+      std::string aside;
+      if (fs::exists(fs::symlink_status(final_path)))
         {
-          fs::remove_all(final_path + outdated);
-          fs::rename(final_path, final_path + outdated);
+          aside = unused(final_path + outdated);
+          fs::rename(final_path, aside);
         }
       fs::rename(temporary, final_path);
       synchronise_directory(directory);
 
-      fs::remove_all(final_path + outdated);
-      std::vector<unsigned int> older = steps();
-      older.erase(std::remove_if(older.begin(),
-                                 older.end(),
-                                 [&](const unsigned int n) {
-                                   return n >= manifest.n;
-                                 }),
-                  older.end());
+      if (!aside.empty())
+        remove_own(aside, remarks);
+      std::vector<std::string> older;
+      for (const Entry &entry : entries())
+        if (entry.is_complete && entry.n < manifest.n &&
+            !own_files(entry.path).empty())
+          older.push_back(entry.path);
       for (std::size_t i = 0; i + n_kept <= older.size(); ++i)
-        fs::remove_all(path(older[i]));
+        remove_own(older[i], remarks);
     }));
+    return Utilities::MPI::broadcast(communicator, remarks);
   }
 
 
@@ -396,8 +451,14 @@ namespace Viscoplastic
   std::optional<CheckpointManifest>
   CheckpointStore::newest(std::vector<std::string> &remarks) const
   {
-    std::vector<unsigned int> candidates =
-      Utilities::MPI::broadcast(communicator, steps());
+    std::vector<unsigned int> candidates;
+    fail_together(communicator, [&]() {
+      if (rank == 0)
+        for (const Entry &entry : entries())
+          if (entry.is_complete)
+            candidates.push_back(entry.n);
+    });
+    candidates = Utilities::MPI::broadcast(communicator, candidates);
     std::reverse(candidates.begin(), candidates.end());
     for (const unsigned int n : candidates)
       {
@@ -443,39 +504,37 @@ namespace Viscoplastic
 
 
 
-  unsigned int
+  CheckpointStore::Removal
   CheckpointStore::remove_if(const bool all, const unsigned int after) const
   {
-    unsigned int      n_removed = 0;
-    const std::string failure   = attempt([&]() {
-      if (rank != 0)
-        return;
-      for (const unsigned int n : steps())
-        if (all || n > after)
+    Removal            removal;
+    std::vector<Entry> found; // on rank 0
+    fail_together(communicator, [&]() {
+      if (rank == 0)
+        found = entries();
+    });
+    const std::string failure = attempt([&]() {
+      for (const Entry &entry : found)
+        if (all || entry.n > after || !entry.is_complete)
           {
-            fs::remove_all(path(n));
-            ++n_removed;
+            const bool was_ours = remove_own(entry.path, removal.remarks);
+            if (was_ours && entry.is_complete)
+              ++removal.n_checkpoints;
           }
-      std::error_code       none;
-      std::vector<fs::path> rests;
-      for (const auto &entry : fs::directory_iterator(directory, none))
-        for (const std::string &suffix : {unfinished, outdated})
-          if (entry.path().filename().string().compare(0, 5, "step_") == 0 &&
-              entry.path().extension() == suffix)
-            rests.push_back(entry.path());
-      for (const fs::path &rest : rests)
-        fs::remove_all(rest);
     });
     const std::string text = common_failure(failure, communicator);
     AssertThrow(text.empty(),
                 ExcMessage("Old checkpoints in '" + directory +
                            "' cannot be removed: " + text));
-    return Utilities::MPI::broadcast(communicator, n_removed);
+    removal.n_checkpoints =
+      Utilities::MPI::broadcast(communicator, removal.n_checkpoints);
+    removal.remarks = Utilities::MPI::broadcast(communicator, removal.remarks);
+    return removal;
   }
 
 
 
-  unsigned int
+  CheckpointStore::Removal
   CheckpointStore::remove_after(const unsigned int n) const
   {
     return remove_if(false, n);
@@ -483,17 +542,9 @@ namespace Viscoplastic
 
 
 
-  unsigned int
+  CheckpointStore::Removal
   CheckpointStore::remove_all() const
   {
     return remove_if(true, 0);
-  }
-
-
-
-  void
-  synchronise(const std::string &file)
-  {
-    Descriptor(file, O_RDONLY).synchronise();
   }
 } // namespace Viscoplastic

@@ -5,10 +5,11 @@
 #include <deal.II/fe/mapping_q1.h>
 
 #include <viscoplastic_contact/binary_archive.h>
+#include <viscoplastic_contact/files.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/reference_fields.h>
 #include <viscoplastic_contact/strain.h>
 
-#include <cstdio>
 #include <fstream>
 #include <sstream>
 
@@ -376,14 +377,14 @@ namespace Viscoplastic
       {
         BinaryWriter archive;
         archive &magic_number<dim> &samples.t &cells &faces;
-        const std::string                             draft = file + ".part";
-        std::ofstream stream(draft, std::ios::binary);
-        stream.write(archive.bytes().data(),
-                     static_cast<std::streamsize>(archive.bytes().size()));
-        stream.close();
-        if (!stream || std::rename(draft.c_str(), file.c_str()) != 0)
-          complaint = "The reference fields '" + file +
-                      "' cannot be written; is the disk full?";
+        try
+          {
+            replace_file(file, archive.bytes());
+          }
+        catch (const std::exception &exception)
+          {
+            complaint = reason(exception);
+          }
       }
     agree(complaint, communicator);
   }

@@ -68,7 +68,10 @@ namespace Viscoplastic
     const CheckpointParameters &wanted = parameters.checkpoint;
     if (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.)
       store.make_directory();
-    if (store.remove_all() > 0)
+    const CheckpointStore::Removal removal = store.remove_all();
+    for (const std::string &remark : removal.remarks)
+      console.remark(remark);
+    if (removal.n_checkpoints > 0)
       console.remark("Note: the checkpoints of an earlier run in '" +
                      store.directory + "' have been removed.");
   }
@@ -147,7 +150,10 @@ namespace Viscoplastic
         files[run_file] = archive.bytes();
         statistics->synchronise(); // whose rows the checkpoint relies on
       }
-    checkpoints().write(manifest, files, parameters.checkpoint.keep);
+    const CheckpointStore store = checkpoints();
+    for (const std::string &remark :
+         store.write(manifest, files, parameters.checkpoint.keep))
+      console.remark(remark);
   }
 
 
@@ -318,7 +324,8 @@ namespace Viscoplastic
     AssertThrow(failure.empty(), ExcMessage(failure));
     output.emplace(scene, communicator);
     output->resume(output_times);
-    store.remove_after(state.n);
+    for (const std::string &remark : store.remove_after(state.n).remarks)
+      console.remark(remark);
 
     out << "Restart after step " << state.n << " (t = " << state.t << ") from '"
         << store.path(state.n) << "'" << std::endl;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 
-#include <viscoplastic_contact/checkpoint_store.h>
+#include <viscoplastic_contact/files.h>
 #include <viscoplastic_contact/statistics.h>
 
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/files.h>
 #include <viscoplastic_contact/study_report.h>
 #include <viscoplastic_contact/version.h>
 
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 
@@ -213,10 +213,9 @@ namespace Viscoplastic
   void
   write_report(const Study &study, const bool is_finished)
   {
-    write_at_once(study.runs.directory + "study.csv", csv(study));
-    write_at_once(study.runs.directory + "study.json",
-                  json(study, is_finished));
-    write_at_once(study.runs.directory + "study.md",
-                  study_as_markdown(study, is_finished));
+    replace_file(study.runs.directory + "study.csv", csv(study));
+    replace_file(study.runs.directory + "study.json", json(study, is_finished));
+    replace_file(study.runs.directory + "study.md",
+                 study_as_markdown(study, is_finished));
   }
 } // namespace Viscoplastic

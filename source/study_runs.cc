@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/grid/grid_tools.h>
 
-#include <viscoplastic_contact/checkpoint_store.h>
+#include <viscoplastic_contact/files.h>
 #include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/study_runs.h>
@@ -24,15 +24,6 @@ namespace Viscoplastic
   {
     const std::string generator_with_subdivisions =
       "subdivided_hyper_rectangle";
-
-
-
-    std::string
-    read_file(const std::string &name)
-    {
-      std::ifstream file(name, std::ios::binary);
-      return std::string(std::istreambuf_iterator<char>(file), {});
-    }
 
 
 
@@ -168,22 +159,6 @@ namespace Viscoplastic
              static_cast<int>(Utilities::MPI::n_mpi_processes(communicator));
     }
   } // namespace
-
-
-
-  void
-  write_at_once(const std::string &name, const std::string &text)
-  {
-    const std::string part = name + ".part";
-    {
-      std::ofstream file(part, std::ios::binary);
-      file << text << std::flush;
-      AssertThrow(file,
-                  ExcMessage("The file '" + part + "' cannot be written."));
-    }
-    synchronise(part);
-    std::filesystem::rename(part, name);
-  }
 
 
 
@@ -391,7 +366,7 @@ namespace Viscoplastic
     if (reference)
       add(name(*reference));
     if (!scene.geometry.file.empty())
-      add(read_file(scene.geometry.file));
+      add(read_file_if_any(scene.geometry.file).value_or(""));
     return {{"version", VISCOPLASTIC_CONTACT_VERSION},
             {"revision", VISCOPLASTIC_CONTACT_GIT_REVISION},
             {"ranks",
@@ -415,8 +390,10 @@ namespace Viscoplastic
     const Parameters parameters(files, overrides_of(key));
     const auto       expected = stamp(parameters);
     std::string      text;
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      text = read_file(directory + name(key) + "/result.json");
+    on_first_rank(communicator, [&] {
+      text =
+        read_file_if_any(directory + name(key) + "/result.json").value_or("");
+    });
     text = Utilities::MPI::broadcast(communicator, text);
     try
       {
@@ -454,8 +431,8 @@ namespace Viscoplastic
                              "' cannot be made; change 'Output/Directory' or "
                              "its permissions."));
       std::filesystem::remove(place + "result.json");
-      may_restart = read_file(place + "begun") == begun;
-      write_at_once(place + "begun", begun);
+      may_restart = read_file_if_any(place + "begun") == begun;
+      replace_file(place + "begun", begun, /* to_disk = */ true);
     });
     may_restart = Utilities::MPI::broadcast(communicator, may_restart);
 
@@ -504,7 +481,7 @@ namespace Viscoplastic
                 about["overrides"] +=
                   (about["overrides"].empty() ? "" : "; ") + assignment;
               text = to_json(record, about);
-              write_at_once(place + "result.json", text);
+              replace_file(place + "result.json", text, /* to_disk = */ true);
             });
             text           = Utilities::MPI::broadcast(communicator, text);
             outcome.record = from_json(text, about);

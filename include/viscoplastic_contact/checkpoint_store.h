@@ -41,8 +41,15 @@ namespace Viscoplastic
    *
    * A checkpoint comes into being as a whole: it is written into a directory of
    * another name, put to disk (fsync), and renamed. Whatever ends the program
-   * at whatever instant, the checkpoints before it are untouched. Member
-   * functions are collective; errors are ExcMessage on all ranks.
+   * at whatever instant, the checkpoints before it are untouched.
+   *
+   * Only what the program has written is ever removed: the files that the
+   * manifest of a checkpoint names, or the list with which an unfinished one
+   * begins, and then the directory, if nothing else is in it. Functions that
+   * remove something return a sentence for each directory that has stayed for
+   * this reason.
+   *
+   * Member functions are collective; errors are ExcMessage on all ranks.
    */
   class CheckpointStore
   {
@@ -61,9 +68,10 @@ namespace Viscoplastic
 
     /**
      * Write the files that each rank gives, by name, and remove all but the
-     * newest @p n_kept checkpoints. The manifest's files are filled in.
+     * newest @p n_kept checkpoints. The manifest's files are filled in. What
+     * has the name of the checkpoint but is none of this program is renamed.
      */
-    void
+    std::vector<std::string>
     write(CheckpointManifest                        manifest,
           const std::map<std::string, std::string> &files_of_this_rank,
           const unsigned int                        n_kept) const;
@@ -79,32 +87,40 @@ namespace Viscoplastic
     std::string
     read(const CheckpointManifest &manifest, const std::string &name) const;
 
+    struct Removal
+    {
+      unsigned int             n_checkpoints = 0;
+      std::vector<std::string> remarks;
+    };
+
     /// Remove checkpoints after step @p n, and what has been left of unfinished
-    /// ones. Returns how many checkpoints went.
-    unsigned int
+    /// ones.
+    Removal
     remove_after(const unsigned int n) const;
 
     /// Remove all checkpoints.
-    unsigned int
+    Removal
     remove_all() const;
 
   private:
-    /// Steps that have a checkpoint, valid or not, in ascending order. On rank
-    /// 0 only.
-    std::vector<unsigned int>
-    steps() const;
+    /// A directory with a name that checkpoints have, be they valid or not.
+    struct Entry
+    {
+      std::string  path;
+      unsigned int n = 0;
+      /// False for one that is unfinished or being replaced.
+      bool is_complete = true;
+    };
 
-    unsigned int
+    /// By ascending steps. Empty if there is no directory; throws ExcMessage if
+    /// it cannot be read. Not collective.
+    std::vector<Entry>
+    entries() const;
+
+    Removal
     remove_if(const bool all, const unsigned int after) const;
 
     const MPI_Comm     communicator;
     const unsigned int rank, n_ranks;
   };
-
-
-
-  /// Put a file to disk, with what other streams have written into it. Throws
-  /// ExcMessage.
-  void
-  synchronise(const std::string &file);
 } // namespace Viscoplastic

@@ -110,9 +110,4 @@ namespace Viscoplastic
             const CommandLine::Restart restart,
             RunMeasurements           *measurements);
 
-
-  /// Replace a file at once: whatever happens, it is the old one or the new.
-  /// Throws ExcMessage.
-  void
-  write_at_once(const std::string &name, const std::string &text);
 } // namespace Viscoplastic

@@ -809,6 +809,141 @@ class Begin(RestartCase):
             result = job.run("--restart", "--check", code=2)
             self.assertOneSentence(result.stderr, "--check", "--restart")
 
+    def test_unreadable_is_not_empty(self):
+        """A place that cannot be read may hold checkpoints: nothing begins
+        afresh there.  A link to itself cannot be read by anybody, root
+        included."""
+        with Job("slab", SLAB) as job:
+            job.run()
+            before = (job.results / "statistics.csv").read_bytes()
+            job.checkpoints.symlink_to("checkpoint")
+            for options in ("--restart=auto",), ("--restart",), ():
+                result = job.run(*options, code=1)
+                self.assertOneSentence(
+                    result.stderr, "results/checkpoint/' for checkpoints", "symbolic"
+                )
+            self.assertEqual((job.results / "statistics.csv").read_bytes(), before)
+
+
+class Foreign(RestartCase):
+    """Among checkpoints there may be what the program has not written."""
+
+    MANIFEST = "viscoplastic_contact checkpoint 1\n"
+    LIST = "viscoplastic_contact list of files 1\n"
+
+    def add(self, job, files):
+        """{"step_000001/thesis.txt": text}; None for a directory."""
+        for name, text in files.items():
+            file = job.checkpoints / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            if text is None:
+                file.mkdir()
+            else:
+                file.write_text(text)
+
+    def contents(self, job):
+        return sorted(
+            str(path.relative_to(job.checkpoints))
+            for path in job.checkpoints.rglob("*")
+            if not path.is_dir()
+        )
+
+    def assertStays(self, result, directory, *files):
+        self.assertRegex(
+            result.stdout,
+            rf"Note: '\S*/{directory}' stays, since no manifest of this program "
+            rf"names {', '.join(files)} in it\.",
+        )
+
+    def test_run_afresh(self):
+        """Whether it asks for checkpoints or not."""
+        foreign = {
+            "step_000001/thesis.txt": "precious",
+            "step_000007.outdated/b.txt": "",
+            "step_000007.outdated/c.txt": "",
+            "step_000020.unfinished/a.txt": "",
+            "step_000030/manifest.txt": "of a ship",
+            "step_1/a.txt": "",
+            "step_000001.txt": "",
+        }
+        # in any step: the directory of that name gives way
+        for every in 0, 1:
+            with Job("slab", {**SLAB, "Checkpoint/Every n steps": every}) as job:
+                self.add(job, foreign)
+                result = job.run()
+                self.assertNotIn("removed", result.stdout)
+                self.assertStays(result, "step_000001", "thesis.txt")
+                self.assertStays(result, "step_000007.outdated", "b.txt", "c.txt")
+                self.assertStays(result, "step_000020.unfinished", "a.txt")
+                self.assertStays(result, "step_000030", "manifest.txt")
+                expected = set(foreign)
+                if every == 1:
+                    expected.remove("step_000001/thesis.txt")
+                    expected.add("step_000001.outdated/thesis.txt")
+                    self.assertStays(result, "step_000001.outdated", "thesis.txt")
+                    for n in 15, 16:
+                        for name in "manifest.txt", "run.bin":
+                            expected.add(f"step_{n:06}/{name}")
+                        for name in "fields", "mesh":
+                            expected.add(f"step_{n:06}/{name}_00000.bin")
+                self.assertEqual(self.contents(job), sorted(expected))
+
+    def test_inside_of_checkpoints(self):
+        """Only the files of the manifest go, and a restart leaves others, too."""
+        with Job("slab", {**SLAB, **EVERY_STEP}) as job:
+            job.run()
+            for n in 4, 12:
+                (job.step(n) / "notes.txt").write_text("mine")
+            job.forget_after(12)
+            (job.step(12) / "run.bin").write_bytes(b"")
+            result = job.run("--restart")
+            self.assertIn("Restart after step 11 ", result.stdout)
+            self.assertStays(result, "step_000012", "notes.txt")
+            self.assertEqual(
+                [path.name for path in job.step(12).with_suffix(".outdated").iterdir()],
+                ["notes.txt"],
+            )
+            job.overrides["Checkpoint/Every n steps"] = 0
+            result = job.run()
+            self.assertRegex(result.stdout, "Note: the checkpoints.*removed")
+            self.assertEqual(
+                self.contents(job),
+                ["step_000004/notes.txt", "step_000012.outdated/notes.txt"],
+            )
+
+    def test_remains_of_every_instant(self):
+        """What the program leaves if it is killed while it writes or removes a
+        checkpoint, at whatever instant, is its own, and goes."""
+        names = "fields_00000.bin", "mesh_00000.bin", "run.bin"
+        listed = "".join(f"file {name}\n" for name in (*names, "manifest.txt"))
+        manifest = self.MANIFEST + "".join(f"file {name} 1 2\n" for name in names)
+        remains = [
+            {},
+            {"unfinished.txt": ""},
+            {"unfinished.txt": self.LIST[:20]},
+            {"unfinished.txt": self.LIST},
+            {"unfinished.txt": self.LIST + listed[:30]},
+            {"unfinished.txt": self.LIST + listed, names[0]: ""},
+            {"unfinished.txt": self.LIST + listed, **dict.fromkeys(names, "x")},
+            {
+                "unfinished.txt": self.LIST + listed,
+                **dict.fromkeys(names, "x"),
+                "manifest.txt": manifest[:40],
+            },
+            {"manifest.txt": manifest, **dict.fromkeys(names, "x")},
+            {"manifest.txt": manifest, names[2]: "x"},
+            {"manifest.txt": manifest},
+        ]
+        with Job("slab", SLAB) as job:
+            for i, files in enumerate(remains):
+                for suffix in "", ".unfinished", ".outdated", ".unfinished_2":
+                    place = f"step_{i + 1:06}{suffix}"
+                    self.add(job, {place: None})
+                    self.add(job, {f"{place}/{name}": files[name] for name in files})
+            result = job.run()
+            self.assertNotIn("stays", result.stdout)
+            self.assertEqual(list(job.checkpoints.iterdir()), [])
+
 
 if __name__ == "__main__":
     main()

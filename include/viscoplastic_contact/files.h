@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace Viscoplastic
+{
+  // Files, read and written so that nothing that goes wrong is overlooked.
+  // Every function throws ExcMessage with a sentence that names the file and
+  // the reason that the system gives, e.g. a full disk.
+
+  /// The contents of a file; nothing if there is no such file. A file that is
+  /// there and cannot be read is an error.
+  std::optional<std::string>
+  read_file_if_any(const std::string &name);
+
+  /// Write a file and put it to disk. A crash may leave a part of it.
+  void
+  write_file(const std::string &name, const std::string &bytes);
+
+  /**
+   * Replace a file at once: whatever happens, it is the old one or the new one.
+   * The new one is written under the name with `.part' and renamed. A device
+   * or a pipe of that name is written to as it is.
+   *
+   * With @p to_disk that holds also if the machine loses its power, which
+   * takes some milliseconds.
+   */
+  void
+  replace_file(const std::string &name,
+               const std::string &bytes,
+               const bool         to_disk = false);
+
+  /// Put a file to disk, with what other streams have written into it.
+  void
+  synchronise(const std::string &file);
+
+  /// Put the names in a directory to disk.
+  void
+  synchronise_directory(const std::string &name);
+
+
+
+  /**
+   * Keeps other processes out of a directory that this one writes into. The
+   * lock is one of the operating system on the file viscoplastic_contact.lock
+   * there: it vanishes with the process, however that ends, and the file alone
+   * keeps nobody out. Not collective: one rank holds the lock for all.
+   */
+  class DirectoryLock
+  {
+  public:
+    DirectoryLock() = default;
+
+    /// Gives the directory free.
+    ~DirectoryLock();
+
+    DirectoryLock(const DirectoryLock &) = delete;
+    DirectoryLock &
+    operator=(const DirectoryLock &) = delete;
+
+    /**
+     * Take the lock of a directory, unless this object has one already. Throws
+     * ExcMessage if another process has it. Without a lock goes on where
+     * there is none to be had: the directory does not exist yet or cannot be
+     * written, or its file system has no locks.
+     */
+    void
+    acquire(const std::string &directory);
+
+  private:
+    std::string file;
+    int         descriptor = -1;
+  };
+} // namespace Viscoplastic

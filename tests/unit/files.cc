@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Files that are replaced, cannot be read or written, and locks.
+
+#include "folder.h"
+#include "refusals.h"
+#include <viscoplastic_contact/files.h>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+namespace
+{
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  /// Do something in another process; returns whether that has thrown.
+  template <typename Function>
+  bool
+  throws_in_child(const Function &function)
+  {
+    const pid_t child = fork();
+    if (child == 0)
+      {
+        try
+          {
+            function();
+          }
+        catch (const std::exception &)
+          {
+            _exit(1);
+          }
+        _exit(0);
+      }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status));
+    return WEXITSTATUS(status) == 1;
+  }
+
+
+
+  TEST(Files, WhatIsWrittenIsRead)
+  {
+    const Folder      folder;
+    const std::string name = folder.path / "a", bytes("a\0\n\xff", 4);
+    EXPECT_FALSE(read_file_if_any(name));
+    for (const std::string &text : {bytes, std::string()})
+      {
+        write_file(name, text);
+        EXPECT_EQ(read_file_if_any(name), text);
+        replace_file(name, "other");
+        EXPECT_EQ(read_file_if_any(name), "other");
+        replace_file(name, text, /* to_disk = */ true);
+        EXPECT_EQ(read_file_if_any(name), text);
+      }
+    EXPECT_FALSE(std::filesystem::exists(name + ".part"));
+  }
+
+
+
+  TEST(Files, WhatCannotBeReadIsNotAbsent)
+  {
+    const Folder folder;
+    const auto   link = folder.path / "link";
+    std::filesystem::create_symlink(link, link);
+    for (const auto &name : {folder.path, link})
+      expect_refusal([&] { read_file_if_any(name); },
+                     "'" + name.string() + "' cannot be read: ");
+  }
+
+
+
+  TEST(Files, FullDisk)
+  {
+    // A device is written to, and not replaced by a file.
+    const Folder      folder;
+    const std::string name = folder.path / "full";
+    std::filesystem::create_symlink("/dev/full", name);
+    const std::string sentence =
+      "'" + name + "' cannot be written: No space left on device.";
+    expect_refusal([&] { write_file(name, "a"); }, sentence);
+    expect_refusal([&] { replace_file(name, "a"); }, sentence);
+  }
+
+
+
+  TEST(Files, OldFileStaysUntilTheNewOneIsThere)
+  {
+    const Folder      folder;
+    const std::string name = folder.add("a", "old");
+    EXPECT_TRUE(throws_in_child([&] {
+      std::signal(SIGXFSZ, SIG_IGN);
+      const rlimit limit{100, 100};
+      setrlimit(RLIMIT_FSIZE, &limit);
+      replace_file(name, std::string(101, 'x'));
+    }));
+    EXPECT_EQ(read_file_if_any(name), "old");
+    EXPECT_FALSE(std::filesystem::exists(name + ".part"));
+  }
+
+
+
+  TEST(Files, LockKeepsOthersOut)
+  {
+    const Folder folder;
+    const auto   is_free = [&] {
+      return !throws_in_child([&] { DirectoryLock().acquire(folder.path); });
+    };
+    {
+      DirectoryLock lock;
+      lock.acquire(folder.path);
+      lock.acquire(folder.path); // has it
+      expect_refusal([&] { DirectoryLock().acquire(folder.path); },
+                     "Another run (process " + std::to_string(getpid()) +
+                       " on ");
+      EXPECT_FALSE(is_free());
+    }
+    EXPECT_TRUE(is_free());
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path));
+    // No lock, and no error, where there is nothing to lock.
+    DirectoryLock().acquire(folder.path / "absent");
+  }
+
+
+
+  TEST(Files, LockVanishesWithItsProcess)
+  {
+    const Folder folder;
+    int          is_ready[2];
+    ASSERT_EQ(pipe(is_ready), 0);
+    const pid_t child = fork();
+    if (child == 0)
+      {
+        DirectoryLock lock;
+        lock.acquire(folder.path);
+        if (write(is_ready[1], "x", 1) == 1)
+          pause();
+        _exit(1);
+      }
+    char    x;
+    ssize_t n = read(is_ready[0], &x, 1);
+    EXPECT_EQ(n, 1);
+    DirectoryLock lock;
+    expect_refusal([&] { lock.acquire(folder.path); }, "Another run");
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    EXPECT_TRUE(
+      std::filesystem::exists(folder.path / "viscoplastic_contact.lock"));
+    lock.acquire(folder.path);
+    close(is_ready[0]);
+    close(is_ready[1]);
+  }
+} // namespace

@@ -35,6 +35,7 @@ namespace Viscoplastic
                    const bool         has_terminal)
     : speaks(!quiet && Utilities::MPI::this_mpi_process(communicator) == 0)
     , is_terminal(speaks && has_terminal)
+    , log_name(log_name)
     , tee(*this)
     , everywhere(&tee)
   {
@@ -85,6 +86,20 @@ namespace Viscoplastic
   {
     all_remarks.push_back(sentence);
     everywhere << sentence << std::endl;
+  }
+
+
+
+  void
+  Console::check()
+  {
+    AssertThrow(!log_file.is_open() || log_file.flush(),
+                ExcMessage("The log file '" + log_name +
+                           "' is not complete: writing failed; is the disk "
+                           "full?"));
+    AssertThrow(!speaks || std::cout.flush(),
+                ExcMessage("Writing to the standard output failed; is the disk "
+                           "full?"));
   }
 
 

@@ -48,6 +48,21 @@ namespace
 
 
   std::string
+  run(const CommandLine &command_line, Console &console)
+  {
+    if (command_line.task == CommandLine::Task::study)
+      return Study(command_line.files, command_line.overrides, console).run();
+    if (command_line.price > 0.)
+      return run_at_price(command_line, console);
+    const Parameters parameters(command_line.files, command_line.overrides);
+    return parameters.dimension == 2 ?
+             run<2>(parameters, command_line, console) :
+             run<3>(parameters, command_line, console);
+  }
+
+
+
+  std::string
   run(const CommandLine &command_line, const bool has_terminal)
   {
     Console console(MPI_COMM_WORLD,
@@ -56,15 +71,11 @@ namespace
                     has_terminal);
     try
       {
-        if (command_line.task == CommandLine::Task::study)
-          return Study(command_line.files, command_line.overrides, console)
-            .run();
-        if (command_line.price > 0.)
-          return run_at_price(command_line, console);
-        const Parameters parameters(command_line.files, command_line.overrides);
-        return parameters.dimension == 2 ?
-                 run<2>(parameters, command_line, console) :
-                 run<3>(parameters, command_line, console);
+        const std::string interruption = run(command_line, console);
+        // Results come first: a log that fails does not end a run.
+        if (interruption.empty())
+          console.check();
+        return interruption;
       }
     catch (const std::exception &exception)
       {
@@ -146,7 +157,9 @@ main(int argc, char *argv[])
       // A batch script that forgets the scene must not go on.
       const bool is_guide = command_line.task == CommandLine::Task::guide;
       if (rank == 0)
-        (is_guide ? std::cerr : std::cout) << text << std::flush;
+        AssertThrow((is_guide ? std::cerr : std::cout) << text << std::flush,
+                    dealii::ExcMessage("Writing to the standard output failed; "
+                                       "is the disk full?"));
       return is_guide ? 2 : 0;
     }
   catch (const std::exception &exception)

@@ -2,18 +2,81 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/data_out.h>
 
+#include <viscoplastic_contact/files.h>
+#include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/output.h>
+#include <viscoplastic_contact/spelling.h>
 #include <viscoplastic_contact/version.h>
 
+#include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <limits>
+#include <regex>
+#include <sstream>
 
 namespace Viscoplastic
 {
   namespace
   {
+    /**
+     * VTU files have single precision. What is beyond its range, and would be
+     * infinite there, becomes its largest number: ParaView cannot scale colors
+     * to infinite values. Returns the data sets where this was needed, by
+     * their indices, and the number of data sets for the coordinates.
+     */
+    template <int dim, int spacedim>
+    std::set<unsigned int>
+    cut_off_infinite(std::vector<DataOutBase::Patch<dim, spacedim>> &patches,
+                     const unsigned int n_data_sets)
+    {
+      constexpr float        largest = std::numeric_limits<float>::max();
+      std::set<unsigned int> result;
+      for (auto &patch : patches)
+        {
+          for (unsigned int i = 0; i < n_data_sets; ++i)
+            for (unsigned int j = 0; j < patch.data.n_cols(); ++j)
+              if (float &value = patch.data(i, j); std::isinf(value))
+                {
+                  value = std::copysign(largest, value);
+                  result.insert(i);
+                }
+          for (Point<spacedim> &x : patch.vertices)
+            for (unsigned int d = 0; d < spacedim; ++d)
+              if (std::abs(x[d]) > largest)
+                {
+                  x[d] = std::copysign(largest, x[d]);
+                  result.insert(n_data_sets);
+                }
+        }
+      return result;
+    }
+
+
+
+    /// The body with its fields.
+    template <int dim>
+    class BodyOutput : public DataOut<dim>
+    {
+    public:
+      std::set<unsigned int>
+      cut_off()
+      {
+        return cut_off_infinite(this->patches, names().size());
+      }
+
+      std::vector<std::string>
+      names() const
+      {
+        return this->get_dataset_names();
+      }
+    };
+
+
+
     /// Faces of Gamma_3 with nodal data, in the form that DataOut writes.
     template <int dim>
     class FaceOutput : public DataOutInterface<dim - 1, dim>
@@ -65,6 +128,34 @@ namespace Viscoplastic
 
 
 
+    /// Refuse to overwrite what somebody else keeps under our names.
+    void
+    refuse_foreign_files(const std::string &path)
+    {
+      for (const auto &[name, beginning] :
+           std::vector<std::pair<std::string, std::string>>{
+             {"parameters.prm", "# Listing of Parameters\n"},
+             {"run.json", "{\n  \"program\": \"viscoplastic_contact\""},
+             {"statistics.csv", "step,t,k,"}})
+        {
+          std::error_code none;
+          if (!std::filesystem::is_regular_file(path + name, none))
+            continue;
+          std::ifstream file(path + name, std::ios::binary);
+          std::string   text(beginning.size(), ' ');
+          file.read(text.data(), static_cast<std::streamsize>(text.size()));
+          text.resize(file.gcount());
+          // It may be cut short.
+          AssertThrow(file.is_open() &&
+                        beginning.compare(0, text.size(), text) == 0,
+                      ExcMessage("The results would overwrite '" + path + name +
+                                 "', which this program has not written; "
+                                 "choose another 'Output/Directory'."));
+        }
+    }
+
+
+
     template <int dim>
     void
     write_record(const Scene<dim>   &scene,
@@ -72,18 +163,15 @@ namespace Viscoplastic
                  const unsigned int  n_ranks,
                  const ErrorSummary *errors = nullptr)
     {
-      std::ofstream parameters(path + "parameters.prm");
+      std::ostringstream parameters;
       scene.parameters.handler.print_parameters(parameters,
                                                 ParameterHandler::Text);
-      parameters.close();
-      AssertThrow(parameters,
-                  ExcMessage("The results directory '" + path +
-                             "' cannot be written."));
+      replace_file(path + "parameters.prm", parameters.str());
 
       const std::time_t now = std::time(nullptr);
       char              date[32];
       std::strftime(date, sizeof(date), "%FT%TZ", std::gmtime(&now));
-      std::ofstream json(path + "run.json");
+      std::ostringstream json;
       json << "{\n  \"program\": \"viscoplastic_contact\",\n  \"version\": "
            << std::quoted(VISCOPLASTIC_CONTACT_VERSION)
            << ",\n  \"git_revision\": "
@@ -110,6 +198,13 @@ namespace Viscoplastic
              << errors->largest_energy_norm
              << ",\n    \"relative\": " << errors->relative() << "\n  }";
       json << ",\n  \"date\": " << std::quoted(date) << "\n}\n";
+      replace_file(path + "run.json", json.str());
+    }
+    /// The name of an output without its ending.
+    std::string
+    record_name(const std::string &series, const unsigned int n)
+    {
+      return series + '_' + Utilities::int_to_string(n, 5);
     }
   } // namespace
 
@@ -126,32 +221,32 @@ namespace Viscoplastic
 
 
 
+  void
+  make_results_directory(const std::string &path)
+  {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    AssertThrow(!error,
+                ExcMessage("The results directory '" + path +
+                           "' cannot be written; change 'Output/Directory' or "
+                           "its permissions."));
+  }
+
+
+
   template <int dim>
   Output<dim>::Output(const Scene<dim> &scene, const MPI_Comm communicator)
     : scene(scene)
     , communicator(communicator)
     , path(results_directory(scene.parameters))
   {
-    // Rank 0 writes; all learn whether that worked.
-    std::string failure;
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      {
-        try
-          {
-            std::filesystem::create_directories(path);
-            write_record(scene,
-                         path,
-                         Utilities::MPI::n_mpi_processes(communicator));
-          }
-        catch (const std::exception &)
-          {
-            failure = "The results directory '" + path +
-                      "' cannot be written; change 'Output/Directory' or its "
-                      "permissions.";
-          }
-      }
-    failure = Utilities::MPI::broadcast(communicator, failure);
-    AssertThrow(failure.empty(), ExcMessage(failure));
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) != 0)
+        return;
+      make_results_directory(path);
+      refuse_foreign_files(path);
+      write_record(scene, path, Utilities::MPI::n_mpi_processes(communicator));
+    });
   }
 
 
@@ -160,11 +255,13 @@ namespace Viscoplastic
   void
   Output<dim>::record_errors(const ErrorSummary &errors) const
   {
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      write_record(scene,
-                   path,
-                   Utilities::MPI::n_mpi_processes(communicator),
-                   &errors);
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        write_record(scene,
+                     path,
+                     Utilities::MPI::n_mpi_processes(communicator),
+                     &errors);
+    });
   }
 
 
@@ -192,23 +289,17 @@ namespace Viscoplastic
   {
     if (Utilities::MPI::this_mpi_process(communicator) != 0)
       return;
-    namespace fs                = std::filesystem;
-    const std::string     begin = name + '_';
+    namespace fs = std::filesystem;
+    const std::regex      piece(name +
+                           "_([0-9]{5,9})[.](pvtu|[0-9]+[.]vtu)([.]part)?");
     std::vector<fs::path> later;
     std::error_code       error;
     for (const auto &entry : fs::directory_iterator(path, error))
       {
         const std::string file = entry.path().filename().string();
-        const std::size_t dot  = file.find('.');
-        if (file.compare(0, begin.size(), begin) != 0 ||
-            (entry.path().extension() != ".vtu" &&
-             entry.path().extension() != ".pvtu") ||
-            dot <= begin.size() || dot > begin.size() + 9)
-          continue;
-        const std::string digits =
-          file.substr(begin.size(), dot - begin.size());
-        if (digits.find_first_not_of("0123456789") == std::string::npos &&
-            std::stoul(digits) >= times.size())
+        std::smatch       parts;
+        if (std::regex_match(file, parts, piece) &&
+            std::stoul(parts[1]) >= times.size())
           later.push_back(entry.path());
       }
     for (const fs::path &file : later)
@@ -237,20 +328,24 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
+  std::vector<std::string>
   Output<dim>::write_fields(const StressSampling<dim> &sampling,
                             const State<dim>          &state,
                             const ContactFace<dim>    *face,
                             const Vector<double>      *squared_estimate)
   {
     times.push_back(state.t);
-    write_body(sampling, state, squared_estimate);
+    std::vector<std::string> remarks{
+      write_body(sampling, state, squared_estimate)};
     write_pvd("solution");
     if (scene.has_contact())
       {
-        write_contact(sampling.space, state, face);
+        remarks.push_back(write_contact(sampling.space, state, face));
         write_pvd("contact");
       }
+    remarks.erase(std::remove(remarks.begin(), remarks.end(), ""),
+                  remarks.end());
+    return remarks;
   }
 
 
@@ -259,32 +354,83 @@ namespace Viscoplastic
   void
   Output<dim>::write_pvd(const std::string &name) const
   {
-    if (Utilities::MPI::this_mpi_process(communicator) != 0)
-      return;
     std::vector<std::pair<double, std::string>> records;
     for (unsigned int i = 0; i < times.size(); ++i)
-      records.emplace_back(times[i],
-                           name + "_" + Utilities::int_to_string(i, 5) +
-                             ".pvtu");
-    std::ofstream file(path + name + ".pvd");
-    file << std::setprecision(15);
-    DataOutBase::write_pvd_record(file, records);
-    AssertThrow(file,
-                ExcMessage("Writing to '" + path + name +
-                           ".pvd' failed; is the disk full?"));
+      records.emplace_back(times[i], record_name(name, i) + ".pvtu");
+    std::ostringstream text;
+    text << std::setprecision(15);
+    DataOutBase::write_pvd_record(text, records);
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        replace_file(path + name + ".pvd", text.str());
+    });
   }
 
 
 
   template <int dim>
-  void
+  template <typename Data>
+  std::string
+  Output<dim>::write_vtu(const std::string              &name,
+                         const Data                     &data,
+                         const std::set<unsigned int>   &cut_off,
+                         const std::vector<std::string> &data_sets)
+  {
+    // What DataOutInterface::write_vtu_with_pvtu_record() writes; its errors
+    // would name no file.
+    const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
+    const unsigned int rank    = Utilities::MPI::this_mpi_process(communicator);
+    const std::string  record  = record_name(name, times.size() - 1);
+    std::vector<std::string> pieces;
+    for (unsigned int r = 0; r < n_ranks; ++r)
+      pieces.push_back(
+        record + '.' +
+        Utilities::int_to_string(r, Utilities::needed_digits(n_ranks - 1)) +
+        ".vtu");
+    fail_together(communicator, [&]() {
+      std::ostringstream text;
+      data.write_vtu(text);
+      replace_file(path + pieces[rank], text.str());
+      if (rank != 0)
+        return;
+      std::ostringstream list;
+      data.write_pvtu_record(list, pieces);
+      replace_file(path + record + ".pvtu", list.str());
+    });
+
+    // Vectors have a data set for each component.
+    std::vector<int> is_cut(data_sets.size() + 1, 0);
+    for (const unsigned int i : cut_off)
+      is_cut[i] = 1;
+    Utilities::MPI::max(is_cut, communicator, is_cut);
+    std::vector<std::string> fields;
+    for (unsigned int i = 0; i < is_cut.size(); ++i)
+      if (const std::string field =
+            i < data_sets.size() ? "'" + data_sets[i] + "'" : "the coordinates";
+          is_cut[i] == 1 && cut_fields.insert(name + field).second)
+        fields.push_back(field);
+    if (fields.empty())
+      return "";
+    std::ostringstream remark;
+    remark << "Warning: '" << path << record << ".pvtu' has "
+           << std::setprecision(2) << std::numeric_limits<float>::max()
+           << ", the largest number of single precision, where the values of "
+           << enumeration(fields)
+           << " are larger; choose other units to see them.";
+    return remark.str();
+  }
+
+
+
+  template <int dim>
+  std::string
   Output<dim>::write_body(const StressSampling<dim> &sampling,
                           const State<dim>          &state,
                           const Vector<double>      *squared_estimate)
   {
     const DoFHandler<dim> &dof_handler = sampling.space.dof_handler;
     const auto            &tria        = dof_handler.get_triangulation();
-    DataOut<dim>           data_out;
+    BodyOutput<dim>        data_out;
     data_out.attach_dof_handler(dof_handler);
     const std::vector<DataComponentInterpretation::DataComponentInterpretation>
       is_vector(dim, DataComponentInterpretation::component_is_part_of_vector);
@@ -352,14 +498,14 @@ namespace Viscoplastic
       }
     data_out.set_flags(vtk_flags());
     data_out.build_patches();
-    data_out.write_vtu_with_pvtu_record(
-      path, "solution", times.size() - 1, communicator, 5);
+    const std::set<unsigned int> cut = data_out.cut_off();
+    return write_vtu("solution", data_out, cut, data_out.names());
   }
 
 
 
   template <int dim>
-  void
+  std::string
   Output<dim>::write_contact(const AdmissibleSpace<dim> &space,
                              const State<dim>           &state,
                              const ContactFace<dim>     *face)
@@ -467,8 +613,9 @@ namespace Viscoplastic
               }
             output.patches.push_back(patch);
           }
-    output.write_vtu_with_pvtu_record(
-      path, "contact", times.size() - 1, communicator, 5);
+    const std::set<unsigned int> cut =
+      cut_off_infinite(output.patches, output.names.size());
+    return write_vtu("contact", output, cut, output.names);
   }
 
 

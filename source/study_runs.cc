@@ -424,12 +424,7 @@ namespace Viscoplastic
       begun += name + ' ' + value + '\n';
     bool may_restart = false;
     on_first_rank(communicator, [&] {
-      std::error_code error;
-      std::filesystem::create_directories(place, error);
-      AssertThrow(!error,
-                  ExcMessage("The directory '" + place +
-                             "' cannot be made; change 'Output/Directory' or "
-                             "its permissions."));
+      make_results_directory(place);
       std::filesystem::remove(place + "result.json");
       may_restart = read_file_if_any(place + "begun") == begun;
       replace_file(place + "begun", begun, /* to_disk = */ true);
@@ -439,9 +434,9 @@ namespace Viscoplastic
     Outcome         outcome;
     RunMeasurements measurements;
     bool            failed = false;
+    Console         console(communicator, true, place + "log.txt");
     try
       {
-        Console console(communicator, true, place + "log.txt");
         outcome.interruption =
           run_scene(parameters,
                     console,
@@ -463,6 +458,7 @@ namespace Viscoplastic
           {
             std::string text;
             on_first_rank(communicator, [&] {
+              console.check();
               RunRecord record =
                 make_record(key,
                             read_table(place + "statistics.csv"),

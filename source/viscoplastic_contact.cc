@@ -454,12 +454,15 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::write_fields()
   {
-    TimerOutput::Scope phase(timer, "output");
-    output->write_fields(discretisation->sampling,
-                         state,
-                         discretisation->face.get(),
-                         squared_estimate.size() > 0 ? &squared_estimate :
-                                                       nullptr);
+    TimerOutput::Scope             phase(timer, "output");
+    const std::vector<std::string> remarks =
+      output->write_fields(discretisation->sampling,
+                           state,
+                           discretisation->face.get(),
+                           squared_estimate.size() > 0 ? &squared_estimate :
+                                                         nullptr);
+    for (const std::string &remark : remarks)
+      console.remark(remark);
   }
 
 

@@ -72,6 +72,11 @@ namespace Viscoplastic
     void
     remark(const std::string &sentence);
 
+    /// Throws ExcMessage if not all has been written that was to be, on the
+    /// standard output or in the log: the disk may be full. On rank 0.
+    void
+    check();
+
     /// In their order.
     const std::vector<std::string> &
     remarks() const
@@ -104,6 +109,7 @@ namespace Viscoplastic
 
     const bool               speaks;
     const bool               is_terminal;
+    const std::string        log_name;
     std::ofstream            log_file;
     Tee                      tee;
     std::ostream             everywhere;

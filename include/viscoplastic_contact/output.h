@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/state.h>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,10 @@ namespace Viscoplastic
   /// `Output/Directory', or what it is by default; ends with a slash.
   std::string
   results_directory(const Parameters &parameters);
+
+  /// Make it. Throws ExcMessage.
+  void
+  make_results_directory(const std::string &path);
 
 
 
@@ -29,7 +34,8 @@ namespace Viscoplastic
   public:
     /**
      * Makes the directory and writes the record of the run. Collective. Throws
-     * ExcMessage if the directory cannot be written.
+     * ExcMessage if the directory cannot be written, or has files of somebody
+     * else under the names of results.
      */
     Output(const Scene<dim> &scene, const MPI_Comm communicator);
 
@@ -60,23 +66,33 @@ namespace Viscoplastic
 
     /**
      * Write the fields of a state. @p face is null without friction,
-     * @p squared_estimate without an estimator. Collective.
+     * @p squared_estimate without an estimator. Returns sentences about fields
+     * that are beyond the range of the files for the first time. Collective.
      */
-    void
+    std::vector<std::string>
     write_fields(const StressSampling<dim> &sampling,
                  const State<dim>          &state,
                  const ContactFace<dim>    *face,
                  const Vector<double>      *squared_estimate);
 
   private:
-    void
+    // What these return: see write_fields().
+    std::string
     write_body(const StressSampling<dim> &sampling,
                const State<dim>          &state,
                const Vector<double>      *squared_estimate);
-    void
+    std::string
     write_contact(const AdmissibleSpace<dim> &space,
                   const State<dim>           &state,
                   const ContactFace<dim>     *face);
+    /// Write the last output of a series: the piece of each rank and the record
+    /// of them all. @p cut_off is of this rank.
+    template <typename Data>
+    std::string
+    write_vtu(const std::string              &name,
+              const Data                     &data,
+              const std::set<unsigned int>   &cut_off,
+              const std::vector<std::string> &data_sets);
     void
     write_pvd(const std::string &name) const;
     /// Remove pieces of outputs that do not count, on rank 0.
@@ -87,5 +103,7 @@ namespace Viscoplastic
     const MPI_Comm      communicator;
     std::string         path; // ends with a slash
     std::vector<double> times;
+    /// Fields that the user has been told of.
+    std::set<std::string> cut_fields;
   };
 } // namespace Viscoplastic

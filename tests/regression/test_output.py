@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """VTU series, statistics and records, read back by independent readers."""
 
+import os
+import subprocess
+import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 
-from harness import TestCase, main, run
+from harness import EXECUTABLE, MPIRUN, TestCase, as_prm, main, run, scene_file
 
 STATISTICS_2D = [
     "step",
@@ -338,6 +342,158 @@ class ThreeDimensions(TestCase):
         force = (weight[:, None] * contact.point_data["traction"][nodes]).sum(axis=0)
         expected = -result.vector("friction_force")[-1]
         self.assertClose(force, expected, absolute=SINGLE * abs(expected).max())
+
+
+STRESSES = "stress", "irreversible_stress", "von_mises", "traction", "bound"
+
+
+class SinglePrecision(TestCase):
+    def test_values_beyond_it_are_cut_off(self):
+        """In units that make stresses of 1e39, and only these."""
+        factor = 1e40
+        overrides = {
+            "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
+            "Time/Phases": "1: 4, 2: 4",
+            "Output/Fields every": 2,
+        }
+        for ranks in 1, 2:
+            usual = run("slab", overrides, ranks)
+            scaled = run(
+                "slab",
+                {
+                    **overrides,
+                    "Material/Young's modulus": factor,
+                    "Material/maxwell/Viscosity": 0.5 * factor,
+                    "Boundary 0/Traction": f"{0.3 * factor}*min(t, 2 - t); 0",
+                    "Boundary 2/Friction bound": 0.08 * factor,
+                },
+                ranks,
+            )
+            # each field once, and once more at the end
+            warnings = [
+                line
+                for line in scaled.stdout.splitlines()
+                if "single precision" in line
+            ]
+            for name in "'stress_xx'", "'von_mises'", "'traction'", "'bound'":
+                self.assertEqual(sum(name in line for line in warnings), 2, name)
+            self.assertNotIn("single precision", usual.stdout)
+            self.assertNotRegex(warnings[0], "displacement|velocity|coordinates")
+            largest = np.finfo(np.float32).max
+            n_cut = 0
+            for series in "solution", "contact":
+                for index in range(len(usual.series(series))):
+                    fields = scaled.fields(series, index)
+                    expected = usual.fields(series, index)
+                    for kind in "point_data", "cell_data":
+                        for name, values in getattr(fields, kind).items():
+                            self.assertTrue(np.all(np.isfinite(values)), name)
+                            wanted = getattr(expected, kind)[name]
+                            if name.startswith(STRESSES):
+                                wanted = wanted * factor
+                            wanted = np.clip(wanted, -largest, largest)
+                            n_cut += np.count_nonzero(abs(wanted) == largest)
+                            self.assertClose(
+                                values,
+                                wanted,
+                                absolute=1e-4 * abs(wanted).max(),
+                                what=name,
+                            )
+            self.assertGreater(n_cut, 0)
+
+
+class FullDisk(TestCase):
+    """/dev/full stands for a disk without space: what cannot be written is
+    named in one sentence, and the run fails."""
+
+    SMALL = {
+        "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
+        "Time/Phases": "1: 4, 2: 4",
+        "Output/Fields every": 2,
+    }
+
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.work = Path(place.name)
+
+    def call(self, *arguments, ranks=1, stdout=subprocess.PIPE, **overrides):
+        (self.work / "small.prm").write_text(as_prm({**self.SMALL, **overrides}))
+        command = [EXECUTABLE, *arguments]
+        if ranks > 1:
+            command = MPIRUN + ["-n", str(ranks)] + command
+        return subprocess.run(
+            command,
+            cwd=self.work,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            stdout=stdout,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def fails(self, name, *arguments, **more):
+        scene = [str(scene_file("slab")), "small.prm"]
+        process = self.call(*scene, *arguments, **more)
+        self.assertEqual(process.returncode, 1, f"{name}: {process.stderr}")
+        sentences = [
+            line
+            for line in process.stderr.splitlines()
+            if line.startswith("viscoplastic_contact: ")
+        ]
+        if more.get("ranks", 1) == 1:
+            self.assertEqual(process.stderr.splitlines(), sentences, name)
+        self.assertEqual(len(sentences), 1, process.stderr)
+        self.assertRegex(sentences[0], rf"{name}.*(No space left|disk full)")
+        self.assertLess(len(sentences[0]), 200)
+
+    def test_results(self):
+        for name in (
+            "parameters.prm",
+            "run.json",
+            "statistics.csv",
+            "solution.pvd",
+            "contact.pvd",
+            "solution_00000.pvtu",
+            "contact_00000.0.vtu",
+            "solution_00004.0.vtu",
+        ):
+            with self.subTest(name=name):
+                results = self.work / name.replace(".", "_")
+                results.mkdir()
+                (results / name).symlink_to("/dev/full")
+                self.fails(f"'{results}/{name}'", **{"Output/Directory": results})
+
+    def test_results_of_another_rank(self):
+        (self.work / "solution_00001.1.vtu").symlink_to("/dev/full")
+        self.fails(
+            "solution_00001.1.vtu", ranks=2, **{"Output/Directory": self.work}
+        )
+
+    def test_messages(self):
+        """The results are complete."""
+        self.fails("The log file '/dev/full'", "--log", "/dev/full")
+        self.assertTrue((self.work / "output/slab/solution_00004.pvtu").exists())
+        with open("/dev/full", "w") as full:
+            self.fails("the standard output", stdout=full)
+            process = self.call("--describe", stdout=full)
+            self.assertEqual(process.returncode, 1)
+            self.assertRegex(process.stderr, "^visco.*the standard output.*full")
+
+
+class Foreign(TestCase):
+    """What somebody else keeps under the names of results."""
+
+    def test_is_not_overwritten(self):
+        for name in "parameters.prm", "run.json", "statistics.csv":
+            with tempfile.TemporaryDirectory() as place:
+                file = Path(place) / name
+                file.write_text("mine\n")
+                overrides = {"Output/Directory": place}
+                result = run("slab", {**Choices.SMALL, **overrides}, check=False)
+                self.assertEqual(result.returncode, 1, name)
+                self.assertRegex(result.stderr, f"would overwrite '{file}'")
+                self.assertEqual([p.name for p in Path(place).iterdir()], [name])
+                self.assertEqual(file.read_text(), "mine\n")
 
 
 if __name__ == "__main__":

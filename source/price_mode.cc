@@ -137,9 +137,7 @@ namespace Viscoplastic
   std::string
   run_at_price(const CommandLine &command_line, Console &console)
   {
-    const StudyRuns    runs(command_line.files,
-                         command_line.overrides,
-                         MPI_COMM_WORLD);
+    StudyRuns runs(command_line.files, command_line.overrides, MPI_COMM_WORLD);
     ConditionalOStream out(console.stream(),
                            Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) ==
                              0);
@@ -168,6 +166,7 @@ namespace Viscoplastic
                                     n >= 4 * runs.phases.size() ? 0 :
                                                                   1;
 
+    runs.lock_directory();
     const Pilots pilots = make_pilots(runs, mesh_level, time_level, console);
     if (!pilots.interruption.empty())
       return pilots.interruption;

@@ -67,7 +67,10 @@ namespace Viscoplastic
     const CheckpointStore       store  = checkpoints();
     const CheckpointParameters &wanted = parameters.checkpoint;
     if (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.)
-      store.make_directory();
+      {
+        store.make_directory();
+        lock_directories();
+      }
     const CheckpointStore::Removal removal = store.remove_all();
     for (const std::string &remark : removal.remarks)
       console.remark(remark);
@@ -151,6 +154,8 @@ namespace Viscoplastic
         statistics->synchronise(); // whose rows the checkpoint relies on
       }
     const CheckpointStore store = checkpoints();
+    store.make_directory(); // unless the scene has asked for checkpoints
+    lock_directories();
     for (const std::string &remark :
          store.write(manifest, files, parameters.checkpoint.keep))
       console.remark(remark);

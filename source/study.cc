@@ -343,6 +343,7 @@ namespace Viscoplastic
   Study::run()
   {
     Timer timer;
+    runs.lock_directory();
     out << "Study of " << runs.scene.file << ": " << plan.size() << " runs"
         << std::endl;
     if (!has_exact_solution)

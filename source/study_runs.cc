@@ -212,6 +212,17 @@ namespace Viscoplastic
 
 
 
+  void
+  StudyRuns::lock_directory()
+  {
+    on_first_rank(communicator, [&] {
+      make_results_directory(directory);
+      lock.acquire(directory);
+    });
+  }
+
+
+
   RunKey
   StudyRuns::scene_key() const
   {

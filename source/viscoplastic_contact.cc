@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 
@@ -162,6 +163,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::run(const CommandLine::Restart restart)
   {
     make_mesh();
+    lock_directories();
     if (const auto checkpoint = find_checkpoint(restart))
       {
         resume(*checkpoint);
@@ -186,6 +188,26 @@ namespace Viscoplastic
       }
     close();
     return "";
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::lock_directories(const bool make_results)
+  {
+    const std::string results = results_directory(parameters),
+                      saved   = checkpoints().directory;
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) != 0)
+        return;
+      if (make_results)
+        make_results_directory(results);
+      results_lock.acquire(results);
+      std::error_code none;
+      if (!std::filesystem::equivalent(results, saved, none))
+        checkpoint_lock.acquire(saved);
+    });
   }
 
 
@@ -225,6 +247,7 @@ namespace Viscoplastic
       check_exact_solution(discretisation->space);
     set_initial_state();
     check_steps();
+    lock_directories(/* make_results = */ true);
     output.emplace(scene, communicator);
     begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)

@@ -5,6 +5,7 @@
 
 #include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/console.h>
+#include <viscoplastic_contact/files.h>
 #include <viscoplastic_contact/parameter_file.h>
 #include <viscoplastic_contact/price_list.h>
 #include <viscoplastic_contact/study_record.h>
@@ -49,6 +50,11 @@ namespace Viscoplastic
     /// others are compared, if any. Records of runs that have been compared
     /// with another one, or none, do not count as finished.
     std::optional<RunKey> reference;
+
+    /// Make the directory of the study, and take its lock, so that no two
+    /// studies make the same runs at once.
+    void
+    lock_directory();
 
     /// The scene as it is.
     RunKey
@@ -96,7 +102,8 @@ namespace Viscoplastic
     std::map<std::string, std::string>
     stamp(const Parameters &parameters) const;
 
-    MPI_Comm communicator, agreement;
+    MPI_Comm      communicator, agreement;
+    DirectoryLock lock; // on rank 0
   };
 
 

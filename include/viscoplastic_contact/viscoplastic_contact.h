@@ -14,6 +14,7 @@
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/contact_tension.h>
 #include <viscoplastic_contact/error_bar.h>
+#include <viscoplastic_contact/files.h>
 #include <viscoplastic_contact/flow_laws.h>
 #include <viscoplastic_contact/force_balance.h>
 #include <viscoplastic_contact/loads.h>
@@ -361,6 +362,11 @@ namespace Viscoplastic
     double
     stored_energy(const State<dim> &of, const Forces<dim> &its_forces) const;
 
+    /// Keep other processes out of the directories that this run writes into,
+    /// as far as they exist and have no lock yet.
+    void
+    lock_directories(const bool make_results = false);
+
     // Checkpoints: source/restart.cc.
 
     /// Where the scene keeps its checkpoints.
@@ -460,6 +466,7 @@ namespace Viscoplastic
     /// Whether the user has been told that forces do not balance well.
     bool balance_is_doubtful = false;
 
+    DirectoryLock                results_lock, checkpoint_lock; // on rank 0
     std::optional<Output<dim>>   output;
     std::unique_ptr<Statistics>  statistics; // on rank 0
     std::vector<PointProbe<dim>> probes;

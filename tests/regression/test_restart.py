@@ -945,5 +945,52 @@ class Foreign(RestartCase):
             self.assertEqual(list(job.checkpoints.iterdir()), [])
 
 
+class TwoAtOnce(RestartCase):
+    """No two runs write into the same directory."""
+
+    OVERRIDES = {
+        "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
+        "Time/Phases": "1: 200, 2: 200",
+        "Output/Fields every": 0,
+        "Checkpoint/Every n steps": 1,
+    }
+
+    def test_second_run(self):
+        """It is refused while the first one is there, be it asleep, and not
+        when that has been killed."""
+        with Job("slab", self.OVERRIDES) as job, Job("slab", SLAB) as other:
+            process = job.start()
+            wait_for(lambda: job.steps() or process.poll() is not None)
+            process.send_signal(signal.SIGSTOP)
+            try:
+                rows = (job.results / "statistics.csv").read_bytes()
+                for options in (), ("--restart",), ("--restart=auto",):
+                    result = job.run(*options, code=1)
+                    self.assertOneSentence(
+                        result.stderr,
+                        rf"Another run \(process {process.pid} on \S+\)",
+                        "results/'",
+                    )
+                other.overrides["Checkpoint/Directory"] = job.checkpoints
+                result = other.run(code=1)
+                self.assertOneSentence(result.stderr, "Another run", "checkpoint/'")
+                self.assertFalse((other.results / "statistics.csv").exists())
+                self.assertEqual((job.results / "statistics.csv").read_bytes(), rows)
+                job.run("--check")
+            finally:
+                process.kill()
+                process.communicate()
+            result = job.run("--restart")
+            self.assertIn("Restart after step", result.stdout)
+            self.assertEqual(list(job.work.rglob("*.lock")), [])
+
+    def test_same_directory_for_all(self):
+        """A run does not keep itself out."""
+        with Job("slab", {**SLAB, **EVERY_STEP}) as job:
+            job.overrides["Checkpoint/Directory"] = job.results
+            job.run(ranks=2)
+            self.assertTrue((job.results / "step_000016").exists())
+
+
 if __name__ == "__main__":
     main()

@@ -3,6 +3,7 @@
 an interruption; prices of errors."""
 
 import csv
+import fcntl
 import json
 import re
 import shutil
@@ -380,6 +381,17 @@ class Refused(TestCase):
             text = (folder.study / "study.md").read_text()
             self.assertRegex(text, r"`uniform_h0_k0`: failed: Step 1 .*: the time step")
             self.assertIn("uniform_h3_k3", folder.finished())
+
+    def test_another_study_at_the_same_time(self):
+        with Folder(MANUFACTURED / "tresca_2d.prm") as folder:
+            folder.study.mkdir(parents=True)
+            with open(folder.study / "viscoplastic_contact.lock", "w") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                for arguments in ("study",), ("--price=0.1", "--check"):
+                    self.assertRegex(
+                        self.refuse(folder, *arguments),
+                        r"Another run is writing into '\S+/study/'",
+                    )
 
     def test_price(self):
         with Folder(

@@ -396,9 +396,11 @@ namespace Viscoplastic
       parameters.exact_solution.reference_directory;
     SolutionErrors result;
     result.error.fill(std::numeric_limits<double>::quiet_NaN());
-    result.exact      = result.error;
-    result.memory     = result.error.energy;
-    const bool writes = parameters.output.reference_fields && phase > 0;
+    result.exact  = result.error;
+    result.memory = result.error.energy;
+    // A run without files has no output.
+    const bool writes =
+      output && parameters.output.reference_fields && phase > 0;
     if (!writes && !scene.exact_solution && (reference.empty() || phase == 0))
       return result;
 

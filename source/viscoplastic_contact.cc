@@ -163,6 +163,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::run(const CommandLine::Restart restart)
   {
     make_mesh();
+    check_references();
     lock_directories();
     if (const auto checkpoint = find_checkpoint(restart))
       {
@@ -241,7 +242,6 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::begin()
   {
-    check_references();
     set_up();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(discretisation->space);

@@ -467,8 +467,8 @@ namespace Viscoplastic
     bool balance_is_doubtful = false;
 
     DirectoryLock                results_lock, checkpoint_lock; // on rank 0
-    std::optional<Output<dim>>   output;
-    std::unique_ptr<Statistics>  statistics; // on rank 0
+    std::optional<Output<dim>>   output;     // absent without files
+    std::unique_ptr<Statistics>  statistics; // on rank 0, with files
     std::vector<PointProbe<dim>> probes;
     Progress                     progress;
     RunSummary<dim>              summary;

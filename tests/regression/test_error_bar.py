@@ -338,7 +338,17 @@ class TwoLevels(TestCase):
             "Time/Phases": "1: 8, 2: 7",
             "Output/Fields every": 0,
         }
-        result = run("slab", {**scene, "Error control/Two-level comparison": "true"})
+        # The coarser run has no directory to keep reference fields in.
+        result = run(
+            "slab",
+            {
+                **scene,
+                "Error control/Two-level comparison": "true",
+                "Output/Reference fields": "true",
+            },
+        )
+        references = sorted(result.directory.glob("reference_*.bin"))
+        self.assertEqual(len(references), 2)
         coarser = run(
             "slab",
             {**scene, "Geometry/Global refinements": 0, "Time/Phases": "1: 4, 2: 3"},

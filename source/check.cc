@@ -82,6 +82,7 @@ namespace Viscoplastic
     discretisation = std::make_unique<Discretisation>(dof_handler, scene);
     const Discretisation &d = *discretisation;
     announce_mesh();
+    announce_held_faces();
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(d.space, x);
 

@@ -195,6 +195,22 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::set<types::boundary_id>
+  ContactFace<dim>::held_boundaries() const
+  {
+    std::set<types::boundary_id> result;
+    for (const auto &[id, condition] : space.scene.boundary)
+      if (condition.has_friction())
+        result.insert(id);
+    for (const auto &ids_of_point : boundary_ids)
+      for (const types::boundary_id id : ids_of_point)
+        result.erase(id);
+    return result;
+  }
+
+
+
+  template <int dim>
   std::vector<double>
   ContactFace<dim>::bounds(const double t) const
   {

@@ -250,7 +250,7 @@ namespace Viscoplastic
               NonsymmetricCorrection<dim>(d.laws,
                                           d.matrix,
                                           *d.solver,
-                                          d.face.get(),
+                                          d.slipping_face(),
                                           load.values,
                                           old_forces.u,
                                           step.bounds,

@@ -73,6 +73,22 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ViscoplasticContact<dim>::announce_held_faces()
+  {
+    if (!discretisation->face)
+      return;
+    for (const types::boundary_id id : discretisation->face->held_boundaries())
+      if (announced_held_faces.insert(id).second)
+        console.remark(
+          "Note: nothing slips on boundary " + std::to_string(id) +
+          ", although it has friction: other conditions hold all of its nodes "
+          "on the present mesh; refine it there, or release another boundary.");
+  }
+
+
+
+  template <int dim>
+  void
   ViscoplasticContact<dim>::announce_solver()
   {
     if (!discretisation->solver ||

@@ -304,7 +304,7 @@ namespace Viscoplastic
     d.solver->set_rounding_error(100. * std::numeric_limits<double>::epsilon() *
                                  std::sqrt(rounding));
 
-    if (d.face)
+    if (d.slipping_face())
       {
         DistributedVector change(u);
         change -= old_forces.u;

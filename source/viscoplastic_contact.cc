@@ -305,6 +305,7 @@ namespace Viscoplastic
     discretisation->make_matrix();
     if (forces.u.size() == 0) // the first time
       announce_mesh();
+    announce_held_faces();
     announce_solver();
     probes.clear();
     for (const Point<dim> &x : scene.output_points)

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/admissible_space.h>
 #include <viscoplastic_contact/friction_face.h>
 
+#include <set>
 #include <vector>
 
 namespace Viscoplastic
@@ -26,6 +27,11 @@ namespace Viscoplastic
     {
       return face;
     }
+
+    /// Frictional boundaries none of whose nodes can slip, because other
+    /// conditions hold them all. The same on all ranks.
+    std::set<types::boundary_id>
+    held_boundaries() const;
 
     /// Global index of each entry of a face vector.
     const std::vector<types::global_dof_index> &

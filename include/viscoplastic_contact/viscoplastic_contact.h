@@ -33,6 +33,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 
 namespace Viscoplastic
 {
@@ -104,6 +105,14 @@ namespace Viscoplastic
       /// For a matrix that stays in use; the elastic one, or of a tangent.
       void
       make_solver(const DistributedMatrix &of, const double max_nu);
+
+      /// The face for solvers: null if there is nothing that could slip, also
+      /// where other conditions hold all nodes of the frictional pieces.
+      const ContactFace<dim> *
+      slipping_face() const
+      {
+        return face && face->layout().n_dofs() > 0 ? face.get() : nullptr;
+      }
 
       /// In runs that change between schemes: put the solver of the elastic
       /// matrix or that of the tangent in place, and the other one aside.
@@ -406,6 +415,10 @@ namespace Viscoplastic
     void
     announce_mesh() const;
 
+    /// Name the frictional boundaries without friction points, each once.
+    void
+    announce_held_faces();
+
     /// Name the linear solver if it is another one.
     void
     announce_solver();
@@ -461,8 +474,10 @@ namespace Viscoplastic
     Vector<double> squared_estimate; // eta_K^2, only in adaptive scenes
     /// Whether the state is a solution on the present mesh.
     bool is_solved_on_mesh = false;
-    /// The linear solver that the user has been told of.
-    std::string announced_solver;
+    /// The linear solver, and the frictional boundaries without friction
+    /// points, that the user has been told of.
+    std::string                  announced_solver;
+    std::set<types::boundary_id> announced_held_faces;
     /// Whether the user has been told that forces do not balance well.
     bool balance_is_doubtful = false;
 

@@ -434,6 +434,91 @@ class Junctions(TestCase):
         self.assertNotIn("Warning", result.stdout)
 
 
+class Held(TestCase):
+    """A frictional piece whose nodes other conditions hold has no friction
+    points: the run does without friction there, and says so."""
+
+    TEXT = """
+        subsection Boundary 0
+          set Role = clamped
+        end
+        subsection Boundary 1
+          set Role         = displacement
+          set Displacement = 0.01*t; FREE
+        end
+        subsection Boundary 2
+          set Role           = contact
+          set Friction law   = tresca
+          set Friction bound = 1e-3
+        end
+        subsection Boundary 3
+          set Role = free
+        end
+        subsection Time
+          set Phases = 1: 4
+        end
+        subsection Solver
+          set Contact tolerance = 1e-10
+        end
+        """
+    NOTE = "Note: nothing slips on boundary 2, "
+    HELD = {"Geometry/Arguments": "1, 1 : 0, 0 : 1, 1 : true"}
+    SPACE = {
+        "Dimension": 3,
+        "Geometry/Arguments": "1, 1, 1 : 0, 0, 0 : 1, 1, 1 : true",
+        "Boundary 4/Role": "free",
+        "Boundary 5/Role": "free",
+    }
+
+    def held(self, overrides, dim=2, **options):
+        text = self.TEXT.replace("FREE", "free" if dim == 2 else "free; 0")
+        result = run("held", overrides, text=text, **options)
+        # once where it is seen, and once more at the end
+        self.assertEqual(result.stdout.count(self.NOTE), 2, result.stdout)
+        return result
+
+    def test_without_friction_points(self):
+        """As without friction, by both solvers."""
+        for solver in "direct", "multigrid":
+            for name, dim, overrides in (
+                ("elastic", 2, self.HELD),
+                ("3D", 3, self.SPACE),
+                ("explicit", 2, {**self.HELD, "Material/Law": "maxwell"}),
+                (
+                    "nonsymmetric tangents",
+                    2,
+                    {
+                        **self.HELD,
+                        "Material/Law": "parsed",
+                        "Material/parsed/Strain rate": "0.1*sigma_eq*exp(-p)",
+                        "Time/Scheme": "backward Euler",
+                    },
+                ),
+            ):
+                with self.subTest(solver=solver, scene=name):
+                    overrides = {**overrides, "Solver/Linear solver": solver}
+                    result = self.held(overrides, dim)
+                    self.check_identities(result)
+                    self.assertEqual(result["slip_area"].max(), 0)
+                    self.assertEqual(result["stick_area"].max(), 0)
+
+    def test_points_that_come_with_the_mesh(self):
+        """On a finer mesh there is something to slip; on ranks without cells,
+        too."""
+        scene = {
+            **self.HELD,
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Maximal level": 3,
+        }
+        alone = self.held(scene)
+        self.check_identities(alone)
+        self.assertEqual(alone["slip_area"][1], 0)
+        self.assertGreater(alone["slip_area"][-1], 0)
+        several = self.held({**scene, "Solver/Linear solver": "multigrid"}, ranks=3)
+        for name in "slip_area", "friction_force_x", "stored_energy":
+            self.assertClose(several[name], alone[name], 1e-6, 1e-9, what=name)
+
+
 class Tension(TestCase):
     """Bilateral contact does not open; the user is told where it pulls."""
 

@@ -36,8 +36,9 @@ namespace Viscoplastic
         const Stiffness       &stiffness = sampling.moduli(c);
         const ViscoplasticLaw *law       = now.law(c);
         sampling.strains(c, state.u.begin(), strain.data());
-        SymmetricTensor<2, 3> mean =
-          stiffness.stress(sampling.mean(c, strain.data()));
+        const SymmetricTensor<2, 3> mean_strain =
+          sampling.mean(c, strain.data());
+        SymmetricTensor<2, 3> mean = stiffness.stress(mean_strain);
         if (has_z)
           {
             mean += sampling.mean(c, &state.z[c * n]);
@@ -80,6 +81,7 @@ namespace Viscoplastic
           }
         const double mises   = von_mises(mean);
         result.max_von_mises = std::max(result.max_von_mises, mises);
+        result.max_strain    = std::max(result.max_strain, mean_strain.norm());
         result.mean_von_mises += mises * sampling.volume(c);
         result.stress_norm += (mean * mean) * sampling.volume(c);
         volume += sampling.volume(c);
@@ -92,9 +94,12 @@ namespace Viscoplastic
                              result.viscous_dissipation,
                              volume};
     Utilities::MPI::sum(sums, comm, sums);
-    result.max_von_mises  = Utilities::MPI::max(result.max_von_mises, comm);
-    result.mean_von_mises = sums[0] / sums[4];
-    result.stress_norm    = std::sqrt(sums[1]);
+    std::vector<double> largest{result.max_von_mises, result.max_strain};
+    Utilities::MPI::max(largest, comm, largest);
+    result.max_von_mises       = largest[0];
+    result.max_strain          = largest[1];
+    result.mean_von_mises      = sums[0] / sums[4];
+    result.stress_norm         = std::sqrt(sums[1]);
     result.irreversible_energy = sums[2];
     result.viscous_dissipation = sums[3];
     return result;

@@ -316,6 +316,7 @@ namespace Viscoplastic
     summary.displacement.update(max_displacement, time_step.t);
     summary.max_displacement    = max_displacement;
     summary.point_displacements = point_values;
+    summary.strain.update(stress.max_strain, time_step.t);
     summary.von_mises.update(stress.max_von_mises, time_step.t);
     if (scene.has_viscosity())
       summary.viscous_dissipation = accounts.viscous_dissipation;
@@ -495,17 +496,22 @@ namespace Viscoplastic
     // All ranks have the coarse mesh.
     const auto corners =
       GridTools::compute_bounding_box(triangulation).get_boundary_points();
-    const double size = corners.first.distance(corners.second);
-    if (summary.displacement.value > size)
+    const double size   = corners.first.distance(corners.second);
+    const bool   is_far = summary.displacement.value > size;
+    if (is_far || summary.strain.value > 1.)
       {
         std::ostringstream text;
-        text << std::setprecision(3)
-             << "Note: at t = " << summary.displacement.t
-             << " the largest displacement is "
-             << summary.displacement.value / size
-             << " times the size of the body; small strains are assumed, so "
-                "that this is flow without end or a load far too large, and "
-                "only its onset means something.";
+        text << std::setprecision(3) << "Note: at t = "
+             << (is_far ? summary.displacement.t : summary.strain.t);
+        if (is_far)
+          text << " the largest displacement is "
+               << summary.displacement.value / size
+               << " times the size of the body";
+        else
+          text << " the largest strain of a cell is " << summary.strain.value
+               << ", so that lengths change by more than themselves";
+        text << "; small strains are assumed, so that this is flow without end "
+                "or a load far too large, and only its onset means something.";
         remarks.push_back(text.str());
       }
 

@@ -99,6 +99,7 @@ namespace Viscoplastic
     if (error_bar)
       error_bar->exchange(archive);
     for (Largest *largest : {&summary.displacement,
+                             &summary.strain,
                              &summary.von_mises,
                              &summary.slip_area,
                              &summary.capped_volume,

@@ -11,6 +11,8 @@ namespace Viscoplastic
   {
     /// Of cell means; the mean is weighted by volume.
     double max_von_mises = 0., mean_von_mises = 0.;
+    /// (eps : eps)^(1/2) of cell means.
+    double max_strain = 0.;
     /// (int sigma : sigma)^(1/2) of cell means.
     double stress_norm = 0.;
     /// 1/2 int E^-1 z : z, and what laws with an energy of their own store

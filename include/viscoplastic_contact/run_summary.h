@@ -60,7 +60,8 @@ namespace Viscoplastic
     /// Of a scene with error bar.
     std::optional<ErrorSummary> errors;
 
-    Largest displacement, von_mises, slip_area, capped_volume, tension_area;
+    Largest displacement, strain, von_mises, slip_area, capped_volume,
+      tension_area;
     /// k r, and where r was that large.
     Largest    stiffness;
     Point<dim> critical_position;

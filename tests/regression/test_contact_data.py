@@ -540,6 +540,15 @@ class Tension(TestCase):
         )
         self.assertClose(pressed["tension_area"], 0)
         self.assertNotIn("pulls", pressed.stdout)
+        self.assertNotIn("small strains", pressed.stdout)
+        # By more than the height, but less than the size of the body.
+        through = run(
+            "conveyor_2d", {**self.SCENE, "Boundary 3/Displacement": "0; -1.5*t"}
+        )
+        self.assertRegex(
+            through.stdout,
+            r"Note: at t = 1 the largest strain of a cell is [0-9.]+, .*small strains",
+        )
         # Turned about its middle: one half presses, the other pulls.
         bent = run(
             "conveyor_2d",

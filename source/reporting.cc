@@ -178,6 +178,8 @@ namespace Viscoplastic
       {
         accounts.external_work += external_work(d.space, forces, step.forces) +
                                   friction.foundation_work;
+        accounts.largest_work =
+          std::max(accounts.largest_work, std::abs(accounts.external_work));
         accounts.viscous_dissipation += stress.viscous_dissipation;
         accounts.friction_dissipation += friction.dissipation;
       }
@@ -314,9 +316,9 @@ namespace Viscoplastic
     summary.energy_balance_defect = defect;
     summary.tension_area.update(tension_area, time_step.t);
     summary.displacement.update(max_displacement, time_step.t);
+    summary.strain.update(stress.max_strain, time_step.t);
     summary.max_displacement    = max_displacement;
     summary.point_displacements = point_values;
-    summary.strain.update(stress.max_strain, time_step.t);
     summary.von_mises.update(stress.max_von_mises, time_step.t);
     if (scene.has_viscosity())
       summary.viscous_dissipation = accounts.viscous_dissipation;
@@ -324,13 +326,16 @@ namespace Viscoplastic
       {
         summary.friction_force       = friction_force;
         summary.friction_dissipation = accounts.friction_dissipation;
-        summary.friction_area        = friction.slip_area + friction.stick_area;
+        summary.slipping_area        = friction.slip_area;
+        // New meshes may have more friction points, or fewer.
+        const double area = friction.slip_area + friction.stick_area;
+        if (friction.slip_area > summary.slip_area.value ||
+            summary.slip_area.value == 0.)
+          summary.friction_area = area;
         summary.slip_area.update(friction.slip_area, time_step.t);
-        summary.slipping_area               = friction.slip_area;
         progress_of_step.contact_iterations = step.report.iterations;
-        if (summary.friction_area > 0.)
-          progress_of_step.slipping =
-            friction.slip_area / summary.friction_area;
+        if (area > 0.)
+          progress_of_step.slipping = friction.slip_area / area;
       }
     if (scene.is_adaptive())
       {
@@ -490,6 +495,23 @@ namespace Viscoplastic
              << " the foundation pulls at the body on "
              << std::lround(100. * tension)
              << " % of the face in bilateral contact, which does not open.";
+        remarks.push_back(text.str());
+      }
+
+    // What meshes do is no physics.
+    const double given = accounts.largest_work + accounts.initial_energy;
+    if (std::abs(accounts.adaptation_energy) > 0.1 * given)
+      {
+        std::ostringstream text;
+        text << std::setprecision(3)
+             << "Warning: changes of the mesh have added "
+             << accounts.adaptation_energy << " to the stored energy, beside "
+             << given
+             << " of the loads and the initial state: energies, and forces "
+                "after a change of the mesh, are not to be trusted. A fixed "
+                "mesh ('Mesh refinement/Strategy' = none) is free of it, and "
+                "fewer changes ('Every n steps') add less; bodies next to "
+                "incompressible are prone to it.";
         remarks.push_back(text.str());
       }
 

@@ -92,9 +92,9 @@ namespace Viscoplastic
       .sticks;
     archive &accounts.initial_energy &accounts.external_work &accounts
       .viscous_dissipation &accounts.friction_dissipation &accounts
-      .largest_force &accounts.adaptation_energy &accounts
-      .contact_iterations &accounts.linear_iterations &accounts
-      .newton_iterations                              &accounts.implicit_steps;
+      .largest_force &accounts.largest_work &accounts
+      .adaptation_energy &accounts.contact_iterations &accounts
+      .linear_iterations &accounts.newton_iterations &accounts.implicit_steps;
     control.exchange(archive);
     if (error_bar)
       error_bar->exchange(archive);
@@ -106,6 +106,7 @@ namespace Viscoplastic
                              &summary.tension_area,
                              &summary.stiffness})
       archive & largest->value & largest->t;
+    archive &summary.friction_area;
     for (unsigned int d = 0; d < dim; ++d)
       archive &summary.critical_position[d];
     for (SolutionNorms *norms :

@@ -62,6 +62,8 @@ namespace Viscoplastic
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,
       tension_area;
+    /// Of all friction points, on the mesh on which slip_area was reached.
+    double friction_area = 0.;
     /// k r, and where r was that large.
     Largest    stiffness;
     Point<dim> critical_position;
@@ -69,8 +71,6 @@ namespace Viscoplastic
     unsigned int                n_steps = 0;
     std::optional<StepCounts>   steps;
     std::optional<unsigned int> implicit_steps;
-    /// Of all friction points.
-    double friction_area = 0.;
     /// Against an exact solution; zero without one.
     SolutionNorms largest_error, largest_exact;
 

@@ -187,6 +187,9 @@ namespace Viscoplastic
       /// The largest load, reaction or friction force so far: the scale of
       /// defects of balance, also where all forces pass through zero.
       double largest_force = 0.;
+      /// The largest |external_work| so far: the scale of energies, also where
+      /// loads give back what they took.
+      double largest_work = 0.;
       /// What changes of the mesh did to the stored energy.
       double       adaptation_energy  = 0.;
       unsigned int contact_iterations = 0, linear_iterations = 0,

@@ -218,5 +218,67 @@ class Combinations(TestCase):
         self.assertTrue((result["linear_iterations"][1:][changed] > 0).all())
 
 
+class Reports(TestCase):
+    """What is said at the end of a run whose mesh has changed."""
+
+    BLOCK = """
+        subsection Boundary 0
+          set Role = clamped
+        end
+        subsection Boundary 1
+          set Role     = traction
+          set Traction = 0.01*t; 0
+        end
+        subsection Boundary 2
+          set Role           = contact
+          set Friction law   = tresca
+          set Friction bound = 1e-9
+        end
+        subsection Boundary 3
+          set Role = free
+        end
+        subsection Output
+          set Fields every = 0
+        end
+        """
+
+    def block(self, **overrides):
+        return run("block", overrides, text=self.BLOCK)
+
+    def test_energy_from_new_meshes(self):
+        """A body next to incompressible resists what interpolation does to the
+        volume within cells; then the run warns."""
+        warning = "Warning: changes of the mesh have added "
+        for ratio, is_told in (0.3, False), (0.499999, True):
+            result = self.block(
+                **{
+                    "Geometry/Arguments": "4, 4 : 0, 0 : 1, 1 : true",
+                    "Material/Poisson's ratio": ratio,
+                    "Mesh refinement/Strategy": "residual",
+                    "Mesh refinement/Maximal level": 2,
+                    "Time/Phases": "1: 4",
+                }
+            )
+            self.assertEqual(warning in result.stdout, is_told, result.stdout)
+            share = result["adaptation_energy"][-1] / result["external_work"].max()
+            self.assertEqual(share > 0.1, is_told)
+
+    def test_slipping_area_is_that_of_a_step(self):
+        """All slips on each mesh, but for half a cell at the clamped corner;
+        coarser ones have a smaller face."""
+        result = self.block(
+            **{
+                "Geometry/Arguments": "1, 1 : 0, 0 : 1, 1 : true",
+                "Geometry/Global refinements": 2,
+                "Mesh refinement/Strategy": "kelly",
+                "Mesh refinement/Refinement fraction": 0,
+                "Mesh refinement/Coarsening fraction": 1,
+                "Time/Phases": "1: 4",
+            }
+        )
+        self.assertClose(result["slip_area"][1:], [0.875, 0.75, 0.5, 0.5], 1e-12)
+        self.assertRegex(result.stdout, r"slipping area +0\.875 of 0\.875 at t = 0\.25")
+
+
 if __name__ == "__main__":
     main()

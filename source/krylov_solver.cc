@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <sstream>
 #include <utility>
 
 namespace Viscoplastic
@@ -423,10 +424,10 @@ namespace Viscoplastic
         search_terms(face_part);
         take_step(1.);
       }
-    AssertThrow(false,
-                ExcMessage("The linear solver stagnates above the relative "
-                           "error " +
-                           std::to_string(tolerance) + "."));
+    std::ostringstream message;
+    message << "The linear solver stagnates above the relative error "
+            << tolerance << ".";
+    AssertThrow(false, ExcMessage(message.str()));
     return iterations;
   }
 

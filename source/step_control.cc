@@ -193,11 +193,11 @@ namespace Viscoplastic
       return {n + 1, t, target, distance};
     if (!is_on || divisions <= 2.)
       k = distance / divisions;
-    const double end = t + k;
-    AssertThrow(end > t,
-                ExcMessage("The time step " + std::to_string(k) +
-                           " is too small to change the time " +
-                           std::to_string(t) + "."));
+    const double       end = t + k;
+    std::ostringstream message;
+    message << "The time step " << k << " is too small to change the time " << t
+            << ".";
+    AssertThrow(end > t, ExcMessage(message.str()));
     return {n + 1, t, end, end - t};
   }
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -59,11 +61,12 @@ namespace Viscoplastic
                     ExcMessage("'Time/Phases': '" + excerpt(phase) +
                                "' is not of the form `end time: number of "
                                "steps' with a positive number of steps."));
+        std::ostringstream message;
+        message << "'Time/Phases': the end time of '" << excerpt(phase)
+                << "' must be finite and lie after " << std::setprecision(15)
+                << start << ".";
         AssertThrow(std::isfinite(end) && end > start,
-                    ExcMessage("'Time/Phases': the end time of '" +
-                               excerpt(phase) +
-                               "' must be finite and lie after " +
-                               std::to_string(start) + "."));
+                    ExcMessage(message.str()));
         const double step = (end - start) / n_steps;
         AssertThrow(step > 1e-14 * end,
                     ExcMessage("'Time/Phases': the steps of '" +

@@ -61,7 +61,9 @@ namespace
                                    "1: 2,, 2: 3"})
       expect_refusal([&] { TimeSchedule schedule(text); }, "'Time/Phases'");
     expect_refusal([] { TimeSchedule schedule("1: 2, 1: 3"); },
-                   "the end time of '1: 3' must be finite and lie after 1.0");
+                   "the end time of '1: 3' must be finite and lie after 1.");
+    expect_refusal([] { TimeSchedule schedule("1e-9: 2, 1e-9: 3"); },
+                   "lie after 1e-09.");
     expect_refusal([] { TimeSchedule schedule("1: 2, 0.5: 3"); },
                    "must be finite and lie after");
     expect_refusal([] { TimeSchedule schedule("-1: 2"); },

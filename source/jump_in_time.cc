@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/jump_in_time.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -23,6 +24,15 @@ namespace Viscoplastic
     /// So many places, or a few more, stand for a piece of the boundary or for
     /// the body.
     constexpr unsigned int n_places = 64;
+    /// Of the range of the values in the run: how far these have to leave those
+    /// at both ends of a step to be called unseen. A sine goes that far with
+    /// about two steps a period, not with three.
+    constexpr double unseen_share = 0.4;
+    /// Steps that are looked into, or one a phase, and where, as shares
+    /// of a step: not evenly, since what steps miss repeats with them.
+    constexpr unsigned int          n_steps_sampled = 200;
+    constexpr std::array<double, 6> inside{
+      {0.081, 0.233, 0.397, 0.514, 0.709, 0.887}};
 
     struct Interval
     {
@@ -55,6 +65,56 @@ namespace Viscoplastic
           times.push_back(phase.end);
         }
       return times;
+    }
+
+
+
+    struct StepEnds
+    {
+      double start, end;
+    };
+
+    /// Some steps of all phases.
+    std::vector<StepEnds>
+    sample_steps(const TimeSchedule &schedule)
+    {
+      const unsigned int n =
+        std::max(1u, n_steps_sampled / schedule.n_phases());
+      std::vector<StepEnds> steps;
+      for (double t = 0.; t < schedule.end_time(); t = steps.back().end)
+        {
+          const TimeSchedule::Phase &phase  = schedule.phase_at(t);
+          const unsigned int         stride = (phase.n_steps + n - 1) / n;
+          const auto                 time   = [&](const unsigned int i) {
+            return phase.start + (phase.end - phase.start) * i / phase.n_steps;
+          };
+          for (unsigned int i = 0; i < phase.n_steps; i += stride)
+            steps.push_back({time(i), time(i + 1)});
+          if (steps.back().end < phase.end)
+            steps.push_back({time(phase.n_steps - 1), phase.end});
+          steps.back().end = phase.end; // without rounding
+        }
+      return steps;
+    }
+
+
+
+    /// The values of a datum at places, all at a time; at one place if these do
+    /// not matter.
+    template <int dim>
+    std::vector<double>
+    values_at(const Expression<dim>         &datum,
+              const std::vector<Point<dim>> &places,
+              const double                   t)
+    {
+      std::vector<double> result;
+      for (const Point<dim> &x : places)
+        {
+          result.push_back(datum.value(x, t));
+          if (!datum.depends_on_position())
+            break;
+        }
+      return result;
     }
 
 
@@ -136,10 +196,7 @@ namespace Viscoplastic
     if (!datum.may_jump() || places.empty())
       return {};
     const auto values = [&](const double t) {
-      std::vector<double> result;
-      for (const Point<dim> &x : places)
-        result.push_back(datum.value(x, t));
-      return result;
+      return values_at(datum, places, t);
     };
     try
       {
@@ -193,56 +250,198 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::string
-  warning_of_jumps(const Scene<dim>         &scene,
-                   const Triangulation<dim> &triangulation)
+  std::optional<double>
+  find_unseen_change(const Expression<dim>         &datum,
+                     const std::vector<Point<dim>> &places,
+                     const TimeSchedule            &schedule)
   {
-    std::ostringstream    found;
-    std::set<std::string> entries; // components have the same one
-    const auto            inspect = [&](const Expression<dim>         &datum,
+    if (!datum.depends_on_time() || places.empty())
+      return {};
+    std::vector<double> least, most; // in the run, by place
+    double              size           = 0.;
+    const auto          values_for_run = [&](const double t) {
+      std::vector<double> values = values_at(datum, places, t);
+      if (least.empty())
+        least = most = values;
+      for (std::size_t i = 0; i < values.size(); ++i)
+        {
+          least[i] = std::min(least[i], values[i]);
+          most[i]  = std::max(most[i], values[i]);
+        }
+      size = std::max(size, sum_of_sizes(values));
+      return values;
+    };
+    double largest = 0., time = 0.;
+    try
+      {
+        for (const StepEnds &step : sample_steps(schedule))
+          {
+            const auto at_start = values_for_run(step.start),
+                       at_end   = values_for_run(step.end);
+            for (const double share : inside)
+              {
+                const double t = step.start + share * (step.end - step.start);
+                const auto   values = values_for_run(t);
+                double       beyond = 0.;
+                for (std::size_t i = 0; i < values.size(); ++i)
+                  {
+                    const auto [low, high] =
+                      std::minmax(at_start[i], at_end[i]);
+                    beyond += std::max({0., values[i] - high, low - values[i]});
+                  }
+                if (beyond > (1. + 1e-6) * largest) // the first of equals
+                  {
+                    largest = beyond;
+                    time    = t;
+                  }
+              }
+          }
+      }
+    catch (const ExceptionBase &)
+      {
+        return {}; // no value at a time that no step has
+      }
+    double range = 0.;
+    for (std::size_t i = 0; i < least.size(); ++i)
+      range += most[i] - least[i];
+    if (largest > unseen_share * range && largest > smallest_share * size)
+      return time;
+    return {};
+  }
+
+
+
+  namespace
+  {
+    /// Whether a foundation slides at the end of any step.
+    template <int dim>
+    bool
+    slides(const BoundaryCondition<dim>  &condition,
+           const std::vector<Point<dim>> &places,
+           const TimeSchedule            &schedule)
+    {
+      if (!condition.foundation_motion)
+        return false;
+      try
+        {
+          for (const StepEnds &step : sample_steps(schedule))
+            for (const Point<dim> &x : places)
+              {
+                const auto  &w = *condition.foundation_motion;
+                const double size =
+                  (w.vector(x, step.end) - w.vector(x, 0.)).norm();
+                // The normal is known up to rounding.
+                if (condition.sliding(x, step.end).norm() > 1e-10 * size)
+                  return true;
+              }
+        }
+      catch (const ExceptionBase &)
+        {
+          return true; // no value at a place that perhaps no node has
+        }
+      return places.empty();
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  warnings_of_data_in_time(const Scene<dim>         &scene,
+                           const Triangulation<dim> &triangulation)
+  {
+    // Components have the same entry.
+    struct Finding
+    {
+      std::set<std::string> entries;
+      std::string           list;
+
+      void
+      add(const std::string &entry, const std::optional<double> &t)
+      {
+        if (!t || !entries.insert(entry).second)
+          return;
+        std::ostringstream text;
+        text << (list.empty() ? "'" : ", '") << entry << "' at t = " << *t;
+        list += text.str();
+      }
+    };
+    Finding jumps, unseen;
+    // Not where the error chooses the steps, nor where data follow from a
+    // solution, whose steps are a matter of its test.
+    const bool looks_into_steps =
+      !scene.parameters.step_control.is_on() &&
+      !(scene.exact_solution && scene.exact_solution->makes_data);
+    const auto inspect = [&](const Expression<dim>         &datum,
                              const std::vector<Point<dim>> &places) {
-      const auto time = find_jump(datum, places, scene.schedule);
-      if (time && entries.insert(datum.name_of_entry()).second)
-        found << (entries.size() > 1 ? ", '" : "'") << datum.name_of_entry()
-              << "' at t = " << *time;
+      jumps.add(datum.name_of_entry(),
+                find_jump(datum, places, scene.schedule));
+      if (looks_into_steps)
+        unseen.add(datum.name_of_entry(),
+                   find_unseen_change(datum, places, scene.schedule));
     };
 
+    std::vector<std::string> warnings;
     for (const auto &[id, condition] : scene.boundary)
       {
         std::vector<Point<dim>> places;
         for (const Expression<dim> *datum : condition.data())
-          if (datum->may_jump())
+          if (datum->depends_on_time())
             {
               if (places.empty())
                 places = places_on_boundary(triangulation, id);
               inspect(*datum, places);
             }
+        const std::string entry =
+          "Boundary " + std::to_string(id) + "/Foundation motion";
+        if ((condition.has_friction() || condition.is_glued()) &&
+            optional_vector<dim>(
+              scene.parameters.boundaries.at(id).foundation_motion,
+              dim,
+              entry) &&
+            !slides(condition, places, scene.schedule))
+          warnings.push_back(
+            "'" + entry +
+            "' moves nothing: what counts is how its tangential part changes "
+            "in time, which it does not; 'Foundation displacement' moves the "
+            "foundation in normal direction.");
       }
-    for (unsigned int d = 0; d < dim; ++d)
-      if (scene.body_force && (*scene.body_force)[d].may_jump())
-        inspect((*scene.body_force)[d], places_in_body(triangulation));
+    if (scene.body_force && scene.body_force->depends_on_time())
+      {
+        const auto places = places_in_body(triangulation);
+        for (unsigned int d = 0; d < dim; ++d)
+          inspect((*scene.body_force)[d], places);
+      }
 
-    return entries.empty() ?
-             "" :
-             "Data jump in time (" + found.str() +
-               "), but the theory asks for Lipschitz continuous ones, (2.10): "
-               "equilibrium after a jump is exact, what creeps in its step is "
-               "not, and error estimates may miss that; give it a short step of "
-               "its own in 'Time/Phases', or make it a ramp.";
+    if (!jumps.list.empty())
+      warnings.push_back(
+        "Data jump in time (" + jumps.list +
+        "), but the theory asks for Lipschitz continuous ones, (2.10): "
+        "equilibrium after a jump is exact, what creeps in its step is "
+        "not, and error estimates may miss that; give it a short step of "
+        "its own in 'Time/Phases', or make it a ramp.");
+    if (!unseen.list.empty())
+      warnings.push_back(
+        "Data come and go unseen within time steps (" + unseen.list +
+        "): a run takes data at the ends of steps. Take more steps in "
+        "'Time/Phases', not in time with the data, or set 'Step "
+        "control/Tolerance'.");
+    return warnings;
   }
 
 
 
-  template std::optional<double>
-  find_jump(const Expression<2> &,
-            const std::vector<Point<2>> &,
-            const TimeSchedule &);
-  template std::optional<double>
-  find_jump(const Expression<3> &,
-            const std::vector<Point<3>> &,
-            const TimeSchedule &);
-  template std::string
-  warning_of_jumps(const Scene<2> &, const Triangulation<2> &);
-  template std::string
-  warning_of_jumps(const Scene<3> &, const Triangulation<3> &);
+#define INSTANTIATE(dim)                                                    \
+  template std::optional<double> find_jump(const Expression<dim> &,         \
+                                           const std::vector<Point<dim>> &, \
+                                           const TimeSchedule &);           \
+  template std::optional<double> find_unseen_change(                        \
+    const Expression<dim> &,                                                \
+    const std::vector<Point<dim>> &,                                        \
+    const TimeSchedule &);                                                  \
+  template std::vector<std::string> warnings_of_data_in_time(               \
+    const Scene<dim> &, const Triangulation<dim> &);
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
 } // namespace Viscoplastic

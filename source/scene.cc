@@ -131,9 +131,9 @@ namespace Viscoplastic
     inspect_unused_entries();
     inspect_flatness(triangulation);
     inspect_junctions(triangulation);
-    const std::string jumps = warning_of_jumps(*this, triangulation);
-    if (!jumps.empty())
-      warnings.push_back(jumps);
+    for (const std::string &warning :
+         warnings_of_data_in_time(*this, triangulation))
+      warnings.push_back(warning);
     make_materials(material_ids(triangulation));
     if (exact_solution)
       {

@@ -200,10 +200,15 @@ class Relativity(TestCase):
         """w = 0, and a constant w, are foundations at rest."""
         rest = run("conveyor_2d", {"Boundary 2/Foundation motion": ""})
         self.assertNotIn("tangential direction", rest.stdout)
-        for motion in ("0; 0", "0.3; 5"):
+        for motion, is_told in ("0; 0", False), ("0.3; 5", True), ("0; t", True):
             same = run("conveyor_2d", {"Boundary 2/Foundation motion": motion})
             for name in SAME + ("friction_force_x",):
                 self.assertClose(same[name], rest[name], what=name)
+            self.assertEqual(
+                "Warning: 'Boundary 2/Foundation motion' moves nothing" in same.stdout,
+                is_told,
+                same.stdout,
+            )
 
 
 class Glued(TestCase):

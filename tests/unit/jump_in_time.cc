@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
 // Jumps of data in time, and what is none: kinks, steep ramps, loads that
-// wander.
+// wander.  What data do within time steps, where the run does not see it.
 
 #include <viscoplastic_contact/jump_in_time.h>
 
@@ -23,6 +23,19 @@ namespace
     return find_jump(Expression<2>(text, "Traction"),
                      places,
                      TimeSchedule(phases));
+  }
+
+
+
+  std::optional<double>
+  unseen_change_of(const std::string &text, const std::string &phases)
+  {
+    std::vector<Point<2>> places;
+    for (unsigned int i = 0; i < 64; ++i)
+      places.emplace_back((i + 0.5) / 64., 1.);
+    return find_unseen_change(Expression<2>(text, "Traction"),
+                              places,
+                              TimeSchedule(phases));
   }
 
 
@@ -78,5 +91,49 @@ namespace
     for (const char *text :
          {"min(t, 1)", "if(x > 1, 1, 0)", "sin(pi*t)", "1", "abs(t - 1)"})
       EXPECT_FALSE(Expression<2>(text, "").may_jump()) << text;
+  }
+
+
+
+  TEST(UnseenChange, OfDataInTimeWithTheSteps)
+  {
+    // Periods that are a step, two, and a third of one.
+    for (const char *text : {"0.3*sin(2*pi*16*t)",
+                             "x*sin(2*pi*8*t)",
+                             "1 - cos(2*pi*48*t)",
+                             "5 + sin(2*pi*16*t)",
+                             "abs(sin(pi*16*t))"})
+      for (const std::string phases : {"1: 16, 2: 16", "3: 48", "1e5: 1600000"})
+        EXPECT_TRUE(unseen_change_of(text, phases)) << text << ", " << phases;
+    // A blow, and a rest, within one step.
+    const auto blow = unseen_change_of("exp(-(100*(t - 0.53))^2)", "1: 10");
+    ASSERT_TRUE(blow);
+    EXPECT_NEAR(*blow, 0.53, 0.02);
+    EXPECT_TRUE(unseen_change_of("if(abs(t - 0.53) < 0.01, 0, 1)", "1: 10"));
+    EXPECT_TRUE(unseen_change_of("t*(1 - t)", "1: 1"));
+    EXPECT_TRUE(unseen_change_of("if(t < 0.5, 0, (t - 0.5)*(0.6 - t))",
+                                 "0.5: 20, 0.6: 1"));
+  }
+
+
+
+  TEST(UnseenChange, IsNoneOfWhatStepsFollow)
+  {
+    for (const char *text : {"sin(2*pi*t)",
+                             "sin(2*pi*t + 0.1)",
+                             "min(t, 2 - t)",
+                             "t*(1 - t)",
+                             "exp(-10*t)",
+                             "if(t < 0.55, 0, 1)",           // a jump
+                             "min(1, max(0, 1e6*(t-0.55)))", // a ramp
+                             "if(abs(x - t) < 0.1, 1, 0)",   // wanders
+                             "exp(-((x - t)/0.05)^2)",
+                             "100 + sin(2*pi*64*t)", // small
+                             "x"})
+      for (const char *phases : {"1: 3, 2: 3", "1: 4, 2: 4", "2: 50", "2: 6"})
+        EXPECT_FALSE(unseen_change_of(text, phases)) << text << ", " << phases;
+    // No value between.
+    EXPECT_FALSE(
+      unseen_change_of("if(t > 0 && t < 0.3, 1/max(0, t - 1), t)", "1: 1"));
   }
 } // namespace

@@ -32,6 +32,16 @@ class Case:
     expected: bytes = None
     told: list = field(default_factory=list)
 
+    def examine(self, work, outcome, stdout, run):
+        """What is wrong with an answer that the judge has found ok or refused;
+        run(arguments, ranks, directory) runs the program again."""
+        return ""
+
+    def simpler(self):
+        """Cases with a little less in them, for the search of what a defect
+        needs."""
+        return []
+
 
 def generator(kind, seed, number):
     """Random numbers of one case; they do not depend on the other cases."""

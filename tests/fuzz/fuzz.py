@@ -26,11 +26,12 @@ import time
 from pathlib import Path
 
 import checkpoints
+import drawn_scenes
 import expressions
 import meshes
 import parameter_files
 from case import generator
-from judge import judge
+from judge import Outcome, judge
 from runner import MPIRUN, Limits, Server, environment, run_program
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -39,7 +40,11 @@ KINDS = {
     "expressions": expressions.case,
     "meshes": meshes.case,
     "checkpoints": checkpoints.case,
+    "scenes": drawn_scenes.case,
 }
+# Of what makes sense, so much has to be accepted at least: a grammar that only
+# draws refusals tests nothing.
+ACCEPTED = {"scenes": 0.5}
 
 # One case in so many is run by the program itself, from its start to its end.
 WHOLE = 25
@@ -101,6 +106,7 @@ class Fuzzer:
         self.local = threading.local()
         self.servers = []
         self.shapes = collections.Counter()
+        self.examples = {}
 
     def server(self):
         if not self.options.server:
@@ -110,11 +116,13 @@ class Fuzzer:
             self.servers.append(self.local.server)
         return self.local.server
 
-    def lay_out(self, kind, number, work):
-        """The files of a case, in a fresh directory."""
+    def draw(self, kind, number):
         random = generator(kind, self.options.seed, number)
         with self.context.lock:
-            case = KINDS[kind](random, self.context)
+            return KINDS[kind](random, self.context)
+
+    def lay_out(self, case, work):
+        """The files of a case, in a fresh directory."""
         shutil.rmtree(work, ignore_errors=True)
         if case.base:
             shutil.copytree(case.base, work)
@@ -124,31 +132,57 @@ class Fuzzer:
             (work / name).write_bytes(data)
         if case.prepare:
             case.prepare(work)
-        return case
+
+    def answer(self, case, work, server=None):
+        """Of the server or, without one, of the program itself."""
+        self.lay_out(case, work)
+
+        def run(arguments, ranks=1, directory=work):
+            if server and ranks == 1:
+                return server.run(directory, arguments)
+            program = self.options.executable
+            return run_program(program, directory, arguments, self.limits, ranks)
+
+        result = run(case.arguments)
+        outcome = judge(case, work, *result)
+        if outcome.kind != "defect":
+            reason = case.examine(work, outcome, result[1], run)
+            if reason:
+                outcome = Outcome("defect", reason)
+        return outcome
 
     def run(self, kind, number):
         work = self.scratch / "cases" / f"{kind}_{number}"
-        case = self.lay_out(kind, number, work)
+        case = self.draw(kind, number)
         server = self.server()
         answer = None
         if server and number % WHOLE != 0:
-            outcome = judge(case, work, *server.run(work, case.arguments))
-            if outcome.kind == "defect":
-                case = self.lay_out(kind, number, work)
-            else:
-                answer = outcome
-        if answer is None:
-            program = self.options.executable
-            result = run_program(program, work, case.arguments, self.limits)
-            answer = judge(case, work, *result)
+            answer = self.answer(case, work, server)
+        if answer is None or answer.kind == "defect":
+            answer = self.answer(case, work)
+        if answer.kind == "defect" and not self.options.as_drawn:
+            case = self.simplest(case, answer, work)
         if answer.kind == "defect" or self.options.only is not None:
             self.keep(kind, number, case, answer)
         shutil.rmtree(work, ignore_errors=True)
         return answer
 
+    def simplest(self, case, answer, work):
+        """What is left of a case when all is dropped that its defect does not
+        need."""
+        found = True
+        while found:
+            found = False
+            for simpler in case.simpler():
+                other = self.answer(simpler, work)
+                if other.kind == "defect" and shape(other.reason) == shape(answer.reason):
+                    case, found = simpler, True
+                    break
+        return case
+
     def keep(self, kind, number, case, answer):
         place = Path(self.options.keep) / f"{kind}_{self.options.seed}_{number}"
-        self.lay_out(kind, number, place)
+        self.lay_out(case, place)
         program = str(Path(self.options.executable).resolve())
         command = shlex.join([program, *case.arguments])
         (place / "again").write_text(
@@ -189,6 +223,9 @@ def main():
         help="viscoplastic_contact_fuzz_server, which saves starting the program",
     )
     parser.add_argument("--keep", default="fuzz_defects", help="directory for defects")
+    parser.add_argument(
+        "--as-drawn", action="store_true", help="leave defects as large as they are"
+    )
     parser.add_argument("--messages", action="store_true", help="list the refusals")
     options = parser.parse_args()
     for kind in options.kinds:
@@ -200,7 +237,7 @@ def main():
 
     begin = options.first if options.only is None else options.only
     end = begin + (options.count if options.only is None else 1)
-    n_defects = 0
+    n_defects, too_few = 0, []
     with tempfile.TemporaryDirectory(prefix="fuzz_") as scratch:
         fuzzer = Fuzzer(options, Path(scratch))
         for kind in options.kinds or KINDS:
@@ -211,10 +248,15 @@ def main():
                     counts[answer.kind] += 1
                     if answer.kind == "refused":
                         fuzzer.shapes[shape(answer.reason)] += 1
+                        fuzzer.examples[shape(answer.reason)] = f"{kind} {number}"
                     if answer.kind == "defect" or options.only is not None:
                         verdict = f"{answer.kind}: {answer.reason}"
                         print(f"{kind} {number}: {verdict}", flush=True)
             n_defects += counts["defect"]
+            accepted = counts["ok"] / sum(counts.values())
+            if options.only is None and accepted < ACCEPTED.get(kind, 0):
+                too_few.append(kind)
+                print(f"{kind}: only {100 * accepted:.0f} % were accepted")
             print(
                 f"{kind}: {sum(counts.values())} cases, {counts['ok']} ok, "
                 f"{counts['refused']} refused, {counts['defect']} defects "
@@ -225,8 +267,8 @@ def main():
             server.close()
     if options.messages:
         for text, n in fuzzer.shapes.most_common():
-            print(f"{n:6} {text}")
-    return 1 if n_defects else 0
+            print(f"{n:6} {text} ({fuzzer.examples[text]})")
+    return 1 if n_defects or too_few else 0
 
 
 if __name__ == "__main__":

@@ -48,17 +48,20 @@ def environment():
     }
 
 
-def run_program(executable, work, arguments, limits):
+def run_program(executable, work, arguments, limits, ranks=1):
     """(exit code or minus the signal, stdout, stderr)"""
+    launcher = [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []
+    # a single process goes without what several need to talk
+    settings = environment() if ranks == 1 else {**os.environ, "OMP_NUM_THREADS": "1"}
     with open(work / "stdout", "wb") as out, open(work / "stderr", "wb") as err:
         process = subprocess.Popen(
-            [executable, *arguments],
+            [*launcher, executable, *arguments],
             cwd=work,
             stdin=subprocess.DEVNULL,
             stdout=out,
             stderr=err,
             # Open MPI's files here, where no other run cleans up
-            env={**environment(), "TMPDIR": str(work)},
+            env={**settings, "TMPDIR": str(work)},
             preexec_fn=limits.apply,
         )
         try:

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether the answer to a scene can be right, by what holds in any scene: the
+discrete identities, the balance of energy, and that a run agrees with itself.
+
+Each function returns what is wrong, or nothing.
+"""
+
+import json
+import re
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
+
+from harness import COUPLED, Run, TestCase
+
+PAIR = re.compile(r"(?<![\w.])([-+.\de]*\d) of ([-+.\de]*\d)(?![\w.%])")
+
+# Powers of length, stress and time in the unit of a column, where d stands for
+# the dimension.
+UNITS = {
+    "t": (0, 0, 1),
+    "cells": (0, 0, 0),
+    "stick_area": (-1, 0, 0),
+    "slip_area": (-1, 0, 0),
+    "strain_energy": ("d", 1, 0),
+    "stored_energy": ("d", 1, 0),
+    "friction_dissipation": ("d", 1, 0),
+    "viscous_dissipation": ("d", 1, 0),
+    "max_displacement": (1, 0, 0),
+    "max_von_mises": (0, 1, 0),
+}
+
+
+def results(work, stdout=""):
+    process = SimpleNamespace(returncode=0, stdout=stdout, stderr="")
+    return Run(work / "results", process)
+
+
+def tolerance(entries):
+    """The bound on the algebraic error of a step."""
+    given = float(entries.get("Solver/Contact tolerance", 0))
+    has_bar = entries.get("Error control/Error bar", "true") == "true"
+    return given or (COUPLED if has_bar else 1e-8)
+
+
+def of_identities(run, stdout, entries):
+    bound = tolerance(entries)
+    # beyond this the program has to warn (doc/method.md, section 12)
+    balance = max(1e-8, min(1e3 * bound, 1e-2))
+    if "forces balance only to" in stdout:
+        forces = [
+            abs(column).max()
+            for name, column in run.statistics.items()
+            if name.startswith(("load_", "reaction_", "friction_force_"))
+        ]
+        work = max(forces) * run["max_displacement"].max()
+        if work < 1e-8 * run["stored_energy"].max():
+            return "warning: forces that do not balance are rounding of zero"
+        balance = np.inf
+    try:
+        TestCase().check_identities(run, bound, balance)
+    except AssertionError as error:
+        # the name of the identity is in the last words
+        return "identities: " + " ".join(str(error).split())
+    return ""
+
+
+def of_times(run):
+    if not np.array_equal(run["step"], np.arange(len(run["step"]))):
+        return "times: steps are missing"
+    if not np.all(np.diff(run["t"]) > 0):
+        return "times: they do not increase"
+    return ""
+
+
+def of_words(stdout):
+    """Two numbers that contradict each other."""
+    for line in stdout.splitlines():
+        for part, whole in PAIR.findall(line):
+            if float(part) > float(whole) * (1 + 1e-4):
+                return f"contradiction: {line.strip()}"
+        share = re.search(r"on (\d+) % of the face", line)
+        if share and int(share[1]) > 100:
+            return f"contradiction: {line.strip()}"
+    return ""
+
+
+def of_fields(run):
+    """Fields that are not finite, in the last output."""
+    for name in ("solution", "contact"):
+        if (run.directory / f"{name}.pvd").exists() and run.series(name):
+            fields = run.fields(name)
+            for kind in (fields.point_data, fields.cell_data):
+                for key, values in kind.items():
+                    if not np.all(np.isfinite(values)):
+                        return f"fields: {key} in {name} is not finite"
+    return ""
+
+
+def of_files(run):
+    try:
+        run.info
+    except json.JSONDecodeError as error:
+        return f"files: run.json is no JSON ({error})"
+    table = run.directory / "uncertainty.csv"
+    if table.exists() and re.search(r"\b(nan|inf)\b", table.read_text()):
+        return "files: uncertainty.csv has numbers that are not finite"
+    return ""
+
+
+def is_constant(entries, *names):
+    return not any(
+        re.search(r"\bt\b", value)
+        for entry, value in entries.items()
+        if entry.endswith(names)
+    )
+
+
+def of_energy(run, stdout, entries):
+    """The defect of the balance of energy is the error in time of friction
+    alone (doc/method.md, section 10)."""
+    defect = run["energy_balance_defect"]
+    moved = abs(np.diff(run["external_work"])).sum()
+    energy = moved + run["stored_energy"][0]
+    meshes = abs(run.statistics.get("adaptation_energy", np.zeros(1))).max()
+    if "Warning" in stdout and "energ" in stdout:
+        return ""
+    if max(meshes, abs(defect).max()) > 2 * energy + 1e-300:
+        return (
+            f"energy: defect {abs(defect).max():.3g} and meshes {meshes:.3g} are more "
+            f"than twice the work {energy:.3g}, without a warning"
+        )
+    if "adaptation_energy" in run.statistics:
+        return ""
+    # What iterations leave, and rounding of the terms.
+    energy = moved + run["stored_energy"].max() + run["strain_energy"].max()
+    rest = (10 * tolerance(entries) + 1e-10) * energy
+    step = abs(np.diff(defect))
+    bounds = "Friction bound", "Friction coefficient", "Normal stress"
+    if "friction_dissipation" not in run.statistics:
+        allowed = rest
+    elif is_constant(entries, *bounds):
+        # |lambda_n - lambda_(n-1)| <= 2 rho, and lambda_n . s_n = rho |s_n|
+        allowed = np.diff(run["friction_dissipation"]) + rest
+    else:
+        return ""
+    # The first step also balances initial data.
+    if np.any((step > allowed)[1:]):
+        n = 1 + int(np.argmax((step - allowed)[1:]))
+        return (
+            f"energy: the defect of step {n + 1} is {step[n]:.3g}, not at most "
+            f"{np.broadcast_to(allowed, step.shape)[n]:.3g} of {energy:.3g}"
+        )
+    return ""
+
+
+def of_run(work, stdout, entries):
+    """All that can be said of one run."""
+    run = results(work, stdout)
+    return (
+        of_identities(run, stdout, entries)
+        or of_times(run)
+        or of_words(stdout)
+        or of_files(run)
+        or of_fields(run)
+        or of_energy(run, stdout, entries)
+    )
+
+
+def of_other_units(run, other, dimension, units):
+    """other is the same scene, but in these units of length, stress, time."""
+    if len(run["t"]) != len(other["t"]):
+        return f"units: {len(run['t'])} steps, but {len(other['t'])} in other units"
+    for name, powers in UNITS.items():
+        if name not in run.statistics:
+            continue
+        scale = 1.0
+        for unit, power in zip((units.length, units.stress, units.time), powers):
+            power = {"d": dimension, -1: dimension - 1}.get(power, power)
+            scale *= unit**power
+        here, there = run[name], other[name] / scale
+        size = abs(here).max()
+        if name.endswith("dissipation"):
+            size = max(size, abs(run["stored_energy"]).max())
+        if abs(here - there).max() > 1e-6 * size:
+            return (
+                f"units: {name} is {here[-1]:.9g} at the end, "
+                f"but {there[-1]:.9g} in other units"
+            )
+    return ""
+
+
+def of_other_ranks(one, other):
+    """Iterations stop elsewhere on other numbers of ranks, but meshes and
+    steps are the same, and numbers up to the tolerance of iterations."""
+    if len(one["t"]) != len(other["t"]):
+        return f"ranks: {len(one['t'])} steps on one, {len(other['t'])} on several"
+    if not np.array_equal(one["cells"], other["cells"]):
+        return f"ranks: {one['cells'][-1]:g} cells on one, {other['cells'][-1]:g}"
+    for name in "strain_energy", "max_displacement":
+        if abs(one[name] - other[name]).max() > 1e-3 * abs(one[name]).max():
+            return f"ranks: {name} is {one[name][-1]:.9g} on one, {other[name][-1]:.9g}"
+    return ""

@@ -174,7 +174,7 @@ class Fuzzer:
         while found:
             found = False
             for simpler in case.simpler():
-                other = self.answer(simpler, work)
+                other = self.answer(simpler, work, self.server())
                 if other.kind == "defect" and shape(other.reason) == shape(answer.reason):
                     case, found = simpler, True
                     break

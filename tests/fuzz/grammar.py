@@ -81,8 +81,9 @@ class Scene:
         return 10 ** self.random.uniform(low, high)
 
     def number(self, value, unit=1.0):
-        """Few digits, times a unit: exact for powers of two."""
-        return repr(float(f"{value:.4g}") * unit)
+        """Few digits, times a unit; exact where that is a power of two."""
+        value = float(f"{value:.4g}") * unit
+        return repr(value) if math.frexp(unit)[0] == 0.5 else f"{value:.12g}"
 
     def length(self, value):
         return self.number(value, self.units.length)

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/mpi_singleton.h>
 #include <viscoplastic_contact/parameter_description.h>
 #include <viscoplastic_contact/price_mode.h>
 #include <viscoplastic_contact/signals.h>
@@ -115,6 +116,7 @@ main(int argc, char *argv[])
 {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool                     has_terminal = stdout_is_terminal();
+  run_without_mpi_daemon();
   // The libraries that MPI_InitFinalize starts must not see our arguments:
   // PETSc has a --help of its own.
   int                                      n_hidden_arguments = 1;

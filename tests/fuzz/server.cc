@@ -7,6 +7,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/mpi_singleton.h>
+
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -73,6 +75,7 @@ main(int argc, char *argv[])
   const rlim_t seconds = std::stoul(argv[1]), memory = std::stoul(argv[3]);
   const auto   alarm_after = static_cast<unsigned int>(std::stoul(argv[2]));
   int          n_hidden_arguments = 1;
+  Viscoplastic::run_without_mpi_daemon();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(n_hidden_arguments, argv, 1);
 
   std::string line;

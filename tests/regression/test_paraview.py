@@ -37,7 +37,8 @@ class Opens(TestCase):
     def setUpClass(cls):
         """A display of our own, where there is Xvfb: it names its number as
         soon as it is ready."""
-        cls.environment = dict(os.environ)
+        # nor a daemon of Open MPI for each start
+        cls.environment = {**os.environ, "OMPI_MCA_ess_singleton_isolated": "1"}
         if not shutil.which("Xvfb"):
             return
         read, write = os.pipe()

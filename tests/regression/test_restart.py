@@ -8,6 +8,7 @@ RESTART_KILLS sets how many instants the kill test tries, and
 RESTART_MUTATIONS how many damaged checkpoints; both are small by default.
 """
 
+import contextlib
 import os
 import random
 import re
@@ -20,6 +21,7 @@ import time
 import unittest
 import zlib
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -44,6 +46,27 @@ SLAB = {
     "Output/Fields every": 3,
 }
 EVERY_STEP = {"Checkpoint/Every n steps": 1, "Checkpoint/Keep": 1000}
+
+
+class Process:
+    """What Linux says of a process."""
+
+    def __init__(self, pid):
+        # after its name, which may contain anything
+        _, parent, _, session, *_ = (
+            Path("/proc", str(pid), "stat").read_text().rpartition(")")[2].split()
+        )
+        self.parent, self.session = int(parent), int(session)
+
+
+def processes(condition):
+    """The numbers of the processes that satisfy it."""
+    result = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        with contextlib.suppress(OSError):  # it has ended meanwhile
+            if condition(Process(pid)):
+                result.append(int(pid))
+    return result
 
 
 class Job:
@@ -320,6 +343,23 @@ class Killed(RestartCase):
                     )
                     self.assertEqual(len(job.steps()), 2)
         self.assertGreater(n_restarted, 0)
+
+    def test_no_process_is_left(self):
+        """Open MPI would start a daemon for a run without mpirun, which goes on
+        when the run is killed."""
+        singleton = "OMPI_MCA_ess_singleton_isolated"
+        with Job("slab", {"Time/Phases": "1: 1000000"}) as job:
+            with mock.patch.dict(os.environ):
+                os.environ.pop(singleton, None)
+                process = job.start(start_new_session=True)
+            self.addCleanup(process.communicate)
+            self.addCleanup(process.kill)
+            process.stdout.readline()  # MPI has been started
+            self.assertIn(process.pid, processes(lambda p: p.session == process.pid))
+            self.assertEqual(processes(lambda p: p.parent == process.pid), [])
+            process.kill()
+            process.wait()
+            self.assertEqual(processes(lambda p: p.session == process.pid), [])
 
     def test_inside_of_writes(self):
         """Killed when a checkpoint is there in part."""

@@ -6,7 +6,11 @@
 #include "folder.h"
 #include "refusals.h"
 #include <viscoplastic_contact/command_line.h>
+#include <viscoplastic_contact/mpi_singleton.h>
 #include <viscoplastic_contact/progress.h>
+
+#include <cstdlib>
+#include <map>
 
 namespace
 {
@@ -151,6 +155,40 @@ namespace
     EXPECT_EQ(duration(5000.), "83 min");
     EXPECT_EQ(duration(9000.), "2.5 h");
     EXPECT_EQ(duration(259200.), "3.0 d");
+  }
+
+
+
+  TEST(CommandLine, DaemonOfOpenMpi)
+  {
+    const char *const              wanted = "OMPI_MCA_ess_singleton_isolated";
+    const std::vector<std::string> names{
+      wanted, "OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "SLURM_STEP_ID"};
+    std::map<std::string, std::string> environment;
+    for (const std::string &name : names)
+      {
+        if (const char *value = std::getenv(name.c_str()))
+          environment[name] = value;
+        unsetenv(name.c_str());
+      }
+
+    run_without_mpi_daemon();
+    EXPECT_STREQ(std::getenv(wanted), "1");
+    setenv(wanted, "0", 1); // the user's word
+    run_without_mpi_daemon();
+    EXPECT_STREQ(std::getenv(wanted), "0");
+    unsetenv(wanted);
+    for (const std::string &launcher : names)
+      if (launcher != wanted)
+        {
+          setenv(launcher.c_str(), "1", 1);
+          run_without_mpi_daemon();
+          EXPECT_EQ(std::getenv(wanted), nullptr) << launcher;
+          unsetenv(launcher.c_str());
+        }
+
+    for (const auto &[name, value] : environment)
+      setenv(name.c_str(), value.c_str(), 1);
   }
 
 

@@ -6,6 +6,8 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/mpi_singleton.h>
+
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -14,6 +16,7 @@ int
 main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);
+  Viscoplastic::run_without_mpi_daemon();
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc,
                                                      argv,
                                                      /* max_num_threads = */ 1);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstdlib>
+
+namespace Viscoplastic
+{
+  /**
+   * Let a process that nobody launches as part of an MPI job run on its own.
+   *
+   * Without mpirun, MPI_Init of Open MPI 4 starts a daemon (orted) for each
+   * process, which only MPI_Comm_spawn would need. The daemon takes time to
+   * start, outlives a process that is killed, and simultaneous starts may fail.
+   * Call this before MPI_Init; it says so to Open MPI unless the environment is
+   * that of a launcher or says something else. Other implementations of MPI
+   * take no notice.
+   */
+  inline void
+  run_without_mpi_daemon()
+  {
+    // Set by mpirun of Open MPI, by launchers that speak PMIx or PMI (prterun,
+    // srun, mpiexec.hydra), and by srun.
+    for (const char *name :
+         {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "SLURM_STEP_ID"})
+      if (std::getenv(name) != nullptr)
+        return;
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", /* overwrite = */ 0);
+  }
+} // namespace Viscoplastic

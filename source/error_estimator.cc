@@ -16,11 +16,21 @@ namespace Viscoplastic
   {
     const Triangulation<dim> &triangulation =
       space.dof_handler.get_triangulation();
+    // Estimates come with single precision, whose range the units of a scene
+    // must not meet: scale to 1 by a power of two, which changes no digit.
+    double size = 0.;
+    for (std::size_t i = 0; i < space.relevant.n_elements(); ++i)
+      size = std::max(size, std::abs(ghosted_u.begin()[i]));
+    size = Utilities::MPI::max(size, space.communicator);
+    const double unit =
+      size > 0. ? std::ldexp(1., std::max(std::ilogb(size), -1000)) : 1.;
+    DistributedVector scaled_u(ghosted_u);
+    scaled_u /= unit;
     Vector<float> estimate(triangulation.n_active_cells());
     KellyErrorEstimator<dim>::estimate(space.dof_handler,
                                        QGauss<dim - 1>(2),
                                        {},
-                                       ghosted_u,
+                                       scaled_u,
                                        estimate,
                                        ComponentMask(),
                                        nullptr,
@@ -28,7 +38,7 @@ namespace Viscoplastic
                                        triangulation.locally_owned_subdomain());
     Vector<double> result(estimate.size());
     for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = Utilities::fixed_power<2>(static_cast<double>(estimate[i]));
+      result[i] = Utilities::fixed_power<2>(unit * estimate[i]);
     return result;
   }
 

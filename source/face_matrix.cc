@@ -7,13 +7,17 @@ namespace Viscoplastic
 {
   namespace
   {
-    Tensor<2, 3>
-    identity()
+    /// Fill the diagonal behind the leading n x n block: by 1, unless units of
+    /// huge or tiny stresses make that too large or too small a stiffness.
+    void
+    pad(Tensor<2, 3> &block, const unsigned int n)
     {
-      Tensor<2, 3> result;
-      for (unsigned int d = 0; d < 3; ++d)
-        result[d][d] = 1.;
-      return result;
+      double largest = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        largest = std::max(largest, block[i][i]);
+      const bool is_ordinary = n == 0 || (largest > 1e-6 && largest < 1e18);
+      for (unsigned int i = n; i < 3; ++i)
+        block[i][i] = is_ordinary ? 1. : largest;
     }
   } // namespace
 
@@ -32,11 +36,12 @@ namespace Viscoplastic
   Tensor<2, 3>
   DenseFaceMatrix::diagonal_block(const unsigned int node) const
   {
-    Tensor<2, 3>       result = identity();
-    const unsigned int first  = face.first_dof[node];
+    Tensor<2, 3>       result;
+    const unsigned int first = face.first_dof[node];
     for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
       for (unsigned int j = 0; j < face.n_node_dofs(node); ++j)
         result[i][j] = values(first + i, first + j);
+    pad(result, face.n_node_dofs(node));
     return result;
   }
 
@@ -85,14 +90,15 @@ namespace Viscoplastic
   Tensor<2, 3>
   SparseFaceMatrix::diagonal_block(const unsigned int node) const
   {
-    Tensor<2, 3>       result = identity();
-    const unsigned int first  = face.first_dof[node];
-    const unsigned int n      = face.n_node_dofs(node);
+    Tensor<2, 3>       result;
+    const unsigned int first = face.first_dof[node];
+    const unsigned int n     = face.n_node_dofs(node);
     for (unsigned int i = 0; i < n; ++i)
       for (std::size_t e = row_begin[first + i]; e < row_begin[first + i + 1];
            ++e)
         if (columns[e] >= first && columns[e] < first + n)
           result[i][columns[e] - first] = values[e];
+    pad(result, n);
     return result;
   }
 

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/force_balance.h>
+#include <viscoplastic_contact/number_range.h>
 
 namespace Viscoplastic
 {
@@ -142,8 +143,9 @@ namespace Viscoplastic
       }
     for (unsigned int p = 0; p < slips.size(); ++p)
       {
-        const double size = slips[p].norm(), weight = face.weights()[p];
-        const double force = state.multiplier[p].norm();
+        const double size   = stable_norm(slips[p]);
+        const double weight = face.weights()[p];
+        const double force  = stable_norm(state.multiplier[p]);
         if (bounds[p] > 0.)
           result.max_utilisation =
             std::max(result.max_utilisation, force / bounds[p]);
@@ -157,10 +159,11 @@ namespace Viscoplastic
             result.slip_area += weight;
             // Below this, the direction is rounding.
             if (bounds[p] > 0. && size > 1e-7 * max_displacement)
-              result.slip_misalignment = std::max(
-                result.slip_misalignment,
-                (state.multiplier[p] - slips[p] * (bounds[p] / size)).norm() /
-                  bounds[p]);
+              result.slip_misalignment =
+                std::max(result.slip_misalignment,
+                         stable_norm(state.multiplier[p] -
+                                     slips[p] * (bounds[p] / size)) /
+                           bounds[p]);
             result.dissipation += state.multiplier[p] * slips[p];
           }
       }

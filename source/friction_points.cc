@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/friction_points.h>
+#include <viscoplastic_contact/number_range.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +51,7 @@ namespace Viscoplastic
     Tensor<1, 2>
     clip(const Tensor<1, 2> &multiplier, const double bound)
     {
-      const double size = multiplier.norm();
+      const double size = stable_norm(multiplier);
       return size <= bound ? multiplier : multiplier * (bound / size);
     }
 
@@ -141,7 +142,7 @@ namespace Viscoplastic
   {
     const Tensor<1, 2> stick =
       solve_block(flexibility, 0., free_slip, n_tangents);
-    const double stick_size = stick.norm();
+    const double stick_size = stable_norm(stick);
     // A zero bound is no friction: the point moves, even if by nothing.
     if (bound == 0.)
       return {Tensor<1, 2>(), false};
@@ -153,6 +154,11 @@ namespace Viscoplastic
         multiplier[0] = std::copysign(bound, free_slip[0]);
         return {multiplier, false};
       }
+
+    // A force so small has no influence on the slip, but its squares would
+    // leave the range of numbers below.
+    if (bound < 1e-100 * stick_size)
+      return {free_slip * (bound / stable_norm(free_slip)), false};
 
     // |(C + m I)^{-1} q| = rho for m = |s|/rho > 0: Newton's method on the
     // reciprocal of the norm is monotone from m = 0 (More, Sorensen).

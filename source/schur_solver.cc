@@ -457,13 +457,16 @@ namespace Viscoplastic
     NodalBlocks blocks{face, std::vector<Tensor<2, 3>>(face.n_nodes())};
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
-        // Blocked directions get the identity, which keeps the block regular.
-        const Tensor<2, 3> &P = truncation.projector[n];
+        // Blocked directions get the identity, which keeps the block regular,
+        // which must not swamp the others in units of huge stresses.
+        const Tensor<2, 3> &P         = truncation.projector[n];
+        const Tensor<2, 3>  stiffness = schur_complement->diagonal_block(n);
+        const double        size      = stiffness.norm();
+        const double        one       = size < 1e-6 ? size : 1.;
         Tensor<2, 3>        block =
-          P * (schur_complement->diagonal_block(n) + truncation.spring[n]) * P -
-          P;
+          P * (stiffness + truncation.spring[n]) * P - one * P;
         for (unsigned int d = 0; d < 3; ++d)
-          block[d][d] += 1.;
+          block[d][d] += one;
         blocks.inverse[n] = P * invert(block) * P;
       }
     // A small face problem costs nothing: solve it to the end, and the active

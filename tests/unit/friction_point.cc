@@ -4,6 +4,7 @@
 
 #include "random.h"
 #include <viscoplastic_contact/friction_points.h>
+#include <viscoplastic_contact/number_range.h>
 
 #include <gtest/gtest.h>
 
@@ -160,5 +161,38 @@ namespace
         EXPECT_TRUE(unloaded.sticks);
         EXPECT_EQ(unloaded.multiplier.norm(), 0.);
       }
+  }
+
+
+
+  TEST(FrictionPoint, BoundsWhoseSquaresVanish)
+  {
+    Tensor<2, 2> C;
+    C[0][0] = 2.;
+    C[1][1] = 1.;
+    C[0][1] = C[1][0] = 0.5;
+    Tensor<1, 2> q;
+    q[0] = 3.;
+    q[1] = 4.;
+    for (const double bound : {1e-150, 1e-170, 1e-300})
+      {
+        const PointSolution solution = solve_friction_point(C, q, 2, bound);
+        EXPECT_FALSE(solution.sticks);
+        EXPECT_NEAR(solution.multiplier[0] / bound, 0.6, 1e-14);
+        EXPECT_NEAR(solution.multiplier[1] / bound, 0.8, 1e-14);
+      }
+  }
+
+
+
+  TEST(FrictionPoint, NormsWhoseSquaresVanish)
+  {
+    Tensor<1, 2> v;
+    v[0] = 3.;
+    v[1] = 4.;
+    for (const double size : {0., 1e-310, 1e-300, 1e-160, 1., 1e160, 1e300})
+      EXPECT_NEAR(stable_norm(v * size), 5. * size, 1e-13 * size) << size;
+    v /= 7.;
+    EXPECT_EQ(stable_norm(v), v.norm());
   }
 } // namespace

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+
+/**
+ * Energies, norms and estimates of errors are made of squares, which leave the
+ * range of floating-point numbers long before the numbers themselves do: the
+ * square of 1e-170 is zero. A run whose largest displacement, stress or force
+ * is that small would report energies of zero, and one of 1e170 infinite ones.
+ * Such runs are refused; a few small steps in a run of ordinary ones are not.
+ */
+namespace Viscoplastic
+{
+  /// Sizes of the solution (displacement, force, stress) that a run may have.
+  /// Squares of errors which are 1e-10 of that are still ordinary numbers.
+  constexpr double least_size = 1e-120, largest_size = 1e120;
+  /// Elastic moduli: cubes of entries of the matrix are ordinary numbers.
+  constexpr double least_modulus = 1e-70, largest_modulus = 1e70;
+  /// The sizes of the body and of its cells, and times and time steps.
+  constexpr double least_length = 1e-30, largest_length = 1e30;
+  constexpr double least_time = 1e-30, largest_time = 1e30;
+
+
+  /// "<what> is <value>; it must lie between <least> and <largest> ...", and
+  /// why, and what to do.
+  std::string
+  out_of_range(const std::string &what,
+               const double       value,
+               const double       least,
+               const double       largest);
+
+
+  /**
+   * The norm of a tensor or vector also where squares of its entries leave the
+   * range of floating-point numbers; otherwise norm() to the last bit.
+   */
+  template <typename TensorType>
+  double
+  stable_norm(const TensorType &tensor)
+  {
+    const double norm = tensor.norm();
+    if (norm > 1e-140 && norm < 1e140)
+      return norm;
+    // A power of two, which changes no digit.
+    constexpr double factor = 0x1p+600;
+    return norm < 1. ? (tensor * factor).norm() / factor :
+                       (tensor / factor).norm() * factor;
+  }
+} // namespace Viscoplastic

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/energy.h>
+#include <viscoplastic_contact/number_range.h>
 
 #include <cmath>
 
@@ -79,7 +80,7 @@ namespace Viscoplastic
                   weight * ((z - old_z) * driving_strain);
               }
           }
-        const double mises   = von_mises(mean);
+        const double mises   = std::sqrt(1.5) * stable_norm(deviator(mean));
         result.max_von_mises = std::max(result.max_von_mises, mises);
         result.max_strain    = std::max(result.max_strain, mean_strain.norm());
         result.mean_von_mises += mises * sampling.volume(c);

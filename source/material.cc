@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/material.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/number_range.h>
 #include <viscoplastic_contact/subsection.h>
 
 #include <sstream>
@@ -145,6 +146,11 @@ namespace Viscoplastic
     const double nu = poissons_ratio->value(x, 0.);
     if (!(E > 0))
       refuse("Young's modulus", *youngs_modulus, E, "positive");
+    AssertThrow(E >= least_modulus && E <= largest_modulus,
+                ExcMessage(out_of_range("'" + section + "/Young's modulus'",
+                                        E,
+                                        least_modulus,
+                                        largest_modulus)));
     if (!(nu > -1 && nu < 0.5))
       refuse("Poisson's ratio",
              *poissons_ratio,

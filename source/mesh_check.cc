@@ -4,8 +4,10 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <viscoplastic_contact/mesh_check.h>
+#include <viscoplastic_contact/number_range.h>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <vector>
 
@@ -40,6 +42,42 @@ namespace Viscoplastic
           least = std::min(least, determinant(jacobian) / scale);
         }
       return least;
+    }
+
+
+
+    /// Of coarse cells, which all ranks know; cells of refined meshes are not
+    /// smaller by orders of magnitude that matter.
+    template <int dim>
+    void
+    check_lengths(
+      const parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      double largest = 0., smallest = std::numeric_limits<double>::infinity();
+      for (const auto &cell : triangulation.cell_iterators_on_level(0))
+        {
+          double extent = 0.;
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                largest = std::max(largest, std::abs(cell->vertex(v)[d]));
+                extent =
+                  std::max(extent,
+                           std::abs(cell->vertex(v)[d] - cell->vertex(0)[d]));
+              }
+          smallest = std::min(smallest, extent);
+        }
+      AssertThrow(largest <= largest_length,
+                  ExcMessage(out_of_range("The largest coordinate of the mesh",
+                                          largest,
+                                          -largest_length,
+                                          largest_length)));
+      // Vertices that coincide are refused as such.
+      AssertThrow(smallest >= least_length || smallest == 0.,
+                  ExcMessage(out_of_range("The size of the smallest cell",
+                                          smallest,
+                                          least_length,
+                                          largest_length)));
     }
 
 
@@ -131,6 +169,7 @@ namespace Viscoplastic
   check_mesh(const parallel::distributed::Triangulation<dim> &triangulation)
   {
     const MPI_Comm comm = triangulation.get_communicator();
+    check_lengths(triangulation);
     check_cells<dim>(triangulation.cell_iterators_on_level(0), comm);
     // What is refined along straight lines keeps its shape; that on curved
     // boundaries is moved.

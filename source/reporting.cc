@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/blas_kernel.h>
 #include <viscoplastic_contact/energy.h>
 #include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/number_range.h>
 #include <viscoplastic_contact/reference_fields.h>
 #include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/version.h>
@@ -120,10 +121,10 @@ namespace Viscoplastic
     double max_displacement = 0.;
     for (std::size_t i = 0; i < d.space.owned.n_elements(); i += dim)
       {
-        double square = 0.;
+        Tensor<1, dim> u;
         for (unsigned int c = 0; c < dim; ++c)
-          square += Utilities::fixed_power<2>(step.forces.u.begin()[i + c]);
-        max_displacement = std::max(max_displacement, std::sqrt(square));
+          u[c] = step.forces.u.begin()[i + c];
+        max_displacement = std::max(max_displacement, stable_norm(u));
       }
     max_displacement = Utilities::MPI::max(max_displacement, communicator);
     DistributedVector change = step.forces.u;
@@ -148,17 +149,18 @@ namespace Viscoplastic
     // Forces on the body: loads, reactions, minus the multipliers.
     Tensor<1, dim> balance = step.forces.load.resultant - friction_force;
     double        &size    = accounts.largest_force;
-    size                   = std::max(
-      {size, step.forces.load.resultant.norm(), friction_force.norm()});
+    size                   = std::max({size,
+                                       stable_norm(step.forces.load.resultant),
+                                       stable_norm(friction_force)});
     for (const auto &pair : reaction_forces)
       {
         balance += pair.second;
-        size = std::max(size, pair.second.norm());
+        size = std::max(size, stable_norm(pair.second));
       }
 
     // The contact tolerance bounds the error in the energy norm, in which
     // nearly incompressible bodies hide large errors of reactions.
-    const double balance_defect = size > 0. ? balance.norm() / size : 0.;
+    const double balance_defect = size > 0. ? stable_norm(balance) / size : 0.;
     if (!is_initial && !balance_is_doubtful &&
         balance_defect >
           std::max(1e-8, std::min(1e3 * step.report.tolerance, 1e-2)))
@@ -199,6 +201,9 @@ namespace Viscoplastic
                               total_estimate(squared_estimate, communicator) :
                               0.;
     phase.stop();
+    summary.displacement.update(max_displacement, time_step.t);
+    summary.von_mises.update(stress.max_von_mises, time_step.t);
+    check_sizes();
     const SolutionErrors errors = measure_errors(step.state);
     summary.largest_error.update(errors.error);
     summary.largest_exact.update(errors.exact);
@@ -315,11 +320,9 @@ namespace Viscoplastic
     summary.external_work         = accounts.external_work;
     summary.energy_balance_defect = defect;
     summary.tension_area.update(tension_area, time_step.t);
-    summary.displacement.update(max_displacement, time_step.t);
     summary.strain.update(stress.max_strain, time_step.t);
     summary.max_displacement    = max_displacement;
     summary.point_displacements = point_values;
-    summary.von_mises.update(stress.max_von_mises, time_step.t);
     if (scene.has_viscosity())
       summary.viscous_dissipation = accounts.viscous_dissipation;
     if (d.face)
@@ -463,8 +466,28 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ViscoplasticContact<dim>::check_sizes() const
+  {
+    for (const auto &[what, size] :
+         {std::make_pair("displacement", summary.displacement.value),
+          std::make_pair("von Mises stress", summary.von_mises.value),
+          std::make_pair("force", accounts.largest_force)})
+      AssertThrow(!(size > largest_size) &&
+                    !(is_finished() && size > 0. && size < least_size),
+                  ExcMessage(out_of_range("The largest " + std::string(what) +
+                                            " of the run",
+                                          size,
+                                          least_size,
+                                          largest_size)));
+  }
+
+
+
+  template <int dim>
+  void
   ViscoplasticContact<dim>::close()
   {
+    check_sizes();
     const unsigned int       n       = state.n;
     std::vector<std::string> remarks = console.remarks();
     if (scene.has_viscosity())

@@ -2,8 +2,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/number_range.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -283,6 +285,110 @@ namespace Viscoplastic
                                        DistributedVector    &u,
                                        FrictionState        &friction)
   {
+    // All of it in proportion gives the solution in proportion: where squares
+    // would leave the range of numbers, another unit does. In a ramp that
+    // begins like exp(-1/t) that is nothing unusual; a whole run of this kind
+    // is refused in check_sizes().
+    const double size =
+      size_of_data(old_forces.u, load.values, right_side, foundation_step, u);
+    AssertThrow(!(size > largest_size),
+                ExcMessage(out_of_range("the size of loads and displacements "
+                                        "in the energy norm",
+                                        size,
+                                        least_size,
+                                        largest_size)));
+    if (size == 0. || size >= 1e-100)
+      return solve_in_unit(old_forces.u,
+                           load.values,
+                           right_side,
+                           bounds,
+                           foundation_step,
+                           tolerance,
+                           u,
+                           friction);
+
+    const double unit    = std::ldexp(1., std::max(std::ilogb(size), -1000));
+    const auto   in_unit = [unit](const auto &vector) {
+      auto result = vector;
+      result /= unit;
+      return result;
+    };
+    const auto scale = [&](const double factor) {
+      u *= factor;
+      for (auto *values : {&friction.slip, &friction.multiplier})
+        for (Tensor<1, 2> &value : *values)
+          value *= factor;
+    };
+    std::vector<double> bounds_in_unit(bounds);
+    for (double &bound : bounds_in_unit)
+      bound /= unit;
+    scale(1. / unit);
+    ContactReport report =
+      solve_in_unit(in_unit(old_forces.u),
+                    in_unit(load.values),
+                    in_unit(right_side),
+                    bounds_in_unit,
+                    foundation_step.size() > 0 ? in_unit(foundation_step) :
+                                                 foundation_step,
+                    tolerance,
+                    u,
+                    friction);
+    scale(unit);
+    report.duality_gap *= unit * unit;
+    report.error *= unit;
+    BulkSolver &solver = *discretisation->solver;
+    solver.set_rounding_error(unit * solver.rounding_error());
+    return report;
+  }
+
+
+
+  template <int dim>
+  double
+  ViscoplasticContact<dim>::size_of_data(const DistributedVector &old_u,
+                                         const DistributedVector &load,
+                                         const DistributedVector &right_side,
+                                         const Vector<double> &foundation_step,
+                                         const DistributedVector &u) const
+  {
+    const Discretisation       &d     = *discretisation;
+    const AdmissibleSpace<dim> &space = d.space;
+    double                      size  = 0.;
+    const auto                  add   = [&size](const double value) {
+      size = std::max(size, std::abs(value));
+    };
+    for (std::size_t i = 0; i < space.excluded().size(); ++i)
+      {
+        const double root = std::sqrt(d.diagonal.begin()[i]);
+        add(root * u.begin()[i]);
+        add(root * old_u.begin()[i]);
+        if (!space.excluded()[i])
+          {
+            add(load.begin()[i] / root);
+            add(right_side.begin()[i] / root);
+          }
+      }
+    for (unsigned int k = 0; k < foundation_step.size(); ++k)
+      if (space.owned.is_element(d.face->dofs()[k]))
+        add(std::sqrt(d.diagonal.begin()[space.owned.index_within_set(
+              d.face->dofs()[k])]) *
+            foundation_step[k]);
+    return Utilities::MPI::max(size, communicator);
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  ViscoplasticContact<dim>::solve_in_unit(const DistributedVector   &old_u,
+                                          const DistributedVector   &load,
+                                          const DistributedVector   &right_side,
+                                          const std::vector<double> &bounds,
+                                          const Vector<double> &foundation_step,
+                                          const double          tolerance,
+                                          DistributedVector    &u,
+                                          FrictionState        &friction)
+  {
     Discretisation             &d     = *discretisation;
     const AdmissibleSpace<dim> &space = d.space;
 
@@ -295,9 +401,8 @@ namespace Viscoplastic
           const double stiffness = d.diagonal.begin()[i];
           const auto   square    = [](const double x) { return x * x; };
           rounding +=
-            stiffness *
-              (square(u.begin()[i]) + square(old_forces.u.begin()[i])) +
-            (square(load.values.begin()[i]) + square(right_side.begin()[i])) /
+            stiffness * (square(u.begin()[i]) + square(old_u.begin()[i])) +
+            (square(load.begin()[i]) + square(right_side.begin()[i])) /
               stiffness;
         }
     rounding = Utilities::MPI::sum(rounding, communicator);
@@ -307,7 +412,7 @@ namespace Viscoplastic
     if (d.slipping_face())
       {
         DistributedVector change(u);
-        change -= old_forces.u;
+        change -= old_u;
         Vector<double> increment = d.face->face_vector(change);
         if (foundation_step.size() > 0)
           increment -= foundation_step;

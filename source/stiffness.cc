@@ -2,6 +2,7 @@
 #include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/vector.h>
 
+#include <viscoplastic_contact/number_range.h>
 #include <viscoplastic_contact/stiffness.h>
 
 #include <algorithm>
@@ -79,6 +80,11 @@ namespace Viscoplastic
                         std::isfinite(scale),
                       ExcMessage(message.str()));
         }
+    AssertThrow(scale >= least_modulus && scale <= largest_modulus,
+                ExcMessage(out_of_range("The norm of the Voigt matrix",
+                                        scale,
+                                        least_modulus,
+                                        largest_modulus)));
 
     // With engineering shears, Voigt's matrix holds the components themselves.
     constexpr std::array<std::pair<unsigned int, unsigned int>, 6> axes = {

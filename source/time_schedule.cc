@@ -2,6 +2,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/number_range.h>
 #include <viscoplastic_contact/spelling.h>
 #include <viscoplastic_contact/time_schedule.h>
 
@@ -74,6 +75,15 @@ namespace Viscoplastic
                                "' are shorter than 1e-14 of "
                                "its end time, which is what rounding leaves "
                                "of times; take fewer steps."));
+        AssertThrow(step >= least_time && end <= largest_time,
+                    ExcMessage(out_of_range("'Time/Phases': the " +
+                                              std::string(step < least_time ?
+                                                            "time step" :
+                                                            "end time") +
+                                              " of '" + excerpt(phase) + "'",
+                                            step < least_time ? step : end,
+                                            least_time,
+                                            largest_time)));
         n_all_steps += n_steps;
         AssertThrow(n_all_steps <= max_n_steps,
                     ExcMessage("'Time/Phases' has more than 1e9 steps up to '" +

@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/mesh.h>
 #include <viscoplastic_contact/mesh_adaptation.h>
 #include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/number_range.h>
 #include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
@@ -224,6 +225,7 @@ namespace Viscoplastic
     record_initial_state();
     while (!is_finished())
       make_step();
+    check_sizes();
     return summary;
   }
 
@@ -444,12 +446,12 @@ namespace Viscoplastic
         for (unsigned int p = 0; p < bounds.size(); ++p)
           {
             auto        &multiplier = state.friction.multiplier[p];
-            const double size       = multiplier.norm();
+            const double size       = stable_norm(multiplier);
             if (size > bounds[p])
               multiplier *= bounds[p] / size;
             state.friction.sticks[p] =
               size < (1. - 1e-6) * bounds[p] ||
-              slip_rates[p].norm() <= 1e-12 * max_speed;
+              stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
           }
       }
     forces =

@@ -352,6 +352,27 @@ namespace Viscoplastic
                DistributedVector         &u,
                FrictionState             &friction);
 
+    /// solve_from() in a unit of forces and displacements in which squares of
+    /// them are ordinary numbers.
+    ContactReport
+    solve_in_unit(const DistributedVector   &old_u,
+                  const DistributedVector   &load,
+                  const DistributedVector   &right_side,
+                  const std::vector<double> &bounds,
+                  const Vector<double>      &foundation_step,
+                  const double               tolerance,
+                  DistributedVector         &u,
+                  FrictionState             &friction);
+
+    /// The largest of what the data of a step contribute to the energy norm,
+    /// without squares.
+    double
+    size_of_data(const DistributedVector &old_u,
+                 const DistributedVector &load,
+                 const DistributedVector &right_side,
+                 const Vector<double>    &foundation_step,
+                 const DistributedVector &u) const;
+
     /// u and velocity of @p state.
     void
     set_displacement(const DistributedVector &u,
@@ -451,6 +472,12 @@ namespace Viscoplastic
 
     void
     write_fields();
+
+    /// Throws ExcMessage if the largest displacement, force or stress of the
+    /// run is so large, or at its end so small, that squares of it, as energies
+    /// are, mean nothing.
+    void
+    check_sizes() const;
 
     void
     close();

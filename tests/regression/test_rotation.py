@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A rotated and translated scene gives the rotated answer.
+"""A rotated and translated scene gives the rotated answer, and one in other
+units the same answer.
 
 Only rounding and the solver tolerance tell the two runs apart: the contact
 tolerance is 1e-10 in the energy norm, so forces and displacements agree to
@@ -143,6 +144,138 @@ class Rotated(TestCase):
             },
         )
         self.compare(straight, turned, matrix)
+
+
+def friction_scene(
+    dimension, stress=1.0, length=1.0, time=1.0, load=1.0, law="maxwell", ramp="t"
+):
+    """A block that is pushed over its foundation, in units of its own: what is
+    1 elsewhere is `stress', `length' and `time' here. Loads and bounds of
+    friction are `load' times as large."""
+    sides = range(2 * dimension)
+    foot, top = sides[-2:]
+    ramp = ramp.replace("t", f"(t/{time})")
+    force = load * stress
+    return {
+        "Dimension": dimension,
+        "Geometry/Arguments": {
+            2: f"16, 8 : 0, 0 : {2 * length}, {length} : true",
+            3: f"3, 3, 3 : 0, 0, 0 : {length}, {length}, {length} : true",
+        }[dimension],
+        "Material/Young's modulus": stress,
+        "Material/Law": law,
+        "Material/maxwell/Viscosity": 0.5 * stress * time,
+        **{f"Boundary {side}/Role": "free" for side in sides},
+        "Boundary 0/Role": "traction",
+        "Boundary 0/Traction": f"{0.3 * force}*{ramp}; {0.1 * force}*{ramp}^2"
+        + "; 0" * (dimension - 2),
+        f"Boundary {top}/Role": "clamped",
+        f"Boundary {foot}/Role": "contact",
+        f"Boundary {foot}/Friction law": "tresca",
+        f"Boundary {foot}/Friction bound": 0.08 * force,
+        "Time/Phases": f"{time}: 4",
+        "Solver/Contact tolerance": 1e-10,
+        "Output/Fields every": 0,
+    }
+
+
+class Units(TestCase):
+    """Numbers far from 1, up to those whose squares vanish."""
+
+    def block(self, dimension, more=None, check=True, **units):
+        scene = {**friction_scene(dimension, **units), **(more or {})}
+        return run("block", scene, text="", check=check)
+
+    def compare(self, known, result, dimension, stress=1, length=1, time=1, load=1):
+        force = load * stress * length ** (dimension - 1)
+        energy = force * load * length
+        unit = {
+            "t": time,
+            "stick_area": length ** (dimension - 1),
+            "slip_area": length ** (dimension - 1),
+            "friction_force_x": force,
+            f"reaction_{2 * dimension - 1}_x": force,
+            "max_utilisation": 1,
+            "stored_energy": energy,
+            "external_work": energy,
+            "friction_dissipation": energy,
+            "max_displacement": load * length,
+            "max_von_mises": load * stress,
+            "stress_norm": load * stress * length ** (dimension / 2),
+            "estimate_total": np.sqrt(energy),
+        }
+        self.assertGreater(known["slip_area"][-1], 0)
+        for name, size in unit.items():
+            self.assertClose(
+                result[name] / size,
+                known[name],
+                absolute=AGREE * abs(known[name]).max(),
+                what=name,
+            )
+        self.check_identities(result)
+
+    def test_stress_length_and_time(self):
+        known = {dimension: self.block(dimension) for dimension in (2, 3)}
+        for dimension, solver, units in (
+            (2, "direct", (1e-60, 1e-9, 1e-9)),
+            (2, "multigrid", (1e60, 1e-9, 1e9)),
+            (3, "multigrid", (1e-60, 1e6, 1e9)),
+            (3, "direct", (1e60, 1e6, 1e-9)),
+        ):
+            with self.subTest(f"{dimension}D, {solver}, {units}"):
+                units = dict(zip(("stress", "length", "time"), units))
+                more = {"Solver/Linear solver": solver}
+                result = self.block(dimension, more, **units)
+                self.compare(known[dimension], result, dimension, **units)
+
+    def test_loads(self):
+        """Where energies are no longer numbers, the run is refused, at the ends
+        of the range as well as far beyond."""
+        known = self.block(2)
+        for load in 1e-110, 1e110:
+            with self.subTest(load):
+                self.compare(known, self.block(2, load=load), 2, load=load)
+        for solver, load in (
+            ("direct", 1e-125),
+            ("multigrid", 1e-157),
+            ("direct", 1e-170),
+            ("multigrid", 1e-300),
+            ("direct", 1e125),
+            ("multigrid", 1e157),
+        ):
+            with self.subTest(f"{solver}, {load}"):
+                more = {"Solver/Linear solver": solver}
+                result = self.block(2, more, check=False, load=load)
+                self.assertEqual(result.returncode, 1)
+                self.assertRegex(result.stderr, "must lie between .*other units")
+
+    def test_ramps_that_begin_with_almost_nothing(self):
+        """Their first steps are solved, whatever squares of them are: in
+        proportion they are those of other runs."""
+        elastic = {"law": "elastic"}
+        for solver in "direct", "multigrid":
+            with self.subTest(solver):
+                more = {
+                    "Solver/Linear solver": solver,
+                    "Time/Phases": "1e-20: 1, 1: 3",
+                }
+                ramp = self.block(2, more, ramp="t^8", **elastic)
+                known = self.block(2, more, ramp="t", load=1e20, **elastic)
+                for name in "reaction_3_x", "max_displacement", "max_von_mises":
+                    self.assertClose(ramp[name][1], 1e-160 * known[name][1], 1e-7)
+                self.assertGreater(ramp["slip_area"][-1], 0)
+                self.check_identities(ramp)
+
+    def test_bounds_that_are_almost_nothing(self):
+        """On a part of the face, beside ordinary ones."""
+        for dimension, foot in (2, 2), (3, 4):
+            with self.subTest(f"{dimension}D"):
+                name = f"Boundary {foot}/Friction bound"
+                for_bound = [
+                    self.block(dimension, {name: f"if(x < 0.5, {bound}, 0.08)"})
+                    for bound in ("1e-300", "0")
+                ]
+                self.compare(for_bound[1], for_bound[0], dimension)
 
 
 if __name__ == "__main__":

@@ -88,6 +88,11 @@ namespace
     };
     refusal("set Young's modulus = -2e9",
             "'Material 2/Young's modulus' is -2e+09; it must be positive.");
+    refusal("set Young's modulus = 1e-80",
+            "'Material 2/Young's modulus' is 1e-80; it must lie between 1e-70 "
+            "and 1e+70, where squares stay within the range of floating-point "
+            "numbers; choose other units or look for a datum that is too large "
+            "or too small.");
     refusal("set Young's modulus = 1 + t",
             "'Material 2/Young's modulus' depends on t; elastic moduli must be "
             "functions of position only.");

@@ -66,6 +66,11 @@ namespace
                    "lie after 1e-09.");
     expect_refusal([] { TimeSchedule schedule("1: 2, 0.5: 3"); },
                    "must be finite and lie after");
+    expect_refusal([] { TimeSchedule schedule("1e40: 2"); },
+                   "the end time of '1e40: 2' is 1e+40; it must lie between "
+                   "1e-30 and 1e+30");
+    expect_refusal([] { TimeSchedule schedule("1e-30: 2"); },
+                   "the time step of '1e-30: 2' is 5e-31");
     expect_refusal([] { TimeSchedule schedule("-1: 2"); },
                    "must be finite and lie after");
     for (const std::string text : {"inf: 2", "nan: 2"})

@@ -553,8 +553,8 @@ namespace Viscoplastic
                << summary.displacement.value / size
                << " times the size of the body";
         else
-          text << " the largest strain of a cell is " << summary.strain.value
-               << ", so that lengths change by more than themselves";
+          text << " the norm of the strain is " << summary.strain.value
+               << " in the mean of a cell";
         text << "; small strains are assumed, so that this is flow without end "
                 "or a load far too large, and only its onset means something.";
         remarks.push_back(text.str());

@@ -41,7 +41,8 @@ class Drawn(Case):
         paths = [path for path in self.entries if path != "Output/Directory"]
         parts = {path.rsplit("/", n)[0] for path in paths for n in (0, 1, 2)}
         # the large ones first
-        gone = [[p for p in paths if f"{p}/".startswith(f"{part}/")] for part in parts]
+        below = lambda part: [p for p in paths if f"{p}/".startswith(f"{part}/")]
+        gone = map(below, parts)
         for paths in sorted(gone, key=lambda paths: (-len(paths), paths)):
             yield self.without(paths)
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Bad input by the thousand: damaged parameter files, expressions, meshes and
-checkpoints go into the program, and each answer is judged (judge.py).
+checkpoints go into the program, also scenes that make sense, and each answer
+is judged (judge.py, answers.py).
 
 A case is made again by its kind, seed and number:
 

@@ -152,7 +152,8 @@ class Scene:
         )
 
     def displacement(self):
-        return self.length(self.strain * self.random.choice((-1, 1)) * self.spread(-1, 0.3))
+        sign = self.random.choice((-1, 1))
+        return self.length(self.strain * sign * self.spread(-1, 0.3))
 
     def traction(self):
         return self.number(self.load(), self.units.stress)
@@ -205,10 +206,10 @@ class Scene:
                 [(i == j) + self.random.uniform(-0.4, 0.4) for j in range(self.dim)]
                 for i in range(self.dim)
             ]
-            corners = [
-                [sum(e[j] for i, e in enumerate(edges) if n >> i & 1) for j in range(self.dim)]
-                for n in range(2**self.dim)
-            ]
+            corners = []
+            for n in range(2**self.dim):
+                chosen = [edge for i, edge in enumerate(edges) if n >> i & 1]
+                corners.append([sum(e[j] for e in chosen) for j in range(self.dim)])
             text = "; ".join(self.point(*corner) for corner in corners)
             return Body("general_cell", f"{text} : true", 1, flat_sides)
         if kind == "half shell" and self.dim == 2:
@@ -222,18 +223,21 @@ class Scene:
             return Body("quarter_hyper_shell", arguments, n, pieces)
         if kind == "shell":
             n = pick((6, 8)) if self.dim == 2 else 6
-            return Body("hyper_shell", f"{origin} : {radii} : {n} : true", n, curved(0, 1))
+            arguments = f"{origin} : {radii} : {n} : true"
+            return Body("hyper_shell", arguments, n, curved(0, 1))
         if kind == "hole" and self.dim == 2:
             lengths = " : ".join(map(self.length, (0.4, 1, 0.5, 0.5, 0.5, 0.5)))
             arguments = f"{lengths} : {origin} : 0 : 1 : {self.length(1)} : 2 : true"
-            return Body("plate_with_a_hole", arguments, 24, flat(0, 1, 2, 3) | curved(4))
+            pieces = flat(0, 1, 2, 3) | curved(4)
+            return Body("plate_with_a_hole", arguments, 24, pieces)
         if kind in ("hole", "half ball"):
             n = 4 if self.dim == 2 else 6
             arguments = f"{origin} : {self.length(1)}"
             return Body("half_hyper_ball", arguments, n, curved(0) | flat(1))
         if kind == "quarter ball":
             near = f"abs({{}}) < {self.length(1e-6)}"
-            ids = f"if(id == 0, 0, if({near.format('x')}, 1, if({near.format('y')}, 2, 3)))"
+            ids = f"if({near.format('x')}, 1, if({near.format('y')}, 2, 3))"
+            ids = f"if(id == 0, 0, {ids})"
             pieces = curved(0) | flat(*range(1, self.dim + 1))
             n = 3 if self.dim == 2 else 4
             arguments = f"{origin} : {self.length(1)}"
@@ -297,7 +301,8 @@ class Scene:
         self.set("Geometry/Material ids", ids)
         # Explicit schemes with a policy, and backward Euler, stand any rate.
         self.scheme = self.random.choice(("forward Euler", "backward Euler", "Heun"))
-        self.policy = self.random.choice(("refuse", "refuse", "subdivide", "backward Euler"))
+        policies = "refuse", "refuse", "subdivide", "backward Euler"
+        self.policy = self.random.choice(policies)
         for i in range(n):
             self.material("Material" if n == 1 else f"Material {i + 1}")
         self.maybe(0.2, "Material/Stress history", "cell means", "quadrature points")
@@ -311,10 +316,12 @@ class Scene:
         if self.chance(0.12):
             self.voigt(section)
         else:
-            vary = self.in_units(pick(("", "", "", "*(1 + [x]^2)", "*if([y] > 0.4, 3, 1)")))
+            vary = pick(("", "", "", "*(1 + [x]^2)", "*if([y] > 0.4, 3, 1)"))
+            vary = self.in_units(vary)
             self.set(f"{section}/Young's modulus", self.stress(modulus) + vary)
             self.set(f"{section}/Poisson's ratio", poisson)
-        law = pick(("elastic", "maxwell", "maxwell", "zener", "perzyna", "norton", "parsed"))
+        laws = "elastic", "maxwell", "maxwell", "zener", "perzyna", "norton", "parsed"
+        law = pick(laws)
         self.set(f"{section}/Law", law)
         if law == "elastic":
             return
@@ -324,7 +331,7 @@ class Scene:
         if self.scheme == "backward Euler" or self.policy == "backward Euler":
             theta = self.spread(-3, 1.5)
         else:
-            theta = self.spread(-0.5, 1.5) if self.policy == "refuse" else self.spread(-1.2, 1.5)
+            theta = self.spread(-0.5 if self.policy == "refuse" else -1.2, 1.5)
         shear = modulus / (2 * (1 + poisson))
         size = self.strain * modulus
         vary = pick(("", "", self.in_units("*(1 + [t])"), f"*(1 + {self.in_space()})"))
@@ -332,14 +339,16 @@ class Scene:
         if law == "maxwell":
             self.set(entry("Viscosity"), self.number(shear * theta, stress_time) + vary)
         elif law == "zener":
-            share = pick((0, 0.01, 0.3, 0.5, 0.3 if "Voigt" in str(self.entries) else 1))
-            self.set(entry("Long-term Young's modulus"), self.stress(share * modulus * 0.99))
+            share = pick((0, 0.01, 0.3, 0.5, 1))
+            long_term = self.stress(share * modulus * 0.99)
+            self.set(entry("Long-term Young's modulus"), long_term)
             self.set(entry("Long-term Poisson's ratio"), poisson)
             self.set(entry("Relaxation time"), self.duration(theta) + vary)
         elif law == "perzyna":
             radius = size * pick((0, 0.01, 0.3, 1, 1e3))
             self.set(entry("Yield radius"), self.stress(radius) + vary)
-            self.maybe(0.5, entry("Hardening modulus"), *map(self.stress, (0, 0.1, modulus)))
+            moduli = map(self.stress, (0, 0.1, modulus))
+            self.maybe(0.5, entry("Hardening modulus"), *moduli)
             self.set(entry("Viscosity"), self.number(2 * shear * theta, stress_time))
         elif law == "norton":
             n = pick((1, 1.5, 2, 3, 5))
@@ -363,7 +372,8 @@ class Scene:
                 )
             )
             self.set(entry("Strain rate"), rate)
-            self.maybe(0.4, entry("Factor"), self.in_space(), self.not_negative_in_time())
+            factors = self.in_space(), self.not_negative_in_time()
+            self.maybe(0.4, entry("Factor"), *factors)
 
     def voigt(self, section):
         """Orthotropic, or with a coupling that plane strain permits."""

@@ -101,7 +101,7 @@ namespace Viscoplastic
     {
       filtered = x;
       damp(filtered);
-      solver.amg->vmult(y, filtered);
+      solver.precondition(y, filtered);
       damp(y);
       solver.restrict_to_unknowns(y);
       solver.project(y);
@@ -356,6 +356,18 @@ namespace Viscoplastic
         masked_matrix.compress(VectorOperation::add);
       }
 
+    // ML shifts the diagonal of the coarsest matrix by 1e-12, whatever the unit
+    // of stress is. A power of two changes no digit.
+    double largest = 0.;
+    for (const auto row : masked_matrix.locally_owned_range_indices())
+      largest = std::max(largest, masked_matrix.diag_element(row));
+    largest  = Utilities::MPI::max(largest, communicator);
+    amg_unit = largest > 1e-6 && largest < 1e18 ?
+                 1. :
+                 std::ldexp(1., std::ilogb(largest));
+    if (amg_unit != 1.)
+      masked_matrix /= amg_unit;
+
     // A contiguous copy of the rigid body modes, which ML refers to.
     const std::size_t n = excluded.size();
     near_null_space.resize(
@@ -388,6 +400,17 @@ namespace Viscoplastic
     built_for       = truncation;
     is_fresh        = true;
     lost_iterations = 0.;
+  }
+
+
+
+  void
+  KrylovSolver::precondition(DistributedVector       &y,
+                             const DistributedVector &x) const
+  {
+    amg->vmult(y, x);
+    if (amg_unit != 1.)
+      y /= amg_unit;
   }
 
 
@@ -499,7 +522,7 @@ namespace Viscoplastic
     // any, is an error, too.
     product = residual;
     subtract_face(force, product);
-    amg->vmult(w, product);
+    precondition(w, product);
     restrict_to_unknowns(w);
     return std::sqrt(std::max(0., w * product));
   }

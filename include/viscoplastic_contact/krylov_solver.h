@@ -122,6 +122,10 @@ namespace Viscoplastic
     void
     build_preconditioner();
 
+    /// One cycle for x.
+    void
+    precondition(DistributedVector &y, const DistributedVector &x) const;
+
     void
     make_face_matrix();
 
@@ -141,7 +145,9 @@ namespace Viscoplastic
 
     // The preconditioner, and how it is doing.
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> amg;
-    std::vector<double>                                near_null_space;
+    /// Its matrix is in this unit; see build_preconditioner().
+    double              amg_unit = 1.;
+    std::vector<double> near_null_space;
     /// The preconditioner's matrix, which ML refers to.
     DistributedMatrix masked_matrix;
     /// For which truncation it was built.

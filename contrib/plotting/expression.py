@@ -2,7 +2,9 @@
 """Expressions of t as parameter files have them, for many times at once.
 
 The syntax is muParser's.  What it shares with Python's is parsed by Python
-and evaluated here operation by operation; nothing else is executed.
+and evaluated here operation by operation; nothing else is executed.  Numbers
+are those of IEEE 754 as in the program, where 1/0 is infinite and no error,
+and as there a value that is not finite is refused in the end.
 """
 
 import ast
@@ -10,6 +12,7 @@ import operator
 import re
 
 import numpy as np
+from scipy.special import erfc
 
 from .results import UserError
 
@@ -28,10 +31,29 @@ OPERATIONS = {
     ast.Eq: operator.eq,
     ast.NotEq: operator.ne,
 }
+
+
+def rounded(values):
+    """To integers, halves away from zero, as deal.II's int() and if()."""
+    return np.trunc(values + np.copysign(0.5, values))
+
+
+def choice(condition, a, b):
+    return np.where(rounded(condition) != 0.0, a, b)
+
+
+def total(*values):
+    return np.add.reduce(np.broadcast_arrays(*values))
+
+
+# Those of one or two arguments are numpy's, whose number of arguments is
+# checked: a further one would be where to write the result.
 FUNCTIONS = {
-    "if_": lambda condition, a, b: np.where(np.asarray(condition) != 0, a, b),
+    "if_": choice,
     "min": lambda *values: np.minimum.reduce(np.broadcast_arrays(*values)),
     "max": lambda *values: np.maximum.reduce(np.broadcast_arrays(*values)),
+    "sum": total,
+    "avg": lambda *values: total(*values) / len(values),
     "abs": np.abs,
     "sqrt": np.sqrt,
     "exp": np.exp,
@@ -42,6 +64,9 @@ FUNCTIONS = {
     "sin": np.sin,
     "cos": np.cos,
     "tan": np.tan,
+    "cot": lambda x: 1.0 / np.tan(x),
+    "sec": lambda x: 1.0 / np.cos(x),
+    "csc": lambda x: 1.0 / np.sin(x),
     "asin": np.arcsin,
     "acos": np.arccos,
     "atan": np.arctan,
@@ -49,33 +74,54 @@ FUNCTIONS = {
     "sinh": np.sinh,
     "cosh": np.cosh,
     "tanh": np.tanh,
+    "asinh": np.arcsinh,
+    "acosh": np.arccosh,
+    "atanh": np.arctanh,
+    "erfc": erfc,
     "sign": np.sign,
-    "rint": np.rint,
+    "int": rounded,
+    "rint": lambda x: np.floor(x + 0.5),  # muParser's, not that of C
     "floor": np.floor,
     "ceil": np.ceil,
     "pow": np.power,
 }
+CONSTANTS = {"pi": np.pi, "Pi": np.pi, "_pi": np.pi, "_e": np.e}
 
 
 def evaluate(text, t):
-    """The values at the times t; UserError if it depends on more than t."""
+    """The values at the times t; UserError if it depends on more than t or is
+    not finite."""
     python = re.sub(r"\bif\s*\(", "if_(", text.replace("^", "**"))
     python = python.replace("&&", " and ").replace("||", " or ").strip()
+    shown = text.strip() if len(text) <= 80 else f"{text.strip()[:77]}..."
+    names = {name: np.float64(value) for name, value in CONSTANTS.items()}
     try:
         tree = ast.parse(python, mode="eval")
         with np.errstate(all="ignore"):
-            value = visit(tree.body, {"t": t, "pi": np.pi, "e": np.e})
-    except (SyntaxError, KeyError, TypeError, ValueError) as error:
+            value = visit(tree.body, {"t": t, **names})
+    except (RecursionError, MemoryError):  # the latter is that of the parser
         raise UserError(
-            f'the expression "{text}" cannot be drawn: only expressions of t alone '
+            f'the expression "{shown}" cannot be drawn: it is nested too deeply, or '
+            "has too many terms"
+        ) from None
+    except (SyntaxError, KeyError, TypeError, ValueError, OverflowError) as error:
+        raise UserError(
+            f'the expression "{shown}" cannot be drawn: only expressions of t alone '
             "are evaluated here"
         ) from error
-    return np.broadcast_to(np.asarray(value, dtype=float), t.shape)
+    value = np.broadcast_to(np.asarray(value, dtype=float), t.shape)
+    wrong = np.nonzero(~np.isfinite(value))[0]
+    if len(wrong):
+        raise UserError(
+            f'the expression "{shown}" cannot be drawn: it has the value '
+            f"{value[wrong[0]]:g} at t = {t[wrong[0]]:g}"
+        )
+    return value
 
 
 def visit(node, names):
-    if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
-        return float(node.value)
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        return np.float64(node.value)
     if isinstance(node, ast.Name):
         return names[node.id]
     if isinstance(node, ast.UnaryOp):
@@ -84,15 +130,19 @@ def visit(node, names):
         return OPERATIONS[type(node.op)](
             visit(node.left, names), visit(node.right, names)
         )
+    # Truth is a number, so that one can count with it.
     if isinstance(node, ast.Compare) and len(node.ops) == 1:
-        return OPERATIONS[type(node.ops[0])](
+        return 1.0 * OPERATIONS[type(node.ops[0])](
             visit(node.left, names), visit(node.comparators[0], names)
         )
     if isinstance(node, ast.BoolOp):
         join = np.logical_and if isinstance(node.op, ast.And) else np.logical_or
-        return join.reduce(
+        return 1.0 * join.reduce(
             np.broadcast_arrays(*[visit(value, names) for value in node.values])
         )
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-        return FUNCTIONS[node.func.id](*[visit(a, names) for a in node.args])
+        function = FUNCTIONS[node.func.id]
+        expected = getattr(function, "nin", len(node.args))
+        if len(node.args) == expected and not node.keywords:
+            return function(*[visit(argument, names) for argument in node.args])
     raise ValueError("not an arithmetic expression")

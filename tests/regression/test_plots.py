@@ -220,13 +220,36 @@ class Numbers(TestCase):
             ("if(t <= 0.5 || t >= 1, sin(t), abs(-2))",
              np.where((t <= 0.5) | (t >= 1), np.sin(t), 2)),
             ("4", np.full(9, 4.0)),
+            # as deal.II's FunctionParser, which these values are from
+            ("(t < 1) + (t < 2)", np.where(t < 1, 2.0, t < 2)),
+            ("-(t < 1)", -1.0 * (t < 1)),
+            ("if(0.3, 1, 2) + if(-0.5, 10, 20)", np.full(9, 12.0)),
+            ("rint(2.5) + rint(-1.5)", np.full(9, 2.0)),
+            ("int(2.5) + 10*int(-0.5)", np.full(9, -7.0)),
+            ("-2^2 + 2^3^2 + 2^-1", np.full(9, 508.5)),
+            ("Pi - _pi + log(_e)", np.ones(9)),
+            ("sum(1, t, 2) + avg(1, t)", 3.5 + 1.5 * t),
+            ("cot(1)*csc(1)*sec(1)", np.full(9, np.sin(1) ** -2)),
+            ("erfc(0) + asinh(t) - ln(t + sqrt(t^2 + 1))", np.ones(9)),
+            ("1/(1/0) + exp(-1/0) + atan(10^400) + atan(1e200^2)", np.full(9, np.pi)),
         ):
             self.assertClose(evaluate(text, t), values, relative=1e-14, what=text)
 
     def test_expressions_that_are_refused(self):
         t = np.zeros(2)
-        for text in ("x*t", "t t", "__import__('os')", "t.shape", "foo(t)", "free", ""):
-            with self.assertRaises(UserError, msg=text):
+        for text in ("x*t", "t t", "__import__('os')", "t.shape", "foo(t)", "free", "",
+                     "e", "True", "abs(t, t)", "abs(t, out=t)", "atan2(t)", "min()",
+                     "if(t, 1)", "9" * 400, "9" * 5000, "t\0"):
+            with self.assertRaisesRegex(UserError, "expressions of t alone", msg=text):
+                evaluate(text, t)
+        for text in ("+".join(["t"] * 3000), "t" + "^t" * 2000, "-" * 200000 + "t"):
+            with self.assertRaisesRegex(UserError, "too deeply") as caught:
+                evaluate(text, t)
+            self.assertLess(len(str(caught.exception)), 200)
+        for text in ("1/0", "1/t", "0/t", "0^-1", "10^400", "1e400", "(-8)^(1/3)",
+                     "exp(1000)", "sqrt(-1)", "log(t)", "if(t == 0, 1/t, 1)"):
+            words = "has the value -?(inf|nan) at t = 0"
+            with self.assertRaisesRegex(UserError, words, msg=text):
                 evaluate(text, t)
 
     def test_pieces_of_a_line(self):

@@ -103,7 +103,9 @@ class Scale:
             for points in (body.points, deformed):
                 self.low = np.minimum(self.low, points.min(axis=0))
                 self.high = np.maximum(self.high, points.max(axis=0))
-            values.append(field(body, name)[body.cells].mean(axis=1))
+            # What is drawn lies between the extremes of each cell.
+            of_cells = field(body, name)[body.cells]
+            values += [of_cells.min(axis=1), of_cells.max(axis=1)]
         self.name = name
         self.shade = style.Shade(np.concatenate(values), f'the field "{name}"')
 
@@ -122,7 +124,7 @@ class Body:
     def colour_bar(self, axes, flat):
         shade = self.scale.shade
         name = style.field_label(self.scale.name)
-        label = style.range_label(shade, name, self.values, " " if flat else "\n")
+        label = style.range_label(shade, name, self.at_points, " " if flat else "\n")
         add_colour_bar(axes, shade.mappable(), label, flat, extend=shade.extend)
 
 

@@ -5,6 +5,7 @@ In two dimensions curves over the arc length of each straight piece, in three
 dimensions each plane as seen from the foundation.
 """
 
+import itertools
 import math
 
 import matplotlib
@@ -24,14 +25,37 @@ from .layout import add_colour_bar
 MOST_PIECES = 4
 
 
+class Arrows:
+    """How long arrows of slip are: the same in all planes and all frames.
+
+    longest  the largest slip
+    lengths  of its arrow in each plane, less than what is between two arrows
+             on the finest mesh
+    """
+
+    def __init__(self):
+        self.longest = 0.0
+        self.lengths = []
+
+    def extend(self, contact, body):
+        """Take account of a face in three dimensions at one more time."""
+        size = np.linalg.norm(contact["slip"], axis=1).max(initial=0.0)
+        self.longest = max(self.longest, size)
+        found = [length_of_arrows(plane) for plane in planes(contact, body)]
+        pairs = itertools.zip_longest(self.lengths, found, fillvalue=np.inf)
+        self.lengths = [min(pair) for pair in pairs]
+
+
 class Scale:
     """Ranges that all frames of an animation share.
 
     largest  sizes of vectors, by name
     limits   in two dimensions (lowest, highest) of their tangential components
+    arrows   those of the slip in three dimensions
     """
 
     def __init__(self, results, indices):
+        self.arrows = Arrows()
         self.largest = {"traction": 0.0, "slip": 0.0, "slip_rate": 0.0}
         self.limits = {name: (0.0, 0.0) for name in self.largest}
         for index in indices:
@@ -42,6 +66,8 @@ class Scale:
                     self.largest[name] = max(self.largest[name], size)
             if contact.cells.shape[1] == 2:
                 self.extend_limits(contact)
+            else:
+                self.arrows.extend(contact, results.body(index))
 
     def extend_limits(self, contact):
         for line in lines(contact):
@@ -191,11 +217,11 @@ def draw_planes(contact, body, scale):
     slips = style.Shade([0.0, scale.largest["slip"] or 1.0], "slip")
     tractions = style.Shade([0.0, scale.largest["traction"] or 1.0], "traction")
     tractions.map = matplotlib.colormaps["cividis"]
-    for plane, row in zip(shown, panels):
+    for plane, row, length in zip(shown, panels, scale.arrows.lengths):
         axes = row[0]
         values = np.linalg.norm(contact["slip"], axis=1)
         shaded(axes, plane.plane, plane.cells, values, slips)
-        add_arrows(axes, plane, contact, scale.largest["slip"], "white")
+        add_arrows(axes, plane, contact, scale.arrows.longest, length, "white")
         plane.prepare(axes)
         add_colour_bar(
             axes, slips.mappable(), r"slip since $t=0$ $|s_\tau|$", plane.is_flat()
@@ -236,28 +262,36 @@ def draw_states(axes, plane, contact):
     return states[np.unique(plane.cells)]
 
 
-def add_arrows(axes, plane, contact, longest, colour):
-    """Arrows of the slip at some nodes; the longest has a key."""
+def nodes_with_arrows(plane):
+    """Some nodes: arrows at every one of a fine mesh would be a black mass."""
     nodes = one_of_each(plane)
-    slip = plane.project(contact["slip"])
-    length = np.linalg.norm(slip, axis=1)
-    if longest <= 0.0 or length[nodes].max(initial=0.0) <= 0.0:
-        return
-    place = plane.plane
-    extent = np.ptp(place[nodes], axis=0).max()
-    # Arrows at every node of a fine mesh would be a black mass.
-    chosen = thinned(place, nodes, extent / 14.0)
+    extent = np.ptp(plane.plane[nodes], axis=0).max()
+    return thinned(plane.plane, nodes, extent / 14.0), extent
+
+
+def length_of_arrows(plane):
+    """Of the longest, in the units of the plane: no arrow reaches the next."""
+    chosen, extent = nodes_with_arrows(plane)
     spacing = extent / 14.0
     if len(chosen) > 1:
-        spacing = cKDTree(place[chosen]).query(place[chosen], k=2)[0][:, 1].min()
-    chosen = chosen[length[chosen] > 0.02 * longest]
-    scale = longest / min(spacing, extent / 8.0)
+        place = plane.plane[chosen]
+        spacing = cKDTree(place).query(place, k=2)[0][:, 1].min()
+    return min(spacing, extent / 8.0)
+
+
+def add_arrows(axes, plane, contact, longest, length, colour):
+    """Arrows of the slip at some nodes; one of `longest` has that length."""
+    if longest <= 0.0:
+        return None
+    chosen, _ = nodes_with_arrows(plane)
+    slip = plane.project(contact["slip"])
+    chosen = chosen[np.linalg.norm(slip[chosen], axis=1) > 0.02 * longest]
     arrows = axes.quiver(
-        *place[chosen].T,
+        *plane.plane[chosen].T,
         *slip[chosen].T,
         angles="xy",
         scale_units="xy",
-        scale=scale,
+        scale=longest / length,
         color=colour,
         width=0.006,
         zorder=4,
@@ -272,8 +306,11 @@ def one_of_each(plane):
     return used[first]
 
 
-def draw_utilisation(axes, plane, contact):
-    """The panel of the overview: utilisation, slipping nodes, slip."""
+def draw_utilisation(axes, plane, contact, longest, length):
+    """The panel of the overview: utilisation, slipping nodes, slip.
+
+    longest, length  the largest slip of all, and how long its arrow is
+    """
     utilisation = contact["utilisation"]
     faces = tiles(
         axes,
@@ -293,8 +330,7 @@ def draw_utilisation(axes, plane, contact):
         color=style.SLIP,
         mec="none",
     )
-    longest = np.linalg.norm(contact["slip"][nodes], axis=1).max(initial=0.0)
-    arrows = add_arrows(axes, plane, contact, longest, "black")
+    arrows = add_arrows(axes, plane, contact, longest, length, "black")
     if arrows is not None:
         axes.quiverkey(
             arrows,

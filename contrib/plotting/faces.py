@@ -176,8 +176,12 @@ class Plane:
     def prepare(self, axes):
         """Limits, labels and orientation of the panel."""
         axes.set_aspect("equal")
-        axes.margins(0.04)
-        axes.autoscale_view()
+        # The record may have points of other planes.
+        place = self.plane[np.unique(self.cells)]
+        margin = 0.04 * np.ptp(place, axis=0)
+        (left, bottom), (right, top) = place.min(axis=0), place.max(axis=0)
+        axes.set_xlim(left - margin[0], right + margin[0])
+        axes.set_ylim(bottom - margin[1], top + margin[1])
         if 0 in self.reversed:
             axes.invert_xaxis()
         if 1 in self.reversed:

@@ -6,7 +6,7 @@ import numpy as np
 
 from . import style
 from .body import Body2D, Scale, make_body
-from .contact import draw_utilisation
+from .contact import Arrows, draw_utilisation
 from .faces import planes
 from .layout import cell, fit_rows
 
@@ -14,7 +14,19 @@ MOST_PLANES = 2
 
 
 def scale(results, indices, options):
-    return Scale(results, indices, "von_mises", options.magnification)
+    """That of the body, and of the arrows on the contact face if there are any."""
+    found = Scale(results, indices, "von_mises", options.magnification)
+    found.arrows = Arrows()
+    if results.dimension() == 3:
+        for index in indices:
+            contact = results.face(index)
+            if has_friction(contact):
+                found.arrows.extend(contact, results.body(index))
+    return found
+
+
+def has_friction(contact):
+    return contact is not None and "stick" in contact
 
 
 def draw(results, index, options, scale):
@@ -39,7 +51,7 @@ def draw_2d(body, heading, curve):
 
 def draw_3d(body, heading, curve, view):
     found = []
-    if body.contact is not None and "stick" in body.contact:
+    if has_friction(body.contact):
         found = planes(body.contact, body.body)
     shown = found[:MOST_PLANES]
     figure, grid = begin(
@@ -54,9 +66,12 @@ def draw_3d(body, heading, curve, view):
             hspace=0.15,  # for the keys of the arrows
             height_ratios=[plane.aspect() for plane in shown],
         )
-        for plane, place in zip(shown, column):
+        arrows = body.scale.arrows
+        for plane, place, length in zip(shown, column, arrows.lengths):
             faces.append(figure.add_subplot(place))
-            draw_utilisation(faces[-1], plane, body.contact)
+            draw_utilisation(
+                faces[-1], plane, body.contact, arrows.longest, length
+            )
         title = "Contact face" if len(found) == 1 else "Contact faces"
         if len(found) > len(shown):
             title += f" (the {len(shown)} largest of {len(found)})"

@@ -19,7 +19,8 @@ import matplotlib
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-from plotting import fields, geometry, hysteresis, stick_slip, style
+from plotting import contact, fields, geometry, hysteresis, overview, stick_slip, style
+from matplotlib.quiver import Quiver, QuiverKey
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d
 from plotting.body import MANY, VIEW, numbers_at, tiles
@@ -75,6 +76,57 @@ def block(*extent, cells=(4, 2, 3), displacement=0.0):
         body=lambda index: mesh,
         face=lambda index: None,
     )
+
+
+def sliding_block():
+    """Results of a cube on its base at three times: nothing slips, all slips by
+    2e-5, by 3.6e-4; the mesh is refined before the last one."""
+    slips, fine = (0.0, 2e-5, 3.6e-4), (False, False, True)
+    bodies, faces = [], []
+    for slip, is_fine in zip(slips, fine):
+        mesh = block(1, 1, 1, cells=(8, 8, 2) if is_fine else (4, 4, 2)).body(0)
+        mesh.data["displacement"][:, 0] = 100 * slip * mesh.points[:, 1]
+        mesh.data["von_mises"] *= 1 + 1e4 * slip
+        bodies.append(mesh)
+        base = mesh.points[mesh.cells[:, :4]]
+        base = base[(base[:, :, 2] == 0).all(axis=1)]
+        n = base.shape[0] * base.shape[1]
+        faces.append(
+            Mesh(
+                base.reshape(-1, 3),
+                np.arange(n).reshape(-1, 4),
+                slip=np.tile((slip, 0, 0), (n, 1)),
+                traction=np.tile((-1 - 1e3 * slip, 0, 0), (n, 1)),
+                bound=np.full(n, 1.0),
+                stick=np.full(n, slip == 0.0),
+                utilisation=np.full(n, 1.0),
+                displacement=np.tile((slip, 0, 0), (n, 1)),
+            )
+        )
+    return SimpleNamespace(
+        name="block",
+        directory=Path(),
+        solution=[(float(i), Path()) for i in range(3)],
+        contact=[(float(i), Path()) for i in range(3)],
+        statistics={},
+        body=lambda index: bodies[index],
+        face=lambda index: faces[index],
+        dimension=lambda: 3,
+    )
+
+
+def ranges(figure):
+    """What numbers look like in a figure: axes, colours, arrows and their key."""
+    found = []
+    for axes in figure.axes:
+        found += [*axes.get_xlim(), *axes.get_ylim()]
+        for artist in axes.collections:
+            if isinstance(artist, Quiver):
+                found.append(artist.scale)
+            elif artist.get_array() is not None:
+                found += artist.get_clim()
+    keys = figure.findobj(QuiverKey)
+    return np.array(found), [key.text.get_text() for key in keys]
 
 
 class Figures(TestCase):
@@ -135,6 +187,38 @@ class Figures(TestCase):
             body = Bbox([body.min(axis=0), body.max(axis=0)])
             share = Bbox.union([body, *self.boxes(texts)]).size / panel.size
             self.assertClose(share.max(), 1.0, absolute=0.05, what=extent)
+
+    def test_frames_have_the_same_ranges(self):
+        """A slip of 2e-5 is drawn shorter than one of 3.6e-4, whatever the mesh."""
+        results = sliding_block()
+        options = SimpleNamespace(magnification=None, view=VIEW)
+        for module, n_arrows in ((overview, 1), (contact, 1), (fields, 0)):
+            name = ["displacement"] if module is fields else []
+            scale = module.scale(results, range(3), options, *name)
+            of_first = None
+            for i in range(3):
+                figure = module.draw(results, i, options, scale)
+                found, keys = ranges(figure)
+                of_first = found if of_first is None else of_first
+                self.assertClose(found, of_first, 1e-12, what=(module.__name__, i))
+                arrows = figure.findobj(Quiver)
+                self.assertEqual(len(arrows), n_arrows)
+                for quiver in arrows:
+                    drawn = np.hypot(quiver.U, quiver.V) / quiver.scale
+                    # of the finest mesh, whose nodes are 1/8 apart; 2e-5 is
+                    # 6 % of the largest
+                    expected = (0.0, 2e-5 / 3.6e-4, 1.0)[i] / 8
+                    self.assertClose(drawn.max(initial=0), expected, 1e-9)
+                if module is overview:
+                    self.assertEqual(keys, ["slip, at most 0.00036"], f"frame {i}")
+                plt.close(figure)
+
+    def test_colours_reach_the_extremes_of_nodal_values(self):
+        results = block(1.0, 0.5, displacement=0.1)
+        scale = fields.scale(
+            results, [0], SimpleNamespace(magnification=None), "displacement_x"
+        )
+        self.assertClose((scale.shade.norm.vmin, scale.shade.norm.vmax), (0, 0.05), 1e-12)
 
     def test_height_of_pictures_in_the_plane(self):
         """No empty space about flat or tall bodies; labels fit the colour bar."""

@@ -84,7 +84,7 @@ def names(text):
 
 
 def view(text):
-    elevation, azimuth = (float(part) for part in text.split(","))
+    elevation, azimuth = (finite(part) for part in text.split(","))
     return elevation, azimuth
 
 
@@ -125,11 +125,11 @@ def parse(arguments):
     span.add_argument(
         "--from",
         dest="begin",
-        type=float,
+        type=finite,
         metavar="T",
         help="history and hysteresis from T on",
     )
-    span.add_argument("--until", type=float, metavar="T", help="and until T")
+    span.add_argument("--until", type=finite, metavar="T", help="and until T")
     span.add_argument(
         "--animate",
         action="store_true",
@@ -162,7 +162,7 @@ def parse(arguments):
     )
     how.add_argument(
         "--magnification",
-        type=float,
+        type=finite,
         metavar="M",
         help="of the displacement (default: 1 if it then shows, or more)",
     )
@@ -179,7 +179,11 @@ def parse(arguments):
     options = parser.parse_intermixed_args(arguments)
     formats = options.format or []
     if options.output:
-        formats = [options.output.suffix.lstrip(".").lower() or "png"]
+        if not options.output.name:
+            parser.error(f"--output {options.output} is not the name of a file")
+        if not options.output.suffix:
+            options.output = options.output.with_suffix(".png")
+        formats = [options.output.suffix.lstrip(".").lower()]
     if formats and formats[0] in MOVING:
         options.animate = True
     allowed = MOVING if options.animate else STILL

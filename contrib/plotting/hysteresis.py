@@ -155,6 +155,9 @@ def draw(results, options):
     )
     if displacement is None:
         raise NoPicture("no displacement changes in that time: no loop to draw")
+    for name, found in ((force, possible_forces), (displacement, possible_displacements)):
+        if not np.isfinite(found[name][0]).all():
+            raise NoPicture(f"{name} is not finite at all of that time: no loop to draw")
     return draw_loop(
         results,
         statistics["t"],

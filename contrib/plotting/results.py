@@ -31,7 +31,8 @@ class Record:
             if is_empty(piece):
                 continue
             try:
-                mesh = meshio.read(piece)
+                # meshio.read() would end the program where it cannot read.
+                mesh = meshio.vtu.read(piece)
             except OSError:
                 raise
             except Exception as error:  # whatever a damaged file provokes
@@ -48,6 +49,8 @@ class Record:
         self.path = path
         self.points = np.concatenate(points)
         self.cells = np.concatenate(cells)
+        if any(piece.keys() != data[0].keys() for piece in data):
+            raise UserError(f"the pieces of {path} have different fields")
         self.data = {
             name: np.concatenate([np.asarray(piece[name]) for piece in data])
             for name in data[0]
@@ -61,7 +64,10 @@ class Record:
             raise UserError(
                 f'{self.path} has no "{name}", only: ' + ", ".join(sorted(self.data))
             )
-        return self.data[name].astype(float)
+        values = self.data[name].astype(float)
+        if not np.isfinite(values).all():
+            raise NoPicture(f'"{name}" in {self.path} has values that are not finite')
+        return values
 
     @property
     def size(self):
@@ -78,9 +84,10 @@ def parse_xml(path):
 def pieces(path):
     if path.suffix != ".pvtu":
         return [path]
-    return [
-        path.parent / piece.get("Source") for piece in parse_xml(path).iter("Piece")
-    ]
+    sources = [piece.get("Source") for piece in parse_xml(path).iter("Piece")]
+    if None in sources:
+        raise UserError(f"{path} is damaged: a piece has no file")
+    return [path.parent / source for source in sources]
 
 
 def is_empty(vtu):
@@ -92,10 +99,17 @@ def is_empty(vtu):
 
 def series(path):
     """The (time, file) pairs of a .pvd file."""
-    found = [
-        (float(item.get("timestep")), path.parent / item.get("file"))
-        for item in parse_xml(path).iter("DataSet")
-    ]
+    try:
+        found = [
+            (float(item.attrib["timestep"]), path.parent / item.attrib["file"])
+            for item in parse_xml(path).iter("DataSet")
+        ]
+    except (KeyError, ValueError) as error:
+        raise UserError(
+            f"{path} is damaged: an entry lacks its time or its file"
+        ) from error
+    if not np.isfinite([time for time, _ in found]).all():
+        raise UserError(f"{path} is damaged: it has times that are not finite")
     if not found:
         raise UserError(f"{path} lists no files")
     return found
@@ -108,21 +122,35 @@ def number(path):
 
 
 def read_statistics(path):
-    """The columns of statistics.csv that are numbers, by name."""
+    """The columns of statistics.csv that are numbers, by name.
+
+    The last row may be one that a run is just writing, or was when it ended.
+    """
     if not path.exists():
         return {}
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file, skipinitialspace=True))
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.reader(file, skipinitialspace=True) if row]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise UserError(f"{path} cannot be read: {error}") from error
+    if len(rows) > 1 and len(rows[-1]) < len(rows[0]):
+        del rows[-1]
     columns = {}
     if len(rows) < 2:
         return columns
-    for i, name in enumerate(rows[0]):
-        try:
-            columns[name.strip()] = np.array(
-                [float(row[i]) for row in rows[1:] if row]
+    for number, row in enumerate(rows[1:], start=1):
+        if len(row) != len(rows[0]):
+            raise UserError(
+                f"{path} is damaged: its row {number} has {len(row)} values, where "
+                f"the first line names {len(rows[0])}"
             )
-        except (ValueError, IndexError):
+    for name, *values in zip(*rows):
+        try:
+            columns[name.strip()] = np.array([float(value) for value in values])
+        except ValueError:
             continue
+    if not np.isfinite(columns.get("t", ())).all():
+        raise UserError(f"{path} is damaged: it has times that are not finite")
     return columns
 
 
@@ -131,7 +159,11 @@ def read_parameters(path):
     entries, sections = {}, []
     if not path.exists():
         return entries
-    for line in path.read_text(encoding="utf-8").splitlines():
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise UserError(f"{path} cannot be read: {error}") from error
+    for line in text.splitlines():
         line = line.split("#")[0].strip()
         if line.startswith("subsection "):
             sections.append(line.split(None, 1)[1].strip())

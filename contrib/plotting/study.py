@@ -15,6 +15,7 @@ TEXT = ("run", "strategy", "scheme", "history", "ladder")
 LEVELS = ("mesh_level", "time_level")
 NEEDED = (*TEXT[1:], *LEVELS, "h", "k", "seconds_total")
 WAY = ("strategy", "scheme", "history")  # what tells one way to compute
+COEFFICIENTS = ("C_h", "p", "C_k", "q", "m")  # of a fit
 
 LADDERS = {"space": "$h$ alone", "time": "$k$ alone", "both": "$h$ and $k$"}
 ERRORS = {
@@ -142,7 +143,7 @@ class Study:
 
     def fit(self, way, error):
         """The fitted {C_h, p, C_k, q, ...} of study.json, or None."""
-        for fit in self.about.get("fits", ()):
+        for fit in self.about["fits"]:
             if isinstance(fit, dict) and fit.get("error") == error:
                 if all(fit.get(name) == part for name, part in zip(WAY, way)):
                     return fit
@@ -192,6 +193,8 @@ def read_table(path):
     missing = [name for name in NEEDED if name not in names]
     if missing:
         raise UserError(f"{path} lacks the columns " + ", ".join(missing))
+    if len(set(names)) < len(names):
+        raise UserError(f"{path} is damaged: two of its columns have the same name")
     columns = {name: [] for name in names}
     for number, row in enumerate(rows[1:], start=1):
         if len(row) != len(names):
@@ -219,11 +222,21 @@ def value(path, number, name, text):
 def read_about(path):
     """study.json; a study in progress has none yet."""
     if not path.exists():
-        return {}
+        return {"fits": []}
     try:
         about = json.loads(path.read_text(encoding="utf-8"))
     except (UnicodeDecodeError, json.JSONDecodeError) as error:
         raise UserError(f"{path} cannot be read: {error}") from error
     if not isinstance(about, dict):
         raise UserError(f"{path} cannot be read: it is no JSON object")
+    fits = about["fits"] = about.get("fits") or []
+    if not isinstance(fits, list) or not all(map(can_be_drawn, fits)):
+        raise UserError(f"{path} is damaged: its fits have no numbers")
     return about
+
+
+def can_be_drawn(fit):
+    """Whether the coefficients of a fit are numbers, or not there."""
+    return not isinstance(fit, dict) or all(
+        isinstance(fit.get(name), (int, float, type(None))) for name in COEFFICIENTS
+    )

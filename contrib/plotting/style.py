@@ -165,7 +165,7 @@ def range_label(shade, label, values, separator=" "):
 
 def rounded_magnification(largest, size):
     """1 where the deformation shows, otherwise 1, 2 or 5 times 10^k."""
-    if largest == 0.0 or not math.isfinite(largest):
+    if largest <= 1e-200 * size or not math.isfinite(largest):
         return 1.0
     if largest > 0.02 * size:
         return 1.0

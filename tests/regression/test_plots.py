@@ -4,10 +4,12 @@
 import itertools
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
 import matplotlib.image
+import meshio
 import numpy as np
 
 from harness import SOURCE, TestCase, main, run
@@ -26,7 +28,14 @@ from mpl_toolkits.mplot3d import proj3d
 from plotting.body import MANY, VIEW, numbers_at, tiles
 from plotting.expression import evaluate
 from plotting.faces import lines, planes, state_runs
-from plotting.results import UserError
+from plotting.results import (
+    NoPicture,
+    Record,
+    Results,
+    UserError,
+    read_parameters,
+    read_statistics,
+)
 
 PLOT = SOURCE / "contrib" / "plot"
 
@@ -414,8 +423,75 @@ class Numbers(TestCase):
         with self.assertRaisesRegex(UserError, "not finite"):
             style.Shade(np.array([1, np.nan]), "test")
 
+    def folder(self, **files):
+        """A directory with files of these contents, by name without its dot."""
+        folder = tempfile.TemporaryDirectory(prefix="plots_")
+        self.addCleanup(folder.cleanup)
+        path = Path(folder.name)
+        for name, content in files.items():
+            content = content.encode() if isinstance(content, str) else content
+            (path / name.replace("_", ".")).write_bytes(content)
+        return path
+
+    def test_statistics_of_a_run_in_progress(self):
+        """A last row that is not complete yet does not count."""
+        folder = self.folder(statistics_csv="step,t,E\n0,0,nan\n1,0.5,2\n2,0.7")
+        table = read_statistics(folder / "statistics.csv")
+        self.assertEqual(list(table), ["step", "t", "E"])
+        self.assertClose(table["t"], (0, 0.5), absolute=0)
+        for content in ("", "step,t\n", "step,t\n0"):
+            folder = self.folder(statistics_csv=content)
+            self.assertEqual(read_statistics(folder / "statistics.csv"), {})
+
+    def test_damaged_files(self):
+        for files, words in (
+            ({"statistics_csv": "step,t\n0\n1,1\n"}, "row 1 has 1 values"),
+            ({"statistics_csv": "step,t\n0,nan\n1,1\n"}, "times that are not finite"),
+            ({"statistics_csv": b"step,t\n0,\xff\n"}, "statistics.csv cannot be read"),
+            ({"solution_pvd": "<VTKFile><DataSet/></VTKFile>"}, "lacks its time"),
+            ({"solution_pvd": "<V><DataSet timestep='x' file='y'/></V>"}, "lacks its"),
+            ({"solution_pvd": "<V><DataSet timestep='inf' file='y'/></V>"}, "not finite"),
+            ({"solution_pvd": "<V"}, "solution.pvd cannot be read"),
+        ):
+            with self.assertRaisesRegex(UserError, words):
+                Results(self.folder(**files))
+        folder = self.folder(parameters_prm=b"set A = \xff")
+        with self.assertRaisesRegex(UserError, "parameters.prm cannot be read"):
+            read_parameters(folder / "parameters.prm")
+
+    def test_damaged_records(self):
+        mesh = meshio.Mesh(
+            np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float),
+            [("quad", [(0, 1, 2, 3)])],
+            point_data={"u": np.ones(4), "v": np.array([0, 1, np.inf, np.nan])},
+        )
+        folder = self.folder(
+            bad_vtu="<VTKFile",
+            other_vtu="<VTKFile type='ImageData'/>",
+            empty_vtu="<VTKFile><Piece NumberOfCells=\"0\"/></VTKFile>",
+            nobody_pvtu="<VTKFile><Piece/></VTKFile>",
+            mixed_pvtu="<V><Piece Source='a.vtu'/><Piece Source='b.vtu'/></V>",
+        )
+        mesh.write(folder / "a.vtu")
+        del mesh.point_data["u"]
+        mesh.write(folder / "b.vtu")
+        for name, words in (
+            ("bad.vtu", "cannot be read"),
+            ("other.vtu", "cannot be read"),
+            ("empty.vtu", "contains no cells"),
+            ("nobody.pvtu", "a piece has no file"),
+            ("mixed.pvtu", "different fields"),
+        ):
+            with self.assertRaisesRegex(UserError, words):
+                Record(folder / name)
+        record = Record(folder / "a.vtu")
+        self.assertClose(record["u"], 1, absolute=0)
+        with self.assertRaisesRegex(NoPicture, '"v" in .* not finite'):
+            record["v"]
+
     def test_magnification(self):
-        for largest, expected in ((0.0, 1), (0.5, 1), (1e-3, 50), (4e-6, 1e4)):
+        for largest, expected in ((0.0, 1), (0.5, 1), (1e-3, 50), (4e-6, 1e4),
+                                  (1e-320, 1), (np.inf, 1)):
             self.assertClose(
                 style.rounded_magnification(largest, 1.0), expected, relative=1e-12
             )
@@ -485,13 +561,14 @@ class Pictures(TestCase):
         self.assertEqual(names, {"displacement_y_00004.pdf", "displacement_y_00004.svg"})
         pdf = result.directory / "pictures" / "displacement_y_00004.pdf"
         self.assertEqual(pdf.read_bytes()[:4], b"%PDF")
+        file = result.directory / "loop"
+        self.assertEqual(self.draw(result, "hysteresis", "--output", file), {"loop.png"})
 
     def test_map_agrees_with_the_statistics(self):
         """The slipping part of each row of the stick-slip map is slip_area."""
         result = run("slab", {"Output/Fields every": 1})
         contact = result.series("contact")
         from plotting.faces import friction_state
-        from plotting.results import Results
 
         results = Results(result.directory)
         self.assertEqual(len(contact), 33)
@@ -513,8 +590,6 @@ class Pictures(TestCase):
         exact but for the two steps in which the foot begins to slip, 2 % here.
         """
         result = run("coulomb_block_2d")
-        from plotting.results import Results
-
         found = hysteresis.displacements(Results(result.directory), result.statistics)
         u = found["boundary3_x"][0]
         t = result["t"]
@@ -581,6 +656,7 @@ class Pictures(TestCase):
             (["hysteresis", "--force", "f"], 'no force "f".*friction_force_x'),
             (["hysteresis", "--displacement", "u"], 'no displacement "u".*point0_x'),
             (["history", "--from", 9], "fewer than two rows"),
+            (["--output", result.directory / "none" / "a.png"], "No such file"),
         ):
             self.assertRegex(self.refuse(result, *arguments), words)
         directory = result.directory

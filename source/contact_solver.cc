@@ -10,6 +10,28 @@ namespace Viscoplastic
 {
   namespace
   {
+    /// Of linear solves as long as the sets change, relative.
+    constexpr double loose_tolerance = 0.05;
+    /// A linear solve that shall bring the error below the tolerance aims at
+    /// this part of it.
+    constexpr double safety = 0.3;
+    /// A correction that stops at reversing slips is taken as it is if it goes
+    /// that far; otherwise something better is tried.
+    constexpr double least_limited_step = 0.5;
+    /// Of J in a correction, relative to the duality gap.
+    constexpr double least_descent = 0.1;
+
+
+
+    /// Gauss-Seidel; more sweeps when the corrections do not finish.
+    unsigned int
+    sweeps_of_iteration(const unsigned int iteration)
+    {
+      return iteration < 10 ? 1 : iteration < 30 ? 5 : 50;
+    }
+
+
+
     double
     square(const double a)
     {
@@ -269,7 +291,8 @@ namespace Viscoplastic
         /* may_rebuild = */ false);
       RestStep result;
       result.correction.reinit(x.size());
-      result.linear_iterations = bulk.correct(force, 0.05, result.correction);
+      result.linear_iterations =
+        bulk.correct(force, loose_tolerance, result.correction);
       stop_at_reversal(face, bounds, state, x, result.correction);
       result.search =
         line_search(bulk.search_terms(result.correction),
@@ -284,6 +307,307 @@ namespace Viscoplastic
       return {};
     }
   } // namespace
+
+
+
+  /// One solve: what it works on, and the phases of its iterations.
+  class ContactSolver::Iteration
+  {
+  public:
+    Iteration(BulkSolver                &bulk,
+              const FrictionFace        &face,
+              const std::vector<double> &bounds,
+              const double               tolerance,
+              Vector<double>            &x,
+              FrictionState             &state);
+
+    ContactReport
+    solve(const unsigned int max_iterations);
+
+  private:
+    /// (1) Nonlinear Gauss-Seidel over the face nodes.
+    void
+    relax(const unsigned int n_sweeps);
+
+    /// The Gauss-Seidel step at one node; adds it to @p change.
+    void
+    relax(const unsigned int node, Vector<double> &change);
+
+    /// Whether the error bound is within the tolerance; then the multipliers
+    /// are those that prove it.
+    bool
+    is_solved();
+
+    /// The bound on the error that a dual norm of the residual means, for the
+    /// report.
+    double
+    bound(const double dual_norm, const Certificate &certificate);
+
+    /// (2) The linear solve on the truncated space: a correction w.
+    void
+    correct();
+
+    /// (3) Go along w as far as J decreases, and no slip further than to rest.
+    /// Returns the change of J.
+    double
+    search();
+
+    /// (4) Let the bulk follow the face.
+    void
+    follow();
+
+    void
+    give_up(const unsigned int max_iterations) const;
+
+    BulkSolver                &bulk;
+    const FrictionFace        &face;
+    const std::vector<double> &bounds;
+    const double               tolerance;
+    /// The increment of the face, and what friction does there.
+    Vector<double> &x;
+    FrictionState  &state;
+
+    const FaceMatrix         &matrix;
+    std::vector<Tensor<2, 3>> diagonal, inverse_diagonal; // node by node
+
+    /// l - A u, the forces of the multipliers that fit it, and a correction, on
+    /// the face.
+    Vector<double> residual, force, w;
+    /// The present one, and whether the last correction was made with the same
+    /// sticking points.
+    FaceTruncation truncation;
+    bool           same_sets = false;
+    /// Bound on the error and size of the solution in the energy norm.
+    double error = 0., size = 0.;
+    double best_error = std::numeric_limits<double>::max();
+
+    ContactReport report;
+  };
+
+
+
+  ContactSolver::Iteration::Iteration(BulkSolver                &bulk,
+                                      const FrictionFace        &face,
+                                      const std::vector<double> &bounds,
+                                      const double               tolerance,
+                                      Vector<double>            &x,
+                                      FrictionState             &state)
+    : bulk(bulk)
+    , face(face)
+    , bounds(bounds)
+    , tolerance(tolerance)
+    , x(x)
+    , state(state)
+    , matrix(bulk.face_matrix())
+    , diagonal(face.n_nodes())
+    , inverse_diagonal(face.n_nodes())
+    , residual(face.n_dofs())
+    , force(face.n_dofs())
+    , w(face.n_dofs())
+  {
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        diagonal[node]         = matrix.diagonal_block(node);
+        inverse_diagonal[node] = invert(diagonal[node]);
+      }
+    report.tolerance = tolerance;
+  }
+
+
+
+  ContactReport
+  ContactSolver::Iteration::solve(const unsigned int max_iterations)
+  {
+    for (unsigned int iteration = 0;; ++iteration)
+      {
+        relax(sweeps_of_iteration(iteration));
+        if (is_solved())
+          break;
+        if (iteration == max_iterations)
+          give_up(max_iterations);
+        correct();
+        const double energy_change = search();
+        ++report.iterations;
+        // Gauss-Seidel with the bulk at rest and corrections that a kink of J
+        // stops may jam. Then the bulk follows the face: with (1) a descent
+        // over two blocks, which converges since only the face has kinks.
+        if (!(-energy_change > least_descent * report.duality_gap))
+          follow();
+      }
+    report.linear_iterations += bulk.finish();
+    return report;
+  }
+
+
+
+  void
+  ContactSolver::Iteration::relax(const unsigned int n_sweeps)
+  {
+    bulk.face_residual(residual);
+    AssertThrow(std::isfinite(residual.l2_norm()),
+                ExcMessage("The contact solver met a residual that is not "
+                           "finite."));
+    Vector<double> change(face.n_dofs());
+    for (unsigned int sweep = 0; sweep < n_sweeps; ++sweep)
+      {
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          relax(node, change);
+        for (unsigned int node = face.n_nodes(); node-- > 0;)
+          relax(node, change);
+      }
+    // rounding_error() is a hundred units of rounding.
+    stop_rounding(
+      face, bounds, diagonal, 0.01 * bulk.rounding_error(), x, change, state);
+    bulk.move_face(change);
+    bulk.face_residual(residual);
+    update_slips(face, bounds, x, state);
+  }
+
+
+
+  void
+  ContactSolver::Iteration::relax(const unsigned int node,
+                                  Vector<double>    &change)
+  {
+    const Tensor<1, 3> old  = face.node_values(x, node);
+    const Tensor<1, 3> r    = face.node_values(residual, node);
+    const Tensor<1, 3> now  = relax_node(face,
+                                        node,
+                                        inverse_diagonal[node],
+                                        r + diagonal[node] * old,
+                                        bounds,
+                                        state);
+    const Tensor<1, 3> step = now - old;
+    if (step.norm() == 0.)
+      return;
+    face.set_node_values(now, node, x);
+    face.set_node_values(face.node_values(change, node) + step, node, change);
+    matrix.subtract(node, step, residual);
+  }
+
+
+
+  double
+  ContactSolver::Iteration::bound(const double       dual_norm,
+                                  const Certificate &certificate)
+  {
+    report.duality_gap = 0.5 * square(dual_norm) + certificate.defect;
+    const double result =
+      0.5 *
+      (dual_norm + std::sqrt(square(dual_norm) + 4. * certificate.defect));
+    report.relative_error = size > 0. ? result / size : 0.;
+    return result;
+  }
+
+
+
+  bool
+  ContactSolver::Iteration::is_solved()
+  {
+    fit_multipliers(face, bounds, residual, state, force);
+    FaceTruncation last = std::move(truncation);
+    truncation = make_truncation(face, bounds, state, inverse_diagonal);
+    same_sets  = truncation == last;
+    bulk.set_truncation(truncation);
+    const Certificate certificate = certify(
+      face, bounds, residual, diagonal, state, force, bulk.rounding_error());
+    size  = std::max(bulk.energy_norm(), bulk.rounding_error() / tolerance);
+    error = bound(bulk.dual_norm(certificate.force), certificate);
+    if (error <= tolerance * size)
+      error = bound(bulk.confirmed_dual_norm(certificate.force,
+                                             report.linear_iterations),
+                    certificate);
+    AssertThrow(std::isfinite(error),
+                ExcMessage("The contact solver met a value that is not "
+                           "finite."));
+    best_error = std::min(best_error, report.relative_error);
+    if (error > tolerance * size)
+      return false;
+    report.error = error;
+    for (const auto &[point, multiplier] : certificate.replaced)
+      state.multiplier[point] = multiplier;
+    return true;
+  }
+
+
+
+  void
+  ContactSolver::Iteration::give_up(const unsigned int max_iterations) const
+  {
+    std::ostringstream message;
+    message << "The active set iteration did not converge in " << max_iterations
+            << " iterations: the relative error bound is " << best_error
+            << " at best, and the tolerance is " << tolerance
+            << " ('Solver/Contact tolerance'); raise 'Solver/Maximal contact "
+               "iterations' or the tolerance.";
+    AssertThrow(false, ExcMessage(message.str()));
+  }
+
+
+
+  void
+  ContactSolver::Iteration::correct()
+  {
+    // Loosely while the sets still change, and as far as needed once they do
+    // not.
+    report.linear_iterations +=
+      bulk.correct(force,
+                   same_sets ? std::min(loose_tolerance,
+                                        safety * tolerance * size / error) :
+                               loose_tolerance,
+                   w);
+  }
+
+
+
+  double
+  ContactSolver::Iteration::search()
+  {
+    const auto along = [&](const Vector<double> &direction) {
+      return line_search(bulk.search_terms(direction),
+                         friction_along(face, bounds, state, direction));
+    };
+    Vector<double> limited(w);
+    const bool any_reverses = stop_at_reversal(face, bounds, state, x, limited);
+    SearchResult result     = along(limited);
+    if (!any_reverses || result.step >= least_limited_step)
+      w = limited;
+    else if (const auto rest = step_from_rest(
+               bulk, face, bounds, inverse_diagonal, residual, w, x, state))
+      {
+        // When a whole zone reverses, the rest of the body must adapt to its
+        // stop before J descends far.
+        w      = rest->correction;
+        result = rest->search;
+        report.linear_iterations += rest->linear_iterations;
+      }
+    else
+      {
+        // The correction as it is descends, because it solves a positive
+        // definite system with the gradient of J.
+        bulk.set_truncation(truncation);
+        report.linear_iterations += bulk.correct(force, loose_tolerance, w);
+        result = along(w);
+      }
+    bulk.take_step(result.step);
+    x.add(result.step, w);
+    return result.energy_change;
+  }
+
+
+
+  void
+  ContactSolver::Iteration::follow()
+  {
+    FaceTruncation held;
+    held.projector.resize(face.n_nodes());
+    held.spring.resize(face.n_nodes());
+    bulk.set_truncation(held, /* may_rebuild = */ false);
+    report.linear_iterations += bulk.correct(force, loose_tolerance, w);
+    const BulkSolver::SearchTerms terms = bulk.search_terms(w);
+    if (terms.curvature > 0.)
+      bulk.take_step(terms.slope / terms.curvature);
+  }
 
 
 
@@ -304,174 +628,7 @@ namespace Viscoplastic
     AssertDimension(bounds.size(), face.points.size());
     AssertDimension(x.size(), face.n_dofs());
     AssertDimension(state.sticks.size(), face.points.size());
-
-    const FaceMatrix         &matrix = bulk.face_matrix();
-    std::vector<Tensor<2, 3>> diagonal(face.n_nodes()), inverse(face.n_nodes());
-    for (unsigned int node = 0; node < face.n_nodes(); ++node)
-      {
-        diagonal[node] = matrix.diagonal_block(node);
-        inverse[node]  = invert(diagonal[node]);
-      }
-
-    ContactReport report;
-    report.tolerance = tolerance;
-    Vector<double> residual(face.n_dofs()), force(face.n_dofs()),
-      change(face.n_dofs()), w(face.n_dofs());
-    FaceTruncation last_truncation;
-    double         best_error = std::numeric_limits<double>::max();
-    for (unsigned int iteration = 0;; ++iteration)
-      {
-        // (1) Gauss-Seidel; more sweeps when the corrections do not finish.
-        const unsigned int n_sweeps = iteration < 10 ? 1 :
-                                      iteration < 30 ? 5 :
-                                                       50;
-        bulk.face_residual(residual);
-        AssertThrow(std::isfinite(residual.l2_norm()),
-                    ExcMessage("The contact solver met a residual that is not "
-                               "finite."));
-        change           = 0.;
-        const auto relax = [&](const unsigned int node) {
-          const Tensor<1, 3> old = face.node_values(x, node);
-          const Tensor<1, 3> r   = face.node_values(residual, node);
-          const Tensor<1, 3> now = relax_node(
-            face, node, inverse[node], r + diagonal[node] * old, bounds, state);
-          const Tensor<1, 3> step = now - old;
-          if (step.norm() == 0.)
-            return;
-          face.set_node_values(now, node, x);
-          face.set_node_values(face.node_values(change, node) + step,
-                               node,
-                               change);
-          matrix.subtract(node, step, residual);
-        };
-        for (unsigned int sweep = 0; sweep < n_sweeps; ++sweep)
-          {
-            for (unsigned int node = 0; node < face.n_nodes(); ++node)
-              relax(node);
-            for (unsigned int node = face.n_nodes(); node-- > 0;)
-              relax(node);
-          }
-        // rounding_error() is a hundred units of rounding.
-        stop_rounding(face,
-                      bounds,
-                      diagonal,
-                      0.01 * bulk.rounding_error(),
-                      x,
-                      change,
-                      state);
-        bulk.move_face(change);
-        bulk.face_residual(residual);
-        update_slips(face, bounds, x, state);
-
-        // Where does that leave the error?
-        fit_multipliers(face, bounds, residual, state, force);
-        const FaceTruncation truncation =
-          make_truncation(face, bounds, state, inverse);
-        bulk.set_truncation(truncation);
-        const Certificate certificate = certify(face,
-                                                bounds,
-                                                residual,
-                                                diagonal,
-                                                state,
-                                                force,
-                                                bulk.rounding_error());
-        const double      size =
-          std::max(bulk.energy_norm(), bulk.rounding_error() / tolerance);
-        const auto bound = [&](const double dual_norm) {
-          report.duality_gap = 0.5 * square(dual_norm) + certificate.defect;
-          const double error =
-            0.5 * (dual_norm +
-                   std::sqrt(square(dual_norm) + 4. * certificate.defect));
-          report.relative_error = size > 0. ? error / size : 0.;
-          return error;
-        };
-        double error = bound(bulk.dual_norm(certificate.force));
-        if (error <= tolerance * size)
-          error = bound(bulk.confirmed_dual_norm(certificate.force,
-                                                 report.linear_iterations));
-        AssertThrow(std::isfinite(error),
-                    ExcMessage("The contact solver met a value that is not "
-                               "finite."));
-        if (error <= tolerance * size)
-          {
-            report.error = error;
-            for (const auto &[point, multiplier] : certificate.replaced)
-              state.multiplier[point] = multiplier;
-            break;
-          }
-        best_error = std::min(best_error, report.relative_error);
-        if (iteration == max_iterations)
-          {
-            std::ostringstream message;
-            message
-              << "The active set iteration did not converge in "
-              << max_iterations << " iterations: the relative error bound is "
-              << best_error << " at best, and the tolerance is " << tolerance
-              << " ('Solver/Contact tolerance'); raise 'Solver/Maximal contact iterations' or the "
-                 "tolerance.";
-            AssertThrow(false, ExcMessage(message.str()));
-          }
-
-        // (2) Solve loosely while the sets still change, and as far as needed
-        // once they do not.
-        const bool same_sets = iteration > 0 && truncation == last_truncation;
-        last_truncation      = truncation;
-        report.linear_iterations +=
-          bulk.correct(force,
-                       same_sets ?
-                         std::min(0.05, 0.3 * tolerance * size / error) :
-                         0.05,
-                       w);
-
-        // (3) A slip that would reverse stops at stick.
-        const auto search = [&](const Vector<double> &direction) {
-          return line_search(bulk.search_terms(direction),
-                             friction_along(face, bounds, state, direction));
-        };
-        Vector<double> limited(w);
-        const bool     any_reverses =
-          stop_at_reversal(face, bounds, state, x, limited);
-        SearchResult search_result = search(limited);
-        if (!any_reverses || search_result.step >= 0.5)
-          w = limited;
-        else if (const auto rest = step_from_rest(
-                   bulk, face, bounds, inverse, residual, w, x, state))
-          {
-            // When a whole zone reverses, the rest of the body must adapt to
-            // its stop before J descends far.
-            w             = rest->correction;
-            search_result = rest->search;
-            report.linear_iterations += rest->linear_iterations;
-          }
-        else
-          {
-            // The correction as it is descends, because it solves a positive
-            // definite system with the gradient of J.
-            bulk.set_truncation(truncation);
-            report.linear_iterations += bulk.correct(force, 0.05, w);
-            search_result = search(w);
-          }
-        bulk.take_step(search_result.step);
-        x.add(search_result.step, w);
-        ++report.iterations;
-
-        // (4) Gauss-Seidel with the bulk at rest and corrections that a kink of
-        // J stops may jam. Then the bulk follows the face: with (1) a descent
-        // over two blocks, which converges since only the face has kinks.
-        if (!(-search_result.energy_change > 0.1 * report.duality_gap))
-          {
-            FaceTruncation held;
-            held.projector.resize(face.n_nodes());
-            held.spring.resize(face.n_nodes());
-            bulk.set_truncation(held, /* may_rebuild = */ false);
-            report.linear_iterations += bulk.correct(force, 0.05, w);
-            const BulkSolver::SearchTerms follow = bulk.search_terms(w);
-            if (follow.curvature > 0.)
-              bulk.take_step(follow.slope / follow.curvature);
-          }
-      }
-    report.linear_iterations += bulk.finish();
-
-    return report;
+    return Iteration(bulk, face, bounds, tolerance, x, state)
+      .solve(max_iterations);
   }
 } // namespace Viscoplastic

@@ -71,6 +71,8 @@ namespace Viscoplastic
           FrictionState             &state) const;
 
   private:
+    class Iteration;
+
     const unsigned int max_iterations;
   };
 } // namespace Viscoplastic

@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/initial_state.h>
 #include <viscoplastic_contact/solution_errors.h>
+#include <viscoplastic_contact/time_stepping/explicit_step.h>
 #include <viscoplastic_contact/viscoplastic_contact.h>
 
 #include <algorithm>
@@ -46,12 +47,15 @@ namespace Viscoplastic
   {
     if (!scene.has_viscosity())
       return;
-    const FlowRate &initial = accepted_rate();
+    const State<dim> &state = accepted.state;
+    accepted.rate =
+      evaluate_flow(discretization->laws, state.u, state.z, state.t);
+    const FlowRate &initial = *accepted.rate;
     const double    rate    = initial.relaxation_rate;
     const bool      has_limit =
       !is_implicit() && !changes_scheme() && !control.needs_limit();
     if (has_limit)
-      check_stability(initial, scene.schedule.step(1));
+      check_stability<dim>(parameters, initial, scene.schedule.step(1));
     if (rate == 0.)
       return;
     out << "Stability limit 2/r of the initial state: " << 2. / rate
@@ -59,7 +63,7 @@ namespace Viscoplastic
     if (!has_limit)
       return;
     const TimeStep largest = scene.schedule.largest_step();
-    if (largest.k * rate > 2. * (1. + 1e-10))
+    if (!is_stable(initial, largest.k))
       {
         std::ostringstream message;
         message << "Warning: the time step " << largest.k << " of step "
@@ -79,8 +83,8 @@ namespace Viscoplastic
   {
     make_mesh();
     dof_handler.distribute_dofs(fe);
-    discretisation = std::make_unique<Discretisation>(dof_handler, scene);
-    const Discretisation &d = *discretisation;
+    discretization = std::make_unique<Discretization<dim>>(dof_handler, scene);
+    const Discretization<dim> &d = *discretization;
     announce_mesh();
     announce_held_faces();
     for (const Point<dim> &x : scene.output_points)
@@ -90,7 +94,7 @@ namespace Viscoplastic
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(d.space);
     // The initial data, and where they need no solution, the first step.
-    state =
+    accepted.state =
       make_initial_state(d.sampling, parameters.initial_state.equilibrate);
     // Equilibrium at t = 0 would need a solution.
     if (!parameters.initial_state.equilibrate)

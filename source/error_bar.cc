@@ -79,9 +79,11 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ErrorBar<dim>::begin(const StressSampling<dim> &sampling, State<dim> &state)
+  ErrorBar<dim>::begin(const StressSampling<dim> &sampling,
+                       EvaluatedState<dim>       &initial) const
   {
-    present.initial = initial_data_error(sampling, state);
+    State<dim> &state      = initial.state;
+    initial.errors.initial = initial_data_error(sampling, state);
     if (n_sample_fields(scene) > 1)
       state.time_error.assign(state.z.size(), SymmetricTensor<2, 3>());
     if (n_sample_fields(scene) > 2)
@@ -92,39 +94,12 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ErrorBar<dim>::assess_equilibrium(const Forces<dim>   &forces,
-                                    const ContactReport &report,
-                                    const double         residual)
+  ErrorBar<dim>::assess_equilibrium(const ContactReport &report,
+                                    EvaluatedState<dim> &initial) const
   {
-    ErrorLedger ledger;
-    ledger.initial     = present.initial;
-    ledger.energy_norm = energy_norm(forces);
-    ledger.space       = space_calibration * residual;
-    ledger.algebraic   = report.error;
-    accept(ledger, 0.);
-  }
-
-
-
-  template <int dim>
-  const FlowRate &
-  ErrorBar<dim>::rate(const FlowLaws<dim> &laws, const State<dim> &accepted)
-  {
-    if (!accepted_rate)
-      accepted_rate = evaluate_flow(laws, accepted.u, accepted.z, accepted.t);
-    return *accepted_rate;
-  }
-
-
-
-  template <int dim>
-  void
-  ErrorBar<dim>::evaluate_rate(const FlowLaws<dim> &laws,
-                               const State<dim>    &accepted,
-                               const State<dim>    &state)
-  {
-    rate(laws, accepted);
-    assessed_rate = evaluate_flow(laws, state.u, state.z, state.t);
+    initial.errors.energy_norm = energy_norm(initial.forces);
+    initial.errors.space = space_calibration * initial.space_estimate.residual;
+    initial.errors.algebraic = report.error;
   }
 
 
@@ -133,26 +108,26 @@ namespace Viscoplastic
   void
   ErrorBar<dim>::change_mesh(const AdmissibleSpace<dim> &space,
                              const DistributedMatrix    &matrix,
-                             const State<dim>           &state)
+                             EvaluatedState<dim>        &accepted) const
   {
     DistributedVector velocity = space.owned_vector(), force = velocity;
-    space.to_frames(state.velocity, velocity);
+    space.to_frames(accepted.state.velocity, velocity);
     matrix.vmult(force, velocity);
-    present.velocity_square = velocity * force;
-    accepted_rate.reset();
+    accepted.errors.velocity_square = velocity * force;
   }
 
 
 
   template <int dim>
   double
-  ErrorBar<dim>::tolerance() const
+  ErrorBar<dim>::tolerance(const ErrorLedger &accepted) const
   {
-    const double discretisation = present.space + present.time;
-    if (solver.contact_tolerance > 0. || present.energy_norm == 0. ||
-        discretisation == 0.)
+    const double discretization = accepted.space + accepted.time;
+    if (solver.contact_tolerance > 0. || accepted.energy_norm == 0. ||
+        discretization == 0.)
       return solver.strict_tolerance();
-    return std::clamp(algebraic_fraction * discretisation / present.energy_norm,
+    return std::clamp(algebraic_fraction * discretization /
+                        accepted.energy_norm,
                       least_tolerance,
                       largest_tolerance);
   }
@@ -164,9 +139,11 @@ namespace Viscoplastic
   ErrorBar<dim>::add_defect(const StressSampling<dim> &sampling,
                             const TimeDefect          &defect,
                             const State<dim>          &accepted,
-                            State<dim>                &state,
-                            ErrorLedger               &ledger) const
+                            const FlowRate            &accepted_rate,
+                            EvaluatedState<dim>       &end) const
   {
+    State<dim>  &state       = end.state;
+    ErrorLedger &ledger      = end.errors;
     const bool   is_second   = n_sample_fields(scene) > 2;
     const bool   is_first    = accepted.k == 0.;
     const bool   is_measured = scene.parameters.step_control.is_on();
@@ -183,7 +160,7 @@ namespace Viscoplastic
           {
             const double                weight = sampling.weight(c, s);
             const SymmetricTensor<2, 3> change =
-              assessed_rate->rate[i] - accepted_rate->rate[i];
+              end.rate->rate[i] - accepted_rate.rate[i];
             SymmetricTensor<2, 3> step = defect.first * k * change;
             if (is_second)
               {
@@ -219,67 +196,47 @@ namespace Viscoplastic
 
 
   template <int dim>
-  ErrorLedger
+  void
   ErrorBar<dim>::assess(const StressSampling<dim> &sampling,
                         const TimeDefect          &defect,
-                        const State<dim>          &accepted,
-                        const Forces<dim>         &old_forces,
-                        const Forces<dim>         &forces,
                         const ContactReport       &report,
-                        const double               residual,
-                        State<dim>                &state)
+                        const EvaluatedState<dim> &accepted,
+                        const FlowRate            *accepted_rate,
+                        EvaluatedState<dim>       &end) const
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
-    ErrorLedger                 ledger;
-    ledger.initial     = present.initial;
-    ledger.energy_norm = energy_norm(forces);
-    ledger.space       = space_calibration * residual;
-    ledger.algebraic   = report.error;
+    const AdmissibleSpace<dim> &space  = sampling.space;
+    const Forces<dim>          &forces = end.forces;
+    const ErrorLedger          &before = accepted.errors;
+    ErrorLedger                &ledger = end.errors;
+    ledger.initial                     = before.initial;
+    ledger.energy_norm                 = energy_norm(forces);
+    ledger.space     = space_calibration * end.space_estimate.residual;
+    ledger.algebraic = report.error;
 
     if (scene.has_viscosity())
       {
-        Assert(accepted_rate && assessed_rate,
+        Assert(accepted_rate != nullptr && end.rate,
                ExcMessage("The rates have not been evaluated."));
-        add_defect(sampling, defect, accepted, state, ledger);
+        add_defect(sampling, defect, accepted.state, *accepted_rate, end);
       }
 
     // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:
     // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).
-    const double      k = state.k;
+    const double      k = end.state.k;
     DistributedVector change(forces.u), velocity(forces.u),
       elastic(forces.elastic);
-    change -= old_forces.u;
-    elastic -= old_forces.elastic;
-    space.to_frames(accepted.velocity, velocity);
+    change -= accepted.forces.u;
+    elastic -= accepted.forces.elastic;
+    space.to_frames(accepted.state.velocity, velocity);
     ledger.velocity_square = (elastic * change) / (k * k);
     const double jump = ledger.velocity_square - 2. / k * (elastic * velocity) +
-                        present.velocity_square;
+                        before.velocity_square;
     // Below this it is rounding.
     const bool is_jump =
-      jump > 1e-12 * (ledger.velocity_square + present.velocity_square);
+      jump > 1e-12 * (ledger.velocity_square + before.velocity_square);
     ledger.velocity_variation =
-      std::sqrt(Utilities::fixed_power<2>(present.velocity_variation) +
+      std::sqrt(Utilities::fixed_power<2>(before.velocity_variation) +
                 (is_jump ? k / 3. * jump : 0.));
-    return ledger;
-  }
-
-
-
-  template <int dim>
-  void
-  ErrorBar<dim>::accept(const ErrorLedger &ledger, const double t)
-  {
-    present = ledger;
-    if (assessed_rate)
-      accepted_rate = std::move(assessed_rate);
-    assessed_rate.reset();
-    if (present.total() > run.largest.total())
-      {
-        run.largest = present;
-        run.t       = t;
-      }
-    run.largest_energy_norm =
-      std::max(run.largest_energy_norm, present.energy_norm);
   }
 
 

@@ -64,10 +64,10 @@ namespace Viscoplastic
   {
     out << "Mesh: " << triangulation.n_global_active_cells() << " cells, "
         << dof_handler.n_dofs() << " degrees of freedom";
-    if (discretisation->face)
-      out << ", " << discretisation->face->layout().points.size()
+    if (discretization->face)
+      out << ", " << discretization->face->layout().points.size()
           << " friction points";
-    out << (discretisation->mean_dilatation ? ", mean dilatation\n" : "\n");
+    out << (discretization->mean_dilatation ? ", mean dilatation\n" : "\n");
   }
 
 
@@ -76,9 +76,9 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::announce_held_faces()
   {
-    if (!discretisation->face)
+    if (!discretization->face)
       return;
-    for (const types::boundary_id id : discretisation->face->held_boundaries())
+    for (const types::boundary_id id : discretization->face->held_boundaries())
       if (announced_held_faces.insert(id).second)
         console.remark(
           "Note: nothing slips on boundary " + std::to_string(id) +
@@ -92,10 +92,10 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::announce_solver()
   {
-    if (!discretisation->solver ||
-        discretisation->solver->name() == announced_solver)
+    const std::string name = time_stepper->method().solver_name();
+    if (name.empty() || name == announced_solver)
       return;
-    announced_solver = discretisation->solver->name();
+    announced_solver = name;
     out << "Linear solver: " << announced_solver << std::endl;
   }
 
@@ -103,19 +103,20 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::record(const State<dim> &old_state,
-                                   const Step       &step,
-                                   const TimeStep   &time_step)
+  ViscoplasticContact<dim>::record(const EvaluatedState<dim> &old,
+                                   const AcceptedStep<dim>   &step)
   {
-    const Discretisation &d          = *discretisation;
-    const bool            is_initial = time_step.n == 0;
+    const TimeStep            &time_step = step.time_step;
+    const State<dim>          &old_state = old.state, &state = step.end.state;
+    const Forces<dim>         &forces     = step.end.forces;
+    const Discretization<dim> &d          = *discretization;
+    const bool                 is_initial = time_step.n == 0;
 
     // All ranks compute; rank 0 writes.
     TimerOutput::Scope  phase(timer, "balance");
-    const StressSummary stress =
-      summarise_stress(d.laws, old_state, step.state);
-    const double stored_energy = step.forces.strain_energy +
-                                 step.forces.irreversible_work +
+    const StressSummary stress = summarise_stress(d.laws, old_state, state);
+    const double        stored_energy = forces.strain_energy +
+                                 forces.irreversible_work +
                                  stress.irreversible_energy;
     // Frames are orthonormal, and hanging nodes lie between others.
     double max_displacement = 0.;
@@ -123,34 +124,33 @@ namespace Viscoplastic
       {
         Tensor<1, dim> u;
         for (unsigned int c = 0; c < dim; ++c)
-          u[c] = step.forces.u.begin()[i + c];
+          u[c] = forces.u.begin()[i + c];
         max_displacement = std::max(max_displacement, stable_norm(u));
       }
     max_displacement = Utilities::MPI::max(max_displacement, communicator);
-    DistributedVector change = step.forces.u;
-    change -= forces.u;
+    DistributedVector change = forces.u;
+    change -= old.forces.u;
     FrictionIdentities friction;
     Tensor<1, dim>     friction_force;
     if (d.face)
       {
         friction       = check_friction(*d.face,
                                   old_state.friction,
-                                  step.state.friction,
+                                  state.friction,
                                   is_initial ? d.face->bounds(0.) : step.bounds,
                                   change,
                                   step.foundation_step,
                                   max_displacement);
-        friction_force = d.face->resultant(step.state.friction);
+        friction_force = d.face->resultant(state.friction);
       }
-    const double tension_area =
-      d.tension ? d.tension->tension_area(step.state) : 0.;
-    const auto reaction_forces = reactions(d.space, step.forces);
+    const double tension_area = d.tension ? d.tension->tension_area(state) : 0.;
+    const auto   reaction_forces = reactions(d.space, forces);
 
     // Forces on the body: loads, reactions, minus the multipliers.
-    Tensor<1, dim> balance = step.forces.load.resultant - friction_force;
+    Tensor<1, dim> balance = forces.load.resultant - friction_force;
     double        &size    = accounts.largest_force;
     size                   = std::max({size,
-                                       stable_norm(step.forces.load.resultant),
+                                       stable_norm(forces.load.resultant),
                                        stable_norm(friction_force)});
     for (const auto &pair : reaction_forces)
       {
@@ -178,8 +178,8 @@ namespace Viscoplastic
       accounts.initial_energy = stored_energy;
     else
       {
-        accounts.external_work += external_work(d.space, forces, step.forces) +
-                                  friction.foundation_work;
+        accounts.external_work +=
+          external_work(d.space, old.forces, forces) + friction.foundation_work;
         accounts.largest_work =
           std::max(accounts.largest_work, std::abs(accounts.external_work));
         accounts.viscous_dissipation += stress.viscous_dissipation;
@@ -196,15 +196,16 @@ namespace Viscoplastic
 
     std::vector<Tensor<1, dim>> point_values;
     for (const auto &probe : probes)
-      point_values.push_back(probe.value(step.state.u));
-    const double estimate = squared_estimate.size() > 0 ?
-                              total_estimate(squared_estimate, communicator) :
-                              0.;
+      point_values.push_back(probe.value(state.u));
+    const Vector<double> &indicators =
+      step.end.space_estimate.squared_indicators;
+    const double estimate =
+      indicators.size() > 0 ? total_estimate(indicators, communicator) : 0.;
     phase.stop();
     summary.displacement.update(max_displacement, time_step.t);
     summary.von_mises.update(stress.max_von_mises, time_step.t);
     check_sizes();
-    const SolutionErrors errors = measure_errors(step.state);
+    const SolutionErrors errors = measure_errors(state);
     summary.largest_error.update(errors.error);
     summary.largest_exact.update(errors.exact);
 
@@ -244,7 +245,7 @@ namespace Viscoplastic
           row.add("linear_iterations", step.report.linear_iterations);
         for (const auto &[id, force] : reaction_forces)
           row.add_vector("reaction_" + std::to_string(id), force, dim);
-        row.add_vector("load", step.forces.load.resultant, dim);
+        row.add_vector("load", forces.load.resultant, dim);
         row.add("force_balance_defect", balance_defect);
         if (d.face)
           {
@@ -253,7 +254,7 @@ namespace Viscoplastic
             row.add("slip_misalignment", friction.slip_misalignment);
           }
         row.add("stored_energy", stored_energy);
-        row.add("strain_energy", step.forces.strain_energy);
+        row.add("strain_energy", forces.strain_energy);
         if (scene.has_viscosity())
           row.add("viscous_dissipation", accounts.viscous_dissipation);
         if (d.face)
@@ -272,7 +273,7 @@ namespace Viscoplastic
           row.add("estimator", estimate);
         if (error_bar)
           {
-            const ErrorLedger &ledger = step.errors;
+            const ErrorLedger &ledger = step.end.errors;
             row.add("energy_norm", ledger.energy_norm);
             row.add("estimate_space", ledger.space);
             row.add("estimate_time", ledger.time);
@@ -351,10 +352,9 @@ namespace Viscoplastic
       }
     if (error_bar)
       {
-        summary.errors = error_bar->summary();
-        if (step.errors.energy_norm > 0.)
+        if (step.end.errors.energy_norm > 0.)
           progress_of_step.relative_error =
-            step.errors.total() / step.errors.energy_norm;
+            step.end.errors.total() / step.end.errors.energy_norm;
       }
     // The rate of an explicit step is that of its beginning.
     const double rate_time = step.is_implicit ? time_step.t : time_step.t_old;
@@ -429,10 +429,10 @@ namespace Viscoplastic
     if (!writes && !scene.exact_solution && (reference.empty() || phase == 0))
       return result;
 
-    TimerOutput::Scope       scope(timer, "errors");
-    const Discretisation    &d = *discretisation;
-    DistributedVector        multipliers;
-    const DistributedVector *density = nullptr;
+    TimerOutput::Scope         scope(timer, "errors");
+    const Discretization<dim> &d = *discretization;
+    DistributedVector          multipliers;
+    const DistributedVector   *density = nullptr;
     if (d.face)
       {
         multipliers = d.face->density(of.friction);
@@ -488,12 +488,12 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::close()
   {
     check_sizes();
-    const unsigned int       n       = state.n;
+    const unsigned int       n       = accepted.state.n;
     std::vector<std::string> remarks = console.remarks();
     if (scene.has_viscosity())
       {
         const double fluctuation =
-          relative_stress_fluctuation(discretisation->sampling, state);
+          relative_stress_fluctuation(discretization->sampling, accepted.state);
         if (fluctuation > 0.2 &&
             parameters.stress.stress_history == "cell means")
           {
@@ -508,8 +508,8 @@ namespace Viscoplastic
       }
 
     const double tension =
-      discretisation->tension ?
-        summary.tension_area.value / discretisation->tension->area() :
+      discretization->tension ?
+        summary.tension_area.value / discretization->tension->area() :
         0.;
     if (tension > 0.01)
       {
@@ -568,12 +568,12 @@ namespace Viscoplastic
                           summary,
                           *coarser_summary);
     if (error_bar)
-      output->record_errors(error_bar->summary());
+      output->record_errors(*summary.errors);
     out << std::setprecision(3) << "Iterations per step: ";
     if (is_implicit() || changes_scheme())
       out << static_cast<double>(accounts.newton_iterations) / n
           << " of Newton's method, ";
-    if (discretisation->face)
+    if (discretization->face)
       out << static_cast<double>(accounts.contact_iterations) / n
           << " of the active set, ";
     out << static_cast<double>(accounts.linear_iterations) / n << " linear\n";
@@ -582,7 +582,7 @@ namespace Viscoplastic
                   first_set_up_seconds,
                   run_timer.wall_time(),
                   scene.has_viscosity(),
-                  discretisation->face != nullptr);
+                  discretization->face != nullptr);
     for (const std::string &remark : remarks)
       out << remark << '\n';
     out << "Results in " << output->directory() << std::endl;

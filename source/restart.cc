@@ -87,7 +87,8 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::exchange(Archive &archive)
   {
     // What record() and estimate() make anew in each step is not here.
-    archive &state.n &state.t &state.k &is_solved_on_mesh;
+    State<dim> &state = accepted.state;
+    archive &state.n &state.t &state.k &accepted.is_solution;
     archive &state.friction.slip &state.friction.multiplier &state.friction
       .sticks;
     archive &accounts.initial_energy &accounts.external_work &accounts
@@ -97,7 +98,16 @@ namespace Viscoplastic
       .linear_iterations &accounts.newton_iterations &accounts.implicit_steps;
     control.exchange(archive);
     if (error_bar)
-      error_bar->exchange(archive);
+      {
+        if (!summary.errors)
+          summary.errors.emplace();
+        for (ErrorLedger *ledger : {&accepted.errors, &summary.errors->largest})
+          archive & ledger->space & ledger->time & ledger->algebraic &
+            ledger->initial & ledger->time_indicator &
+            ledger->velocity_variation & ledger->energy_norm &
+            ledger->velocity_square;
+        archive &summary.errors->t &summary.errors->largest_energy_norm;
+      }
     for (Largest *largest : {&summary.displacement,
                              &summary.strain,
                              &summary.von_mises,
@@ -120,8 +130,11 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::write_checkpoint()
   {
-    TimerOutput::Scope phase(timer, "checkpoint");
-    const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
+    TimerOutput::Scope    phase(timer, "checkpoint");
+    const unsigned int    rank = Utilities::MPI::this_mpi_process(communicator);
+    const State<dim>     &state = accepted.state;
+    const Vector<double> &indicators =
+      accepted.space_estimate.squared_indicators;
     CheckpointManifest manifest;
     manifest.n         = state.n;
     manifest.t         = state.t;
@@ -134,20 +147,16 @@ namespace Viscoplastic
     std::map<std::string, std::string> files;
     files[mesh_file(rank)] = pack_mesh(triangulation);
     files[fields_file(rank)] =
-      pack_fields(discretisation->sampling, state, squared_estimate);
-    // Where each step makes its own matrix, there is nothing to remember.
-    std::optional<BulkSolver::Memory> memory;
-    if (changes_scheme())
-      discretisation->use_solver_of_tangent(false);
-    if (!is_implicit() || discretisation->tangent->is_constant)
-      memory = discretisation->solver->memory(); // collective, as all of it
+      pack_fields(discretization->sampling, state, indicators);
+    // Collective, as all of it.
+    auto memory = time_stepper->method().memory();
     if (rank == 0)
       {
         const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
         BinaryWriter     archive;
         archive &coarse_mesh.topology &coarse_mesh.vertices;
         archive &(state.initial_u.size() > 0);
-        archive &(squared_estimate.size() > 0);
+        archive &(indicators.size() > 0);
         archive & output->output_times();
         archive &(earlier_seconds + run_timer.wall_time());
         exchange(archive);
@@ -169,6 +178,7 @@ namespace Viscoplastic
   std::string
   ViscoplasticContact<dim>::keep_checkpoints(const SignalRequests &signals)
   {
+    const State<dim>           &state   = accepted.state;
     const CheckpointParameters &wanted  = parameters.checkpoint;
     const bool                  is_last = is_finished();
     bool                        is_due =
@@ -237,6 +247,7 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::resume(const CheckpointManifest &checkpoint)
   {
+    State<dim>           &state = accepted.state;
     const CheckpointStore store = checkpoints();
     const std::string     name  = "The checkpoint '" + store.path(checkpoint.n);
     const unsigned int    rank = Utilities::MPI::this_mpi_process(communicator);
@@ -278,9 +289,9 @@ namespace Viscoplastic
     for (unsigned int r = 0; r < checkpoint.n_ranks; ++r)
       meshes.push_back(store.read(checkpoint, mesh_file(r)));
     restore_mesh(meshes, triangulation);
-    const bool is_solved = is_solved_on_mesh;
+    const bool is_solution = accepted.is_solution;
     set_up(); // which knows of no solution
-    const Discretisation &d = *discretisation;
+    const Discretization<dim> &d = *discretization;
 
     // On as many ranks as before, each finds all in its own file.
     const auto unpack = [&](const unsigned int begin, const unsigned int end) {
@@ -295,7 +306,7 @@ namespace Viscoplastic
                       has_estimate,
                       ErrorBar<dim>::n_sample_fields(scene),
                       state,
-                      squared_estimate);
+                      accepted.space_estimate.squared_indicators);
       return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
     };
     const unsigned int n_points = d.face ? d.face->layout().points.size() : 0;
@@ -306,12 +317,9 @@ namespace Viscoplastic
                   state.friction.sticks.size() == n_points &&
                   archive.is_at_end(),
                 ExcMessage(name + "' does not fit the scene."));
-    if (is_implicit() && d.tangent->is_constant)
-      linearise(state.u, state.z, state.t, state.k);
-    if (memory && d.solver)
-      d.solver->recall(memory);
-    is_solved_on_mesh = is_solved;
-    forces =
+    time_stepper->method().restore(accepted, memory);
+    accepted.is_solution = is_solution;
+    accepted.forces =
       evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
 
     std::string failure;

@@ -20,114 +20,6 @@
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    template <int dim>
-    bool
-    use_mean_dilatation(const Scene<dim> &scene, const double max_nu)
-    {
-      const std::string &choice =
-        scene.parameters.stress.volumetric_integration;
-      if (choice != "automatic")
-        return choice == "mean dilatation";
-      for (const auto &material : scene.materials)
-        if (material->law && material->law->deviatoric_flow())
-          return true;
-      return max_nu > 0.4;
-    }
-  } // namespace
-
-
-
-  template <int dim>
-  ViscoplasticContact<dim>::Discretisation::Discretisation(
-    const DoFHandler<dim> &dof_handler,
-    const Scene<dim>      &scene)
-    : space(dof_handler, scene)
-    , moduli(space)
-    , mean_dilatation(use_mean_dilatation(scene, moduli.max_poissons_ratio()))
-    , sampling(space,
-               moduli,
-               scene.has_viscosity() &&
-                 scene.parameters.stress.stress_history == "quadrature points",
-               mean_dilatation)
-    , laws(sampling)
-    , loads(space)
-    , n_solves(scene.is_adaptive() ? scene.parameters.refinement.every_n_steps :
-                                     scene.schedule.n_steps())
-  {
-    for (const auto &pair : scene.boundary)
-      if (pair.second.role == BoundaryRole::contact &&
-          pair.second.is_bilateral() && !pair.second.is_glued())
-        {
-          tension = std::make_unique<ContactTension<dim>>(sampling);
-          break;
-        }
-    if (scene.has_friction())
-      face = std::make_unique<ContactFace<dim>>(space);
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::Discretisation::make_matrix()
-  {
-    assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
-    if (space.scene.has_viscosity() &&
-        space.scene.parameters.time.scheme == "backward Euler")
-      tangent = std::make_unique<TangentMatrix<dim>>(laws, matrix);
-    else
-      make_solver(matrix, moduli.max_poissons_ratio());
-    const Parameters &parameters = space.scene.parameters;
-    if (parameters.error_control.error_bar ||
-        parameters.refinement.strategy == "residual")
-      estimator = std::make_unique<ResidualEstimator<dim>>(sampling);
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::Discretisation::make_solver(
-    const DistributedMatrix &of,
-    const double             max_nu)
-  {
-    static const std::vector<types::global_dof_index> no_dofs;
-    diagonal = space.owned_vector();
-    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
-      diagonal.begin()[i] = of.diag_element(space.owned.nth_index_in_set(i));
-    const FrictionFace &layout = face ? face->layout() : no_face;
-    const std::string  &choice = space.scene.parameters.solver.linear_solver;
-    if (solver && is_direct(space, layout.n_dofs(), choice, max_nu, n_solves) &&
-        solver->renew(of))
-      return;
-    solver.reset(); // factors are what fills memory
-    solver = make_bulk_solver(space,
-                              of,
-                              layout,
-                              face ? face->dofs() : no_dofs,
-                              choice,
-                              max_nu,
-                              n_solves);
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::Discretisation::use_solver_of_tangent(
-    const bool of_tangent)
-  {
-    if (of_tangent == tangent_is_in_use)
-      return;
-    std::swap(solver, solver_aside);
-    std::swap(diagonal, diagonal_aside);
-    tangent_is_in_use = of_tangent;
-  }
-
-
-
   template <int dim>
   ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
                                                 Console          &console)
@@ -149,7 +41,6 @@ namespace Viscoplastic
               scene.schedule,
               parameters.time.scheme == "Heun" ? 2 : 1,
               parameters.output.fields_interval)
-    , contact_solver(parameters.solver.maximal_iterations)
     , error_bar(parameters.error_control.error_bar ?
                   std::make_unique<ErrorBar<dim>>(scene) :
                   nullptr)
@@ -246,7 +137,7 @@ namespace Viscoplastic
   {
     set_up();
     if (scene.exact_solution && scene.exact_solution->makes_data)
-      check_exact_solution(discretisation->space);
+      check_exact_solution(discretization->space);
     set_initial_state();
     check_steps();
     lock_directories(/* make_results = */ true);
@@ -265,16 +156,30 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::record_initial_state()
   {
-    Step initial{state,
-                 forces,
-                 initial_report,
-                 {},
-                 std::numeric_limits<double>::infinity(),
-                 {},
-                 0.,
-                 {},
-                 error_bar ? error_bar->ledger() : ErrorLedger()};
-    record(state, initial, {0, 0., 0., 0.});
+    AcceptedStep<dim> initial;
+    initial.time_step = {0, 0., 0., 0.};
+    initial.end       = accepted;
+    initial.report    = initial_report;
+    record(accepted, initial);
+  }
+
+
+
+  template <int dim>
+  TimeStep
+  ViscoplasticContact<dim>::make_step()
+  {
+    const unsigned int n = accepted.state.n;
+    if (scene.is_adaptive() && n > 0 &&
+        n % parameters.refinement.every_n_steps == 0)
+      adapt_mesh();
+    AcceptedStep<dim> step = time_stepper->next(accepted);
+    announce_solver();
+    if (error_bar)
+      summary.errors->update(step.end.errors, step.time_step.t);
+    record(accepted, step);
+    accepted = std::move(step.end);
+    return step.time_step;
   }
 
 
@@ -301,17 +206,22 @@ namespace Viscoplastic
     TimerOutput::Scope scope(timer, "set-up");
     dof_handler.distribute_dofs(fe);
     // The old one goes first: matrices and factors are what fills memory.
-    is_solved_on_mesh = false;
-    discretisation.reset();
-    discretisation = std::make_unique<Discretisation>(dof_handler, scene);
-    discretisation->make_matrix();
-    if (forces.u.size() == 0) // the first time
+    accepted.is_solution = false;
+    time_stepper.reset();
+    discretization.reset();
+    discretization = std::make_unique<Discretization<dim>>(dof_handler, scene);
+    discretization->assemble_matrix();
+    time_stepper = std::make_unique<TimeStepper<dim>>(*discretization,
+                                                      error_bar.get(),
+                                                      control,
+                                                      timer);
+    if (accepted.forces.u.size() == 0) // the first time
       announce_mesh();
     announce_held_faces();
     announce_solver();
     probes.clear();
     for (const Point<dim> &x : scene.output_points)
-      probes.emplace_back(discretisation->space, x);
+      probes.emplace_back(discretization->space, x);
   }
 
 
@@ -320,35 +230,29 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::set_initial_state()
   {
-    const Discretisation         &d       = *discretisation;
-    const InitialStateParameters &initial = parameters.initial_state;
-    state = make_initial_state(d.sampling, initial.equilibrate);
+    const Discretization<dim> &d = *discretization;
+    const bool equilibrate       = parameters.initial_state.equilibrate;
+    accepted.state               = make_initial_state(d.sampling, equilibrate);
     if (error_bar)
-      error_bar->begin(d.sampling, state);
-    const Load<dim>           load = d.loads.assemble(0.);
-    const std::vector<double> bounds =
-      d.face ? d.face->bounds(0.) : std::vector<double>();
-    if (initial.equilibrate)
       {
-        const State<dim> start = state;
-        forces = evaluate_forces(d.sampling, d.matrix, load, start);
-        if (d.face)
-          state.friction = FrictionState(bounds.size());
-        if (!d.solver)
-          discretisation->make_solver(d.matrix, d.moduli.max_poissons_ratio());
-        initial_report  = solve(start, forces, load, bounds, {}, state);
-        state.initial_u = state.u;
+        summary.errors.emplace();
+        error_bar->begin(d.sampling, accepted);
       }
+    if (equilibrate)
+      initial_report = time_stepper->equilibrate(accepted);
     else
       {
+        const Load<dim> load = d.loads.assemble(0.);
         check_compatibility(load);
+        accepted.forces =
+          evaluate_forces(d.sampling, d.matrix, load, accepted.state);
       }
-    forces = evaluate_forces(d.sampling, d.matrix, load, state);
-    if (scene.is_adaptive() || initial.equilibrate)
+    if (scene.is_adaptive() || equilibrate)
+      time_stepper->estimate(accepted);
+    if (error_bar && equilibrate)
       {
-        const double residual = estimate(state);
-        if (error_bar && initial.equilibrate)
-          error_bar->assess_equilibrium(forces, initial_report, residual);
+        error_bar->assess_equilibrium(initial_report, accepted);
+        summary.errors->update(accepted.errors, 0.);
       }
   }
 
@@ -358,10 +262,12 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::check_compatibility(const Load<dim> &load)
   {
-    const Discretisation &d = *discretisation;
-    const double tolerance  = parameters.initial_state.compatibility_tolerance;
-    const double violation =
-      compatibility_violation(d.space, load, d.face.get(), state.friction);
+    const Discretization<dim> &d = *discretization;
+    const double tolerance = parameters.initial_state.compatibility_tolerance;
+    const double violation = compatibility_violation(d.space,
+                                                     load,
+                                                     d.face.get(),
+                                                     accepted.state.friction);
     // Data that a solution makes are compatible up to quadrature.
     if (scene.exact_solution && scene.exact_solution->makes_data)
       return;
@@ -378,56 +284,37 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  ViscoplasticContact<dim>::estimate(const State<dim> &of)
-  {
-    const Discretisation &d = *discretisation;
-    TimerOutput::Scope    phase(timer, "estimate");
-    if (parameters.refinement.strategy == "kelly")
-      squared_estimate = kelly_estimate(d.space, of.u);
-    if (!d.estimator)
-      return 0.;
-    DistributedVector density;
-    if (d.face)
-      density = d.face->density(of.friction);
-    const Vector<double> residual =
-      d.estimator->estimate(of.u, of.z, of.t, d.face ? &density : nullptr);
-    if (parameters.refinement.strategy == "residual")
-      squared_estimate = residual;
-    return total_estimate(residual, communicator);
-  }
-
-
-
-  template <int dim>
   void
   ViscoplasticContact<dim>::adapt_mesh()
   {
-    TimerOutput::Scope phase(timer, "adaptation");
+    TimerOutput::Scope    phase(timer, "adaptation");
+    State<dim>           &state = accepted.state;
+    const Vector<double> &squared_indicators =
+      accepted.space_estimate.squared_indicators;
     // What rounding and iterations leave of an estimate, as in uniform states,
     // says nothing about the mesh, and differs between numbers of ranks.
     if (parameters.refinement.strategy == "residual" &&
-        total_estimate(squared_estimate, communicator) <=
-          10. * std::max(1e-10, step_tolerance()) *
-            std::sqrt(2. * std::max(0., forces.strain_energy)))
+        total_estimate(squared_indicators, communicator) <=
+          10. * std::max(1e-10, time_stepper->tolerance(accepted)) *
+            std::sqrt(2. * std::max(0., accepted.forces.strain_energy)))
       return;
-    if (!mark_cells(triangulation, squared_estimate, parameters.refinement))
+    if (!mark_cells(triangulation, squared_indicators, parameters.refinement))
       return;
 
     DistributedVector density;
-    if (discretisation->face)
-      density = discretisation->face->density(state.friction);
-    const double       energy = stored_energy(state, forces);
+    if (discretization->face)
+      density = discretization->face->density(state.friction);
+    const double       energy = stored_energy(accepted);
     StateTransfer<dim> transfer(triangulation,
-                                discretisation->sampling,
+                                discretization->sampling,
                                 state,
-                                discretisation->face ? &density : nullptr);
+                                discretization->face ? &density : nullptr);
     triangulation.execute_coarsening_and_refinement();
     set_up();
 
-    const Discretisation &d      = *discretisation;
-    auto                  result = transfer.unpack(d.sampling);
-    state                        = std::move(result.state);
+    const Discretization<dim> &d      = *discretization;
+    auto                       result = transfer.unpack(d.sampling);
+    state                             = std::move(result.state);
     if (d.face)
       {
         // Sets by what the multipliers and velocities say.
@@ -454,24 +341,24 @@ namespace Viscoplastic
               stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
           }
       }
-    forces =
+    accepted.forces =
       evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
-    rate.reset();
+    accepted.rate.reset();
     if (error_bar)
-      error_bar->change_mesh(d.space, d.matrix, state);
-    accounts.adaptation_energy += stored_energy(state, forces) - energy;
+      error_bar->change_mesh(d.space, d.matrix, accepted);
+    accounts.adaptation_energy += stored_energy(accepted) - energy;
   }
 
 
 
   template <int dim>
   double
-  ViscoplasticContact<dim>::stored_energy(const State<dim>  &of,
-                                          const Forces<dim> &its_forces) const
+  ViscoplasticContact<dim>::stored_energy(const EvaluatedState<dim> &of) const
   {
     // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
-    return its_forces.strain_energy + its_forces.irreversible_work +
-           summarise_stress(discretisation->laws, of, of).irreversible_energy;
+    return of.forces.strain_energy + of.forces.irreversible_work +
+           summarise_stress(discretization->laws, of.state, of.state)
+             .irreversible_energy;
   }
 
 
@@ -480,13 +367,15 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::write_fields()
   {
-    TimerOutput::Scope             phase(timer, "output");
+    TimerOutput::Scope    phase(timer, "output");
+    const Vector<double> &squared_indicators =
+      accepted.space_estimate.squared_indicators;
     const std::vector<std::string> remarks =
-      output->write_fields(discretisation->sampling,
-                           state,
-                           discretisation->face.get(),
-                           squared_estimate.size() > 0 ? &squared_estimate :
-                                                         nullptr);
+      output->write_fields(discretization->sampling,
+                           accepted.state,
+                           discretization->face.get(),
+                           squared_indicators.size() > 0 ? &squared_indicators :
+                                                           nullptr);
     for (const std::string &remark : remarks)
       console.remark(remark);
   }

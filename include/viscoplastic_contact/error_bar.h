@@ -2,14 +2,9 @@
 #pragma once
 
 #include <viscoplastic_contact/contact_solver.h>
-#include <viscoplastic_contact/error_ledger.h>
-#include <viscoplastic_contact/flow_laws.h>
-#include <viscoplastic_contact/force_balance.h>
-#include <viscoplastic_contact/state.h>
+#include <viscoplastic_contact/error/evaluated_state.h>
 
-#include <optional>
 #include <string>
-#include <utility>
 
 namespace Viscoplastic
 {
@@ -34,8 +29,8 @@ namespace Viscoplastic
 
 
   /**
-   * Keeps the ledger of errors of a run, in scenes with `Error control/Error
-   * bar'.
+   * The ledger of errors, step by step, in scenes with `Error control/Error
+   * bar'. Keeps nothing of the run: what has added up is in the states.
    *
    * Time: z_n lacks the sum of the defects of all steps. Signed, as tensors at
    * the samples, they add up to D_n, e.g. for forward Euler
@@ -63,105 +58,58 @@ namespace Viscoplastic
     static unsigned int
     n_sample_fields(const Scene<dim> &scene);
 
-    /// Begin at @p state, which the projections of the initial data have made.
-    /// Collective.
+    /// Set the fields of time errors and the ledger of a state that the
+    /// projections of the initial data have made. Collective.
     void
-    begin(const StressSampling<dim> &sampling, State<dim> &state);
+    begin(const StressSampling<dim> &sampling,
+          EvaluatedState<dim>       &initial) const;
 
-    /// If this has been brought into equilibrium: the ledger at t = 0.
+    /// Complete the ledger of an initial state that has been brought into
+    /// equilibrium.
     void
-    assess_equilibrium(const Forces<dim>   &forces,
-                       const ContactReport &report,
-                       const double         residual);
+    assess_equilibrium(const ContactReport &report,
+                       EvaluatedState<dim> &initial) const;
 
-    /// G at the accepted state, for the step from there: evaluated once.
-    /// Collective.
-    const FlowRate &
-    rate(const FlowLaws<dim> &laws, const State<dim> &accepted);
-
-    /// G at the end of a step, for its time error and the next step.
-    /// Collective.
-    void
-    evaluate_rate(const FlowLaws<dim> &laws,
-                  const State<dim>    &accepted,
-                  const State<dim>    &state);
-
-    /// The accepted state has moved to a new mesh. Collective.
+    /// Renew what depends on the mesh in the ledger of a state that has moved
+    /// to a new one. Collective.
     void
     change_mesh(const AdmissibleSpace<dim> &space,
                 const DistributedMatrix    &matrix,
-                const State<dim>           &state);
+                EvaluatedState<dim>        &accepted) const;
 
     /**
      * The relative tolerance for the iterations of the next step: `Algebraic
-     * fraction' of the estimated discretisation error of the accepted state, or
+     * fraction' of the estimated discretization error of the accepted state, or
      * a fixed one if the scene gives it or nothing is known yet.
      */
     double
-    tolerance() const;
+    tolerance(const ErrorLedger &accepted) const;
 
     /**
-     * The ledger of a step from the accepted state to @p state, whose fields
-     * of time errors it sets; with viscosity after evaluate_rate(). @p defect
-     * is that of the scheme of the step; @p residual the residual estimate of
-     * @p state. Collective.
+     * Set the ledger and the fields of time errors of the end of a step. Its
+     * forces and space estimate, and with viscosity the rates of both states,
+     * have been evaluated. @p defect: of the scheme of the step. Collective.
      */
-    ErrorLedger
+    void
     assess(const StressSampling<dim> &sampling,
            const TimeDefect          &defect,
-           const State<dim>          &accepted,
-           const Forces<dim>         &old_forces,
-           const Forces<dim>         &forces,
            const ContactReport       &report,
-           const double               residual,
-           State<dim>                &state);
-
-    /// The state of the last assess() is the accepted one now.
-    void
-    accept(const ErrorLedger &ledger, const double t);
-
-    /// Of the accepted state.
-    const ErrorLedger &
-    ledger() const
-    {
-      return present;
-    }
-
-    const ErrorSummary &
-    summary() const
-    {
-      return run;
-    }
-
-    /// Write to, or read from, an archive what assess() does not make anew.
-    template <typename Archive>
-    void
-    exchange(Archive &archive)
-    {
-      for (ErrorLedger *ledger : {&present, &run.largest})
-        archive & ledger->space & ledger->time & ledger->algebraic &
-          ledger->initial & ledger->time_indicator &
-          ledger->velocity_variation & ledger->energy_norm &
-          ledger->velocity_square;
-      archive &run.t &run.largest_energy_norm;
-    }
+           const EvaluatedState<dim> &accepted,
+           const FlowRate            *accepted_rate,
+           EvaluatedState<dim>       &end) const;
 
   private:
-    /// Add the defect of a step to the field of @p state, and put the norms
+    /// Add the defect of a step to the field of time errors, and put the norms
     /// into the ledger. Collective.
     void
     add_defect(const StressSampling<dim> &sampling,
                const TimeDefect          &defect,
                const State<dim>          &accepted,
-               State<dim>                &state,
-               ErrorLedger               &ledger) const;
+               const FlowRate            &accepted_rate,
+               EvaluatedState<dim>       &end) const;
 
     const Scene<dim>       &scene;
     const SolverParameters &solver;
     const double            algebraic_fraction;
-    ErrorLedger             present;
-    ErrorSummary            run;
-    /// Of the accepted state and the one that was assessed.
-    std::optional<FlowRate> accepted_rate, assessed_rate;
   };
 } // namespace Viscoplastic

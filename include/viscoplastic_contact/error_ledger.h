@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <algorithm>
+
 namespace Viscoplastic
 {
   /**
@@ -50,6 +52,18 @@ namespace Viscoplastic
     double      t = 0.;
     /// Over the run.
     double largest_energy_norm = 0.;
+
+    /// Take a state at time t into account.
+    void
+    update(const ErrorLedger &ledger, const double at_t)
+    {
+      if (ledger.total() > largest.total())
+        {
+          largest = ledger;
+          t       = at_t;
+        }
+      largest_energy_norm = std::max(largest_energy_norm, ledger.energy_norm);
+    }
 
     /// 0 for a body that never deforms.
     double

@@ -10,27 +10,16 @@
 #include <viscoplastic_contact/checkpoint_store.h>
 #include <viscoplastic_contact/command_line.h>
 #include <viscoplastic_contact/console.h>
-#include <viscoplastic_contact/contact_face.h>
-#include <viscoplastic_contact/contact_solver.h>
-#include <viscoplastic_contact/contact_tension.h>
-#include <viscoplastic_contact/error_bar.h>
 #include <viscoplastic_contact/files.h>
-#include <viscoplastic_contact/flow_laws.h>
-#include <viscoplastic_contact/force_balance.h>
-#include <viscoplastic_contact/loads.h>
 #include <viscoplastic_contact/output.h>
 #include <viscoplastic_contact/point_probe.h>
 #include <viscoplastic_contact/progress.h>
-#include <viscoplastic_contact/residual_estimator.h>
 #include <viscoplastic_contact/run_summary.h>
 #include <viscoplastic_contact/signals.h>
 #include <viscoplastic_contact/solution_errors.h>
-#include <viscoplastic_contact/state.h>
 #include <viscoplastic_contact/statistics.h>
-#include <viscoplastic_contact/step_control.h>
-#include <viscoplastic_contact/tangent_matrix.h>
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -91,94 +80,6 @@ namespace Viscoplastic
     }
 
   private:
-    /// Everything that depends on the mesh, in the order of dependence.
-    struct Discretisation
-    {
-      Discretisation(const DoFHandler<dim> &dof_handler,
-                     const Scene<dim>      &scene);
-
-      /// The costly rest: what solves need. Steps of backward Euler have
-      /// matrices of their own and make the solver then.
-      void
-      make_matrix();
-
-      /// For a matrix that stays in use; the elastic one, or of a tangent.
-      void
-      make_solver(const DistributedMatrix &of, const double max_nu);
-
-      /// The face for solvers: null if there is nothing that could slip, also
-      /// where other conditions hold all nodes of the frictional pieces.
-      const ContactFace<dim> *
-      slipping_face() const
-      {
-        return face && face->layout().n_dofs() > 0 ? face.get() : nullptr;
-      }
-
-      /// In runs that change between schemes: put the solver of the elastic
-      /// matrix or that of the tangent in place, and the other one aside.
-      void
-      use_solver_of_tangent(const bool of_tangent);
-
-      AdmissibleSpace<dim> space;
-      ElasticModuli<dim>   moduli;
-      bool                 mean_dilatation;
-      StressSampling<dim>  sampling;
-      FlowLaws<dim>        laws;
-      Loads<dim>           loads;
-      /// Null without bilateral contact.
-      std::unique_ptr<ContactTension<dim>> tension;
-      /// Null without friction.
-      std::unique_ptr<ContactFace<dim>> face;
-      /// Null in scenes without error bar that are not refined by it.
-      std::unique_ptr<ResidualEstimator<dim>> estimator;
-
-      /// How often a solver will be used at least.
-      unsigned int      n_solves;
-      DistributedMatrix matrix;
-      FrictionFace      no_face;
-      /// Null unless backward Euler has something to do.
-      std::unique_ptr<TangentMatrix<dim>> tangent;
-      std::unique_ptr<BulkSolver>         solver;
-      DistributedVector                   diagonal; // of the solver's matrix
-
-    private:
-      std::unique_ptr<BulkSolver> solver_aside;
-      DistributedVector           diagonal_aside;
-      bool                        tangent_is_in_use = false;
-    };
-
-    /// What a step gives.
-    struct Step
-    {
-      State<dim>          state;
-      Forces<dim>         forces;
-      ContactReport       report;
-      std::vector<double> bounds;
-      /// 2/r; infinite without viscosity. Backward Euler, which may pass it,
-      /// reports that of the end of the step.
-      double step_limit;
-      /// Where r is that large; the origin where it is zero.
-      Point<3> critical_position;
-      /// Volume beyond the cap of a law.
-      double capped_volume;
-      /// What the foundation moved, as a face vector; empty at rest.
-      Vector<double> foundation_step;
-      /// Zero without error bar.
-      ErrorLedger errors;
-      /// Whether it is one of backward Euler, and of how many iterations.
-      bool         is_implicit       = false;
-      unsigned int newton_iterations = 0;
-      /// How often a longer one has been tried.
-      unsigned int n_rejections = 0;
-    };
-
-    /// What a step that is not accepted must not change.
-    struct SolverState
-    {
-      bool                              is_solved_on_mesh;
-      std::optional<BulkSolver::Memory> memory;
-    };
-
     /// What adds up over the steps.
     struct Accounts
     {
@@ -207,31 +108,12 @@ namespace Viscoplastic
     bool
     is_finished() const
     {
-      return state.t >= scene.schedule.end_time();
+      return accepted.state.t >= scene.schedule.end_time();
     }
 
-    /// The next step, recorded and accepted. Returns what it was. Source:
-    /// source/stepping.cc.
+    /// The next step, recorded and accepted. Returns what it was.
     TimeStep
     make_step();
-
-    /// Steps from the accepted state until one will do.
-    Step
-    try_steps(TimeStep &time_step);
-
-    /// What a step is judged by; its errors are known then.
-    StepErrors
-    assess(Step &step);
-
-    /// What the solver is before a step, and back to that. Collective.
-    SolverState
-    solver_state();
-    void
-    restore(const SolverState &before);
-
-    /// G at the accepted state, evaluated once.
-    const FlowRate &
-    accepted_rate();
 
     void
     make_mesh();
@@ -265,135 +147,12 @@ namespace Viscoplastic
       return control.passes_limit && scene.has_viscosity() && !is_implicit();
     }
 
-    /// Throws StepBeyondStability.
-    void
-    check_stability(const FlowRate &rate, const TimeStep &time_step) const;
-
-    /// One step: a function of the accepted state, its forces and the time
-    /// step. It keeps nothing but what solver_state() knows. Throws
-    /// StepFailure.
-    Step
-    advance(const State<dim>  &old_state,
-            const Forces<dim> &old_forces,
-            const TimeStep    &time_step);
-
-    /// Forward Euler, Heun: z by G at known states, then the rest.
-    void
-    advance_explicitly(const State<dim>  &old_state,
-                       const Forces<dim> &old_forces,
-                       const Load<dim>   &load,
-                       const TimeStep    &time_step,
-                       Step              &step);
-
-    /// Backward Euler: z and the rest together. Source:
-    /// source/implicit_step.cc.
-    void
-    advance_implicitly(const State<dim>  &old_state,
-                       const Forces<dim> &old_forces,
-                       const Load<dim>   &load,
-                       const TimeStep    &time_step,
-                       Step              &step);
-
-    /// The matrix and the solver of backward Euler for tangents at a strain, as
-    /// a function of what is given and the mesh alone.
-    void
-    linearise(const DistributedVector  &ghosted_u,
-              const IrreversibleStress &z,
-              const double              t,
-              const double              k);
-
-    /// z at the end of a step for the strains of a ghosted displacement, from a
-    /// guess of it.
-    using StressForStrain =
-      std::function<IrreversibleStress(const DistributedVector &,
-                                       const IrreversibleStress &)>;
-
-    /**
-     * How far to go from @p base, with the stress @p z, to @p u, whose stress
-     * is that of the step: 1 unless the energy of the step increases before.
-     * All in frames.
-     */
-    double
-    step_length(const Forces<dim>        &old_forces,
-                const Load<dim>          &load,
-                const Step               &step,
-                const DistributedVector  &base,
-                const IrreversibleStress &z,
-                const DistributedVector  &u,
-                const StressForStrain    &z_for) const;
-
-    /// u, multipliers and sets for a given z, at the time of @p state and
-    /// for its step size; the start is what @p guess says of velocities and
-    /// sets.
-    ContactReport
-    solve(const State<dim>          &guess,
-          const Forces<dim>         &old_forces,
-          const Load<dim>           &load,
-          const std::vector<double> &bounds,
-          const Vector<double>      &foundation_step,
-          State<dim>                &state);
-
-    /// The start of a solve: u in frames, and the sets of @p state.
-    DistributedVector
-    start(const State<dim>     &guess,
-          const Forces<dim>    &old_forces,
-          const Vector<double> &foundation_step,
-          State<dim>           &state) const;
-
-    /// Solve with the present matrix from a start to a relative tolerance.
-    /// @p right_side is the load less what does not depend on u.
-    ContactReport
-    solve_from(const Forces<dim>         &old_forces,
-               const Load<dim>           &load,
-               const DistributedVector   &right_side,
-               const std::vector<double> &bounds,
-               const Vector<double>      &foundation_step,
-               const double               tolerance,
-               DistributedVector         &u,
-               FrictionState             &friction);
-
-    /// solve_from() in a unit of forces and displacements in which squares of
-    /// them are ordinary numbers.
-    ContactReport
-    solve_in_unit(const DistributedVector   &old_u,
-                  const DistributedVector   &load,
-                  const DistributedVector   &right_side,
-                  const std::vector<double> &bounds,
-                  const Vector<double>      &foundation_step,
-                  const double               tolerance,
-                  DistributedVector         &u,
-                  FrictionState             &friction);
-
-    /// The largest of what the data of a step contribute to the energy norm,
-    /// without squares.
-    double
-    size_of_data(const DistributedVector &old_u,
-                 const DistributedVector &load,
-                 const DistributedVector &right_side,
-                 const Vector<double>    &foundation_step,
-                 const DistributedVector &u) const;
-
-    /// u and velocity of @p state.
-    void
-    set_displacement(const DistributedVector &u,
-                     const Forces<dim>       &old_forces,
-                     State<dim>              &state);
-
-    /// At which the iterations of a step stop, relative to the solution.
-    double
-    step_tolerance() const;
-
-    /// Estimate the error of a state: squared_estimate in adaptive scenes.
-    /// Returns the residual estimate; zero in scenes that do not use it.
-    double
-    estimate(const State<dim> &of);
-
     void
     adapt_mesh();
 
     /// 1/2 int E^-1 sigma : sigma.
     double
-    stored_energy(const State<dim> &of, const Forces<dim> &its_forces) const;
+    stored_energy(const EvaluatedState<dim> &of) const;
 
     /// Keep other processes out of the directories that this run writes into,
     /// as far as they exist and have no lock yet.
@@ -449,9 +208,7 @@ namespace Viscoplastic
 
     /// Add a row to statistics.csv. Time step 0 is the initial state.
     void
-    record(const State<dim> &old_state,
-           const Step       &step,
-           const TimeStep   &time_step);
+    record(const EvaluatedState<dim> &old, const AcceptedStep<dim> &step);
 
     /// Against the exact solution, or a reference at the ends of phases; not
     /// a number where there is none. Writes such a reference where wanted.
@@ -490,20 +247,17 @@ namespace Viscoplastic
     parallel::distributed::Triangulation<dim> triangulation;
     const FESystem<dim>                       fe;
     DoFHandler<dim>                           dof_handler;
-    std::unique_ptr<Discretisation>           discretisation;
     StepControl                               control;
-    ContactSolver                             contact_solver;
     std::unique_ptr<ErrorBar<dim>>            error_bar; // null if not wanted
 
-    State<dim>  state;
-    Forces<dim> forces; // of the state
-    /// At the state; in scenes with an error bar, that has it.
-    std::optional<FlowRate> rate;
-    ContactReport           initial_report;
-    Accounts                accounts;
-    Vector<double> squared_estimate; // eta_K^2, only in adaptive scenes
-    /// Whether the state is a solution on the present mesh.
-    bool is_solved_on_mesh = false;
+    // Made anew on each mesh.
+    std::unique_ptr<Discretization<dim>> discretization;
+    std::unique_ptr<TimeStepper<dim>>    time_stepper;
+
+    /// The last state that will do.
+    EvaluatedState<dim> accepted;
+    ContactReport       initial_report;
+    Accounts            accounts;
     /// The linear solver, and the frictional boundaries without friction
     /// points, that the user has been told of.
     std::string                  announced_solver;

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact_face.h>
+#include <viscoplastic_contact/contact_tension.h>
+#include <viscoplastic_contact/elasticity.h>
+#include <viscoplastic_contact/flow_laws.h>
+#include <viscoplastic_contact/loads.h>
+#include <viscoplastic_contact/stress_history.h>
+
+#include <memory>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * A scene on one mesh: everything that depends on the mesh but neither on the
+   * state nor on how steps are solved. Declared in the order of dependence;
+   * made anew when the mesh changes.
+   */
+  template <int dim>
+  class Discretization
+  {
+  public:
+    /// Without the matrix, which costs most. Collective. Throws ExcMessage if
+    /// the scene does not fit the mesh.
+    Discretization(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene);
+
+    /// Make the matrix of a(.,.). Collective.
+    void
+    assemble_matrix();
+
+    const Scene<dim> &
+    scene() const
+    {
+      return space.scene;
+    }
+
+    /// The face for solvers: null if there is nothing that could slip, also
+    /// where other conditions hold all nodes of the frictional pieces.
+    const ContactFace<dim> *
+    slipping_face() const
+    {
+      return face && face->layout().n_dofs() > 0 ? face.get() : nullptr;
+    }
+
+    /// The friction points; none without friction.
+    const FrictionFace &
+    friction_face() const
+    {
+      return face ? face->layout() : no_face;
+    }
+
+    /// Global index of each entry of a face vector.
+    const std::vector<types::global_dof_index> &
+    face_dofs() const
+    {
+      return face ? face->dofs() : no_dofs;
+    }
+
+    AdmissibleSpace<dim> space;
+    ElasticModuli<dim>   moduli;
+    bool                 mean_dilatation;
+    StressSampling<dim>  sampling;
+    FlowLaws<dim>        laws;
+    Loads<dim>           loads;
+    /// Null without bilateral contact.
+    std::unique_ptr<ContactTension<dim>> tension;
+    /// Null without friction.
+    std::unique_ptr<ContactFace<dim>> face;
+    /// How often a linear solver will be used on this mesh at least.
+    unsigned int n_solves;
+    /// Of a(.,.), in nodal frames.
+    DistributedMatrix matrix;
+
+  private:
+    const FrictionFace                         no_face;
+    const std::vector<types::global_dof_index> no_dofs;
+  };
+} // namespace Viscoplastic

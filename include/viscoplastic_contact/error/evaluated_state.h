@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/error/space_estimator.h>
+#include <viscoplastic_contact/error_ledger.h>
+#include <viscoplastic_contact/flow_laws.h>
+#include <viscoplastic_contact/force_balance.h>
+#include <viscoplastic_contact/state.h>
+
+#include <optional>
+
+namespace Viscoplastic
+{
+  /**
+   * A state with what has been evaluated of it. A step leads from one of these,
+   * which it leaves alone, to another one.
+   */
+  template <int dim>
+  struct EvaluatedState
+  {
+    State<dim>  state;
+    Forces<dim> forces;
+    /// G at the state; absent where nobody has asked for it yet.
+    std::optional<FlowRate> rate;
+    /// Empty where the scene asks for no estimate.
+    SpaceEstimate space_estimate;
+    /// Zero without error bar.
+    ErrorLedger errors;
+    /// Whether u solves the step of this state on the present mesh: neither
+    /// initial data do nor what has been carried over from another mesh.
+    bool is_solution = false;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/time_stepping/step_method.h>
+#include <viscoplastic_contact/time_stepping/step_solver.h>
+
+namespace Viscoplastic
+{
+  /**
+   * Forward Euler, the scheme (3.18)-(3.20) of the paper, and Heun's method:
+   * z_n by G at known states, then (3.18) for u_n. The matrix is that of
+   * a(.,.), whose solver serves all steps on a mesh. Elastic bodies take this
+   * way, too.
+   */
+  template <int dim>
+  class ExplicitStep : public StepMethod<dim>
+  {
+  public:
+    ExplicitStep(const Discretization<dim> &discretization, TimerOutput &timer);
+
+    StepSolution<dim>
+    advance(const StepProblem<dim> &problem) override;
+
+    StepSolution<dim>
+    equilibrate(const StepProblem<dim> &problem) override;
+
+    std::optional<BulkSolver::Memory>
+    memory() const override;
+
+    void
+    restore(const EvaluatedState<dim>               &accepted,
+            const std::optional<BulkSolver::Memory> &memory) override;
+
+    std::string
+    solver_name() const override;
+
+  private:
+    /// (3.18) for the z of @p solution, whose u, sets and report are set; the
+    /// start is what @p guess says of velocities and sets.
+    void
+    solve(const StepProblem<dim> &problem,
+          const State<dim>       &guess,
+          StepSolution<dim>      &solution);
+
+    /// Whether an elastic body has the same data as in the state before.
+    bool
+    nothing_has_changed(const StepProblem<dim> &problem) const;
+
+    const Discretization<dim> &discretization;
+    const bool                 is_heun;
+    TimerOutput               &timer;
+    StepSolver<dim>            solver;
+  };
+
+
+
+  /// Throws StepBeyondStability if a step from a state with this G is longer
+  /// than 2/r, the stability limit of explicit schemes.
+  template <int dim>
+  void
+  check_stability(const Parameters &parameters,
+                  const FlowRate   &rate,
+                  const TimeStep   &time_step);
+
+  /// Whether a step of size k is within that limit, up to rounding.
+  inline bool
+  is_stable(const FlowRate &rate, const double k)
+  {
+    return k * rate.relaxation_rate <= 2. * (1. + 1e-10);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/tangent_matrix.h>
+#include <viscoplastic_contact/time_stepping/step_method.h>
+#include <viscoplastic_contact/time_stepping/step_solver.h>
+
+namespace Viscoplastic
+{
+  /**
+   * Backward Euler: z_n = z_{n-1} + k G(t_n, sigma_n, eps_n) and (3.18)
+   * together, by Newton's method for the bulk around the contact solver. In
+   * each iteration, z(eps) is replaced by its tangent C at the strain of an
+   * iterate m, or by one from before if that does as well, and friction is
+   * solved with that matrix:
+   *
+   *     a(u, v) + (z_m + C (eps(u) - eps(u_m)), eps(v)) + friction = L(v).
+   *
+   * With a potential this is one convex minimisation, J(u) -> min, and a step
+   * along d = u - u_m is shortened where J' d = 0 if the whole one overshoots,
+   * which J' tells without J; then J decreases always. Without one, the same
+   * rule looks for a zero of the residual along d.
+   *
+   * The iteration ends when (u, z(eps(u))) satisfies the equations to the
+   * contact tolerance: what the tangent has missed, dz, is a residual whose
+   * dual norm is at most that of dz.
+   */
+  template <int dim>
+  class ImplicitStep : public StepMethod<dim>
+  {
+  public:
+    /// @p takes_all_steps: whether the steps before and after this one are of
+    /// this method, too; then constant tangents and what the linear solver has
+    /// learnt with them stay from step to step.
+    ImplicitStep(const Discretization<dim> &discretization,
+                 TimerOutput               &timer,
+                 const bool                 takes_all_steps = true);
+
+    StepSolution<dim>
+    advance(const StepProblem<dim> &problem) override;
+
+    StepSolution<dim>
+    equilibrate(const StepProblem<dim> &problem) override;
+
+    std::optional<BulkSolver::Memory>
+    memory() const override;
+
+    void
+    restore(const EvaluatedState<dim>               &accepted,
+            const std::optional<BulkSolver::Memory> &memory) override;
+
+    std::string
+    solver_name() const override;
+
+  private:
+    class Newton;
+
+    /// The matrix and the solver for tangents at a strain, as a function of
+    /// what is given and the mesh alone.
+    void
+    linearize(const DistributedVector  &ghosted_u,
+              const IrreversibleStress &z,
+              const double              t,
+              const double              k);
+
+    const Discretization<dim> &discretization;
+    TimerOutput               &timer;
+    const bool                 takes_all_steps;
+    TangentMatrix<dim>         tangent;
+    StepSolver<dim>            solver;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/timer.h>
+
+#include <viscoplastic_contact/bulk_solver.h>
+#include <viscoplastic_contact/time_stepping/step_problem.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace Viscoplastic
+{
+  /**
+   * A scheme for one step, on one mesh. A step is a function of its problem
+   * alone, up to what an iterative linear solver has learnt from earlier solves
+   * (BulkSolver::Memory): with that restored, the same problem gives the same
+   * bits.
+   */
+  template <int dim>
+  class StepMethod
+  {
+  public:
+    virtual ~StepMethod() = default;
+
+    /// Solve one step. Throws StepBeyondStability, and an exception of another
+    /// type if the step cannot be solved. Collective.
+    virtual StepSolution<dim>
+    advance(const StepProblem<dim> &problem) = 0;
+
+    /// Solve for the equilibrium at t = 0, a step of size zero whose z is given
+    /// by the old state. Collective.
+    virtual StepSolution<dim>
+    equilibrate(const StepProblem<dim> &problem) = 0;
+
+    /// What the linear solver has learnt, at an accepted state. Nothing where
+    /// all solves are alike. Collective.
+    virtual std::optional<BulkSolver::Memory>
+    memory() const = 0;
+
+    /// Go on from an accepted state on this mesh as the method did that had
+    /// this memory there. Collective.
+    virtual void
+    restore(const EvaluatedState<dim>               &accepted,
+            const std::optional<BulkSolver::Memory> &memory) = 0;
+
+    /// The linear solver in use; empty before there is one.
+    virtual std::string
+    solver_name() const = 0;
+  };
+
+
+
+  /**
+   * The scheme that a scene asks for: explicit, implicit, or explicit up to the
+   * stability limit and implicit beyond it. @p discretization has its matrix;
+   * it and @p timer, which gets the seconds by phase, stay in use. Collective.
+   */
+  template <int dim>
+  std::unique_ptr<StepMethod<dim>>
+  make_step_method(const Discretization<dim> &discretization,
+                   TimerOutput               &timer);
+} // namespace Viscoplastic

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/error/evaluated_state.h>
+#include <viscoplastic_contact/loads.h>
+#include <viscoplastic_contact/time_schedule.h>
+
+#include <limits>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * The data of one step from t_{n-1} to t_n: what (3.18) is made of besides
+   * the form a(.,.) and the irreversible stress z_n. In total form, with
+   * Delta u = u_n - u_{n-1}:
+   *
+   *     a(u_n, v - Delta u) + (z_n, eps(v - Delta u)) + j_n(v) - j_n(Delta u)
+   *       >= L(t_n; v - Delta u)   for all admissible v.
+   */
+  template <int dim>
+  struct StepProblem
+  {
+    TimeStep time_step;
+    /// L(t_n, .).
+    Load<dim> load;
+    /// rho_c(t_n) of each friction point, which make j_n.
+    std::vector<double> bounds;
+    /// What the foundation moves in the step, as a face vector; empty at rest.
+    Vector<double> foundation_step;
+    /// Relative to the solution, at which the iterations stop.
+    double tolerance;
+    /// The state at t_{n-1}, which stays as it is, and G there (null where the
+    /// step does not ask for it).
+    const EvaluatedState<dim> &old;
+    const FlowRate            *old_rate;
+
+    /// u_{n-1} in frames.
+    const DistributedVector &
+    old_u() const
+    {
+      return old.forces.u;
+    }
+  };
+
+
+
+  /// What a scheme makes of a StepProblem.
+  template <int dim>
+  struct StepSolution
+  {
+    State<dim>    state;
+    ContactReport report;
+    /// 2/r; infinite without viscosity. Backward Euler, which may pass it,
+    /// reports that of the end of the step.
+    double step_limit = std::numeric_limits<double>::infinity();
+    /// Where r is that large; the origin where it is zero.
+    Point<3> critical_position;
+    /// Volume beyond the cap of a law.
+    double capped_volume = 0.;
+    /// Whether it is a step of backward Euler, and of how many iterations.
+    bool         is_implicit       = false;
+    unsigned int newton_iterations = 0;
+
+    explicit StepSolution(const StepProblem<dim> &problem)
+    {
+      state.n         = problem.time_step.n;
+      state.t         = problem.time_step.t;
+      state.k         = problem.time_step.k;
+      state.initial_u = problem.old.state.initial_u;
+    }
+
+    /// Take notice of G somewhere in the step.
+    void
+    note(const FlowRate &rate);
+  };
+} // namespace Viscoplastic

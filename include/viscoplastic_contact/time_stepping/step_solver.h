@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/bulk_solver.h>
+#include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/time_stepping/step_problem.h>
+
+#include <memory>
+
+namespace Viscoplastic
+{
+  /**
+   * Solves the variational inequality (3.18) of a step for u_n, the friction
+   * multipliers and the sets, with a given matrix: that of a(.,.), or of a
+   * tangent. Owns the linear solver for that matrix.
+   */
+  template <int dim>
+  class StepSolver
+  {
+  public:
+    explicit StepSolver(const Discretization<dim> &discretization);
+
+    /// Solve with @p matrix from now on, which stays in use. @p
+    /// max_poissons_ratio: of the material that it stands for. Collective.
+    void
+    set_matrix(const DistributedMatrix &matrix,
+               const double             max_poissons_ratio);
+
+    /// Forget the linear solver.
+    void
+    clear()
+    {
+      bulk_solver.reset();
+    }
+
+    /// Whether there is a linear solver.
+    bool
+    is_ready() const
+    {
+      return bulk_solver != nullptr;
+    }
+
+    BulkSolver &
+    bulk()
+    {
+      return *bulk_solver;
+    }
+
+    const BulkSolver &
+    bulk() const
+    {
+      return *bulk_solver;
+    }
+
+    /**
+     * Where to start: u in frames, from the last displacement and what @p guess
+     * says of velocities and sets, and these sets in @p friction.
+     */
+    DistributedVector
+    initial_guess(const StepProblem<dim> &problem,
+                  const State<dim>       &guess,
+                  FrictionState          &friction) const;
+
+    /**
+     * Solve from @p u and @p friction, which take the solution up.
+     * @p right_side is the load of the problem less what does not depend on u;
+     * @p tolerance is relative. Throws ExcMessage. Collective.
+     */
+    ContactReport
+    solve(const StepProblem<dim>  &problem,
+          const DistributedVector &right_side,
+          const double             tolerance,
+          DistributedVector       &u,
+          FrictionState           &friction);
+
+    /// Displacement and velocity of the end of a step from u in frames.
+    void
+    set_displacement(const StepProblem<dim>  &problem,
+                     const DistributedVector &u,
+                     State<dim>              &state) const;
+
+  private:
+    /// What a solve is in proportion to.
+    struct Data
+    {
+      const DistributedVector   &old_u, &load, &right_side;
+      const std::vector<double> &bounds;
+      const Vector<double>      &foundation_step;
+    };
+
+    /// solve() in a unit of forces and displacements in which squares of them
+    /// are ordinary numbers.
+    ContactReport
+    solve_in_unit(const Data        &data,
+                  const double       tolerance,
+                  DistributedVector &u,
+                  FrictionState     &friction);
+
+    /// The largest of what the data contribute to the energy norm, without
+    /// squares. Collective.
+    double
+    size_of(const Data &data, const DistributedVector &u) const;
+
+    /// What rounding leaves of displacements, of their increments, in which the
+    /// face is solved, and of loads that cancel: in the energy norm.
+    /// Collective.
+    double
+    rounding_error(const Data &data, const DistributedVector &u) const;
+
+    const Discretization<dim>  &discretization;
+    const ContactSolver         contact_solver;
+    std::unique_ptr<BulkSolver> bulk_solver;
+    DistributedVector           diagonal; // of the matrix
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/error_bar.h>
+#include <viscoplastic_contact/step_control.h>
+#include <viscoplastic_contact/time_stepping/step_method.h>
+
+namespace Viscoplastic
+{
+  /**
+   * A step that will do, with all that was learnt about it.
+   */
+  template <int dim>
+  struct AcceptedStep
+  {
+    TimeStep time_step;
+    /// The state that the step leads to.
+    EvaluatedState<dim> end;
+    /// As in StepProblem.
+    std::vector<double> bounds;
+    Vector<double>      foundation_step;
+    /// As in StepSolution.
+    ContactReport report;
+    double        step_limit = std::numeric_limits<double>::infinity();
+    Point<3>      critical_position;
+    double        capped_volume     = 0.;
+    bool          is_implicit       = false;
+    unsigned int  newton_iterations = 0;
+    /// How often a longer step has been tried.
+    unsigned int n_rejections = 0;
+  };
+
+
+
+  /**
+   * Makes the steps of a run on one mesh: proposes a step, tries it, judges it,
+   * and tries a shorter one until one will do. A step that is tried changes
+   * neither the state that it starts from nor anything here; what it leaves in
+   * an iterative linear solver is undone when it is rejected.
+   */
+  template <int dim>
+  class TimeStepper
+  {
+  public:
+    /// All arguments stay in use. @p error_bar is null if there is none.
+    TimeStepper(const Discretization<dim> &discretization,
+                const ErrorBar<dim>       *error_bar,
+                StepControl               &control,
+                TimerOutput               &timer);
+
+    /// The next step from a state. Throws StepFailure if none will do.
+    /// Collective.
+    AcceptedStep<dim>
+    next(const EvaluatedState<dim> &accepted);
+
+    /// A step of given size, not judged yet. @p old_rate is G at the start, or
+    /// null where needs_rate() is false. Throws StepFailure. Collective.
+    AcceptedStep<dim>
+    try_step(const EvaluatedState<dim> &accepted,
+             const FlowRate            *old_rate,
+             const TimeStep            &time_step);
+
+    /// Bring an initial state into equilibrium with the loads at t = 0; its
+    /// forces are those of the equilibrium then. Collective.
+    ContactReport
+    equilibrate(EvaluatedState<dim> &initial);
+
+    /// Complete the space estimate of a state. Collective.
+    void
+    estimate(EvaluatedState<dim> &evaluated) const;
+
+    /// Whether steps of this scene ask for G at the state that they start from.
+    bool
+    needs_rate() const;
+
+    /// At which the iterations of a step from a state stop, relative to the
+    /// solution.
+    double
+    tolerance(const EvaluatedState<dim> &accepted) const;
+
+    StepMethod<dim> &
+    method()
+    {
+      return *step_method;
+    }
+
+    const StepMethod<dim> &
+    method() const
+    {
+      return *step_method;
+    }
+
+  private:
+    /// What a step is judged by; its errors are known then. Throws StepFailure.
+    StepErrors
+    assess(const EvaluatedState<dim> &accepted,
+           const FlowRate            *old_rate,
+           AcceptedStep<dim>         &step) const;
+
+    /// The data of a step. Collective.
+    StepProblem<dim>
+    make_problem(const EvaluatedState<dim> &accepted,
+                 const FlowRate            *old_rate,
+                 const TimeStep            &time_step) const;
+
+    const Discretization<dim> &discretization;
+    const Scene<dim>          &scene;
+    const ErrorBar<dim>       *error_bar;
+    StepControl               &control;
+    TimerOutput               &timer;
+    /// Null where a scene asks for no estimate.
+    std::unique_ptr<SpaceEstimator<dim>> space_estimator;
+    std::unique_ptr<StepMethod<dim>>     step_method;
+  };
+} // namespace Viscoplastic

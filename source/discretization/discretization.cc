@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/discretization/discretization.h>
+
+#include <algorithm>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    template <int dim>
+    bool
+    use_mean_dilatation(const Scene<dim> &scene, const double max_nu)
+    {
+      const std::string &choice =
+        scene.parameters.stress.volumetric_integration;
+      if (choice != "automatic")
+        return choice == "mean dilatation";
+      for (const auto &material : scene.materials)
+        if (material->law && material->law->deviatoric_flow())
+          return true;
+      return max_nu > 0.4;
+    }
+
+
+
+    template <int dim>
+    bool
+    has_bilateral_contact(const Scene<dim> &scene)
+    {
+      return std::any_of(
+        scene.boundary.begin(), scene.boundary.end(), [](const auto &pair) {
+          const BoundaryCondition<dim> &condition = pair.second;
+          return condition.role == BoundaryRole::contact &&
+                 condition.is_bilateral() && !condition.is_glued();
+        });
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Discretization<dim>::Discretization(const DoFHandler<dim> &dof_handler,
+                                      const Scene<dim>      &scene)
+    : space(dof_handler, scene)
+    , moduli(space)
+    , mean_dilatation(use_mean_dilatation(scene, moduli.max_poissons_ratio()))
+    , sampling(space,
+               moduli,
+               scene.has_viscosity() &&
+                 scene.parameters.stress.stress_history == "quadrature points",
+               mean_dilatation)
+    , laws(sampling)
+    , loads(space)
+    , tension(has_bilateral_contact(scene) ?
+                std::make_unique<ContactTension<dim>>(sampling) :
+                nullptr)
+    , face(scene.has_friction() ? std::make_unique<ContactFace<dim>>(space) :
+                                  nullptr)
+    , n_solves(scene.is_adaptive() ? scene.parameters.refinement.every_n_steps :
+                                     scene.schedule.n_steps())
+  {}
+
+
+
+  template <int dim>
+  void
+  Discretization<dim>::assemble_matrix()
+  {
+    assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
+  }
+
+
+
+  template class Discretization<2>;
+  template class Discretization<3>;
+} // namespace Viscoplastic

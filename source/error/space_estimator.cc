@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/space_estimator.h>
+#include <viscoplastic_contact/error_estimator.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  SpaceEstimator<dim>::SpaceEstimator(const Discretization<dim> &discretization)
+    : discretization(discretization)
+    , refines_by_kelly(discretization.scene().parameters.refinement.strategy ==
+                       "kelly")
+    , refines_by_residual(
+        discretization.scene().parameters.refinement.strategy == "residual")
+  {
+    if (discretization.scene().parameters.error_control.error_bar ||
+        refines_by_residual)
+      residual_estimator =
+        std::make_unique<ResidualEstimator<dim>>(discretization.sampling);
+  }
+
+
+
+  template <int dim>
+  bool
+  SpaceEstimator<dim>::is_needed(const Scene<dim> &scene)
+  {
+    return scene.parameters.error_control.error_bar || scene.is_adaptive();
+  }
+
+
+
+  template <int dim>
+  SpaceEstimate
+  SpaceEstimator<dim>::estimate(const State<dim> &state) const
+  {
+    const Discretization<dim> &d = discretization;
+    SpaceEstimate              result;
+    if (refines_by_kelly)
+      result.squared_indicators = kelly_estimate(d.space, state.u);
+    if (!residual_estimator)
+      return result;
+    DistributedVector density;
+    if (d.face)
+      density = d.face->density(state.friction);
+    Vector<double> squared = residual_estimator->estimate(
+      state.u, state.z, state.t, d.face ? &density : nullptr);
+    result.residual = total_estimate(squared, d.space.communicator);
+    if (refines_by_residual)
+      result.squared_indicators = std::move(squared);
+    return result;
+  }
+
+
+
+  template class SpaceEstimator<2>;
+  template class SpaceEstimator<3>;
+} // namespace Viscoplastic

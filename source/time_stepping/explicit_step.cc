@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/step_control.h>
+#include <viscoplastic_contact/time_stepping/explicit_step.h>
+
+#include <sstream>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  check_stability(const Parameters &parameters,
+                  const FlowRate   &rate,
+                  const TimeStep   &time_step)
+  {
+    if (is_stable(rate, time_step.k))
+      return;
+    std::ostringstream message;
+    message << "the time step " << time_step.k
+            << " exceeds the stability limit 2/r = "
+            << 2. / rate.relaxation_rate << " of " << parameters.time.scheme
+            << ", which is that of the cell at x = (";
+    for (unsigned int d = 0; d < dim; ++d)
+      message << (d > 0 ? ", " : "") << rate.critical_position[d];
+    message << "); take more steps in 'Time/Phases', or set 'Time/Stiffness "
+               "policy' or 'Time/Scheme' = backward Euler.";
+    throw StepBeyondStability(time_step.n, time_step.t, message.str());
+  }
+
+
+
+  template <int dim>
+  ExplicitStep<dim>::ExplicitStep(const Discretization<dim> &discretization,
+                                  TimerOutput               &timer)
+    : discretization(discretization)
+    , is_heun(discretization.scene().has_viscosity() &&
+              discretization.scene().parameters.time.scheme == "Heun")
+    , timer(timer)
+    , solver(discretization)
+  {
+    solver.set_matrix(discretization.matrix,
+                      discretization.moduli.max_poissons_ratio());
+  }
+
+
+
+  template <int dim>
+  StepSolution<dim>
+  ExplicitStep<dim>::advance(const StepProblem<dim> &problem)
+  {
+    const Scene<dim>   &scene = discretization.scene();
+    const TimeStep     &step  = problem.time_step;
+    const State<dim>   &old   = problem.old.state;
+    StepSolution<dim>   solution(problem);
+    IrreversibleStress &z   = solution.state.z;
+    const auto          use = [&](const FlowRate &rate) {
+      check_stability<dim>(scene.parameters, rate, step);
+      solution.note(rate);
+    };
+
+    z = old.z;
+    if (scene.has_viscosity())
+      {
+        // (3.19): z_n = z_{n-1} + k G(t_{n-1}, sigma_{n-1}, eps_{n-1}).
+        TimerOutput::Scope phase(timer, "rate");
+        use(*problem.old_rate);
+        for (std::size_t i = 0; i < z.size(); ++i)
+          z[i] += step.k * problem.old_rate->rate[i];
+      }
+    solve(problem, old, solution);
+    if (is_heun)
+      {
+        // z_{n-1} + k (G_{n-1} + G*)/2 with G* at the state just predicted.
+        const State<dim> predicted = solution.state;
+        {
+          TimerOutput::Scope phase(timer, "rate");
+          const FlowRate     end = evaluate_flow(discretization.laws,
+                                             predicted.u,
+                                             predicted.z,
+                                             step.t,
+                                             ExactSolution<dim>::Side::before);
+          use(end);
+          for (std::size_t i = 0; i < z.size(); ++i)
+            z[i] = 0.5 * (old.z[i] + predicted.z[i] + step.k * end.rate[i]);
+        }
+        solve(problem, predicted, solution);
+      }
+    return solution;
+  }
+
+
+
+  template <int dim>
+  StepSolution<dim>
+  ExplicitStep<dim>::equilibrate(const StepProblem<dim> &problem)
+  {
+    StepSolution<dim> solution(problem);
+    solution.state.z = problem.old.state.z;
+    solve(problem, problem.old.state, solution);
+    return solution;
+  }
+
+
+
+  template <int dim>
+  bool
+  ExplicitStep<dim>::nothing_has_changed(const StepProblem<dim> &problem) const
+  {
+    DistributedVector displacement_change(problem.old_u());
+    discretization.space.set_prescribed(problem.time_step.t,
+                                        displacement_change);
+    displacement_change -= problem.old_u();
+    DistributedVector load_change(problem.load.values);
+    load_change -= problem.old.forces.load.values;
+    return displacement_change.linfty_norm() == 0. &&
+           load_change.linfty_norm() == 0.;
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitStep<dim>::solve(const StepProblem<dim> &problem,
+                           const State<dim>       &guess,
+                           StepSolution<dim>      &solution)
+  {
+    TimerOutput::Scope         phase(timer, "contact");
+    const Discretization<dim> &d     = discretization;
+    State<dim>                &state = solution.state;
+    DistributedVector          right_side(problem.load.values);
+    if (d.scene().has_irreversible_stress()) // collective, also without cells
+      add_irreversible_load(d.sampling, state.z, right_side);
+
+    // An elastic body whose data have not changed does not move.
+    if (!d.face && !d.scene().has_viscosity() && problem.old.is_solution &&
+        nothing_has_changed(problem))
+      {
+        state.u        = guess.u;
+        state.velocity = d.space.ghosted_vector();
+        return;
+      }
+
+    DistributedVector u = solver.initial_guess(problem, guess, state.friction);
+    ContactReport     report =
+      solver.solve(problem, right_side, problem.tolerance, u, state.friction);
+    report.iterations += solution.report.iterations;
+    report.linear_iterations += solution.report.linear_iterations;
+    solution.report = report;
+    solver.set_displacement(problem, u, state);
+  }
+
+
+
+  template <int dim>
+  std::optional<BulkSolver::Memory>
+  ExplicitStep<dim>::memory() const
+  {
+    return solver.bulk().memory();
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitStep<dim>::restore(const EvaluatedState<dim> &,
+                             const std::optional<BulkSolver::Memory> &memory)
+  {
+    if (!solver.bulk().is_exact())
+      solver.bulk().recall(memory);
+  }
+
+
+
+  template <int dim>
+  std::string
+  ExplicitStep<dim>::solver_name() const
+  {
+    return solver.bulk().name();
+  }
+
+
+
+  template void
+  check_stability<2>(const Parameters &, const FlowRate &, const TimeStep &);
+  template void
+  check_stability<3>(const Parameters &, const FlowRate &, const TimeStep &);
+  template class ExplicitStep<2>;
+  template class ExplicitStep<3>;
+} // namespace Viscoplastic

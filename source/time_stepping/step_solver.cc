@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/number_range.h>
+#include <viscoplastic_contact/time_stepping/step_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  StepSolution<dim>::note(const FlowRate &rate)
+  {
+    if (rate.relaxation_rate > 0. && 2. / rate.relaxation_rate < step_limit)
+      {
+        step_limit        = 2. / rate.relaxation_rate;
+        critical_position = rate.critical_position;
+      }
+    capped_volume = std::max(capped_volume, rate.capped_volume);
+  }
+
+
+
+  template <int dim>
+  StepSolver<dim>::StepSolver(const Discretization<dim> &discretization)
+    : discretization(discretization)
+    , contact_solver(
+        discretization.scene().parameters.solver.maximal_iterations)
+  {}
+
+
+
+  template <int dim>
+  void
+  StepSolver<dim>::set_matrix(const DistributedMatrix &matrix,
+                              const double             max_poissons_ratio)
+  {
+    const Discretization<dim>  &d     = discretization;
+    const AdmissibleSpace<dim> &space = d.space;
+    diagonal                          = space.owned_vector();
+    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+      diagonal.begin()[i] =
+        matrix.diag_element(space.owned.nth_index_in_set(i));
+    const FrictionFace &face   = d.friction_face();
+    const std::string  &choice = d.scene().parameters.solver.linear_solver;
+    if (bulk_solver &&
+        is_direct(
+          space, face.n_dofs(), choice, max_poissons_ratio, d.n_solves) &&
+        bulk_solver->renew(matrix))
+      return;
+    bulk_solver.reset(); // factors are what fills memory
+    bulk_solver = make_bulk_solver(space,
+                                   matrix,
+                                   face,
+                                   d.face_dofs(),
+                                   choice,
+                                   max_poissons_ratio,
+                                   d.n_solves);
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  StepSolver<dim>::initial_guess(const StepProblem<dim> &problem,
+                                 const State<dim>       &guess,
+                                 FrictionState          &friction) const
+  {
+    const Discretization<dim>  &d     = discretization;
+    const AdmissibleSpace<dim> &space = d.space;
+    // Start from the last displacement, moved on by the last velocity, except
+    // where points stick: they go with the foundation.
+    const DistributedVector &old_u = problem.old_u();
+    DistributedVector        u(old_u), velocity(old_u);
+    space.to_frames(guess.velocity, velocity);
+    // Not beyond the last increment: it may have been a jump in a tiny step.
+    u.add(std::min(problem.time_step.k, guess.k), velocity);
+    if (d.face)
+      {
+        const FrictionFace   &face            = d.face->layout();
+        const Vector<double> &foundation_step = problem.foundation_step;
+        friction                              = guess.friction;
+        if (friction.sticks.size() != face.points.size())
+          friction = FrictionState(face.points.size());
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          if (friction.sticks[face.first_point[node]])
+            for (unsigned int i = face.first_dof[node];
+                 i < face.first_dof[node + 1];
+                 ++i)
+              if (space.owned.is_element(d.face->dofs()[i]))
+                {
+                  const auto local =
+                    space.owned.index_within_set(d.face->dofs()[i]);
+                  u.begin()[local] =
+                    old_u.begin()[local] +
+                    (foundation_step.size() > 0 ? foundation_step[i] : 0.);
+                }
+      }
+    space.set_prescribed(problem.time_step.t, u);
+    return u;
+  }
+
+
+
+  template <int dim>
+  double
+  StepSolver<dim>::rounding_error(const Data              &data,
+                                  const DistributedVector &u) const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    double                      sum   = 0.;
+    for (std::size_t i = 0; i < space.excluded().size(); ++i)
+      if (!space.excluded()[i])
+        {
+          const double stiffness = diagonal.begin()[i];
+          const auto   square    = [](const double x) { return x * x; };
+          sum +=
+            stiffness * (square(u.begin()[i]) + square(data.old_u.begin()[i])) +
+            (square(data.load.begin()[i]) +
+             square(data.right_side.begin()[i])) /
+              stiffness;
+        }
+    return 100. * std::numeric_limits<double>::epsilon() *
+           std::sqrt(Utilities::MPI::sum(sum, space.communicator));
+  }
+
+
+
+  template <int dim>
+  double
+  StepSolver<dim>::size_of(const Data &data, const DistributedVector &u) const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    double                      size  = 0.;
+    const auto                  add   = [&size](const double value) {
+      size = std::max(size, std::abs(value));
+    };
+    for (std::size_t i = 0; i < space.excluded().size(); ++i)
+      {
+        const double root = std::sqrt(diagonal.begin()[i]);
+        add(root * u.begin()[i]);
+        add(root * data.old_u.begin()[i]);
+        if (!space.excluded()[i])
+          {
+            add(data.load.begin()[i] / root);
+            add(data.right_side.begin()[i] / root);
+          }
+      }
+    for (unsigned int k = 0; k < data.foundation_step.size(); ++k)
+      {
+        const auto dof = discretization.face_dofs()[k];
+        if (space.owned.is_element(dof))
+          add(std::sqrt(diagonal.begin()[space.owned.index_within_set(dof)]) *
+              data.foundation_step[k]);
+      }
+    return Utilities::MPI::max(size, space.communicator);
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  StepSolver<dim>::solve(const StepProblem<dim>  &problem,
+                         const DistributedVector &right_side,
+                         const double             tolerance,
+                         DistributedVector       &u,
+                         FrictionState           &friction)
+  {
+    // All of it in proportion gives the solution in proportion: where squares
+    // would leave the range of numbers, another unit does. In a ramp that
+    // begins like exp(-1/t) that is nothing unusual; a whole run of this kind
+    // is refused (see Recorder::check_sizes()).
+    const Data   data{problem.old_u(),
+                    problem.load.values,
+                    right_side,
+                    problem.bounds,
+                    problem.foundation_step};
+    const double size = size_of(data, u);
+    AssertThrow(!(size > largest_size),
+                ExcMessage(out_of_range("the size of loads and displacements "
+                                        "in the energy norm",
+                                        size,
+                                        least_size,
+                                        largest_size)));
+    if (size == 0. || size >= 1e-100)
+      return solve_in_unit(data, tolerance, u, friction);
+
+    const double unit    = std::ldexp(1., std::max(std::ilogb(size), -1000));
+    const auto   in_unit = [unit](const auto &vector) {
+      auto result = vector;
+      result /= unit;
+      return result;
+    };
+    const auto scale = [&](const double factor) {
+      u *= factor;
+      for (auto *values : {&friction.slip, &friction.multiplier})
+        for (Tensor<1, 2> &value : *values)
+          value *= factor;
+    };
+    const DistributedVector old_u            = in_unit(data.old_u),
+                            load             = in_unit(data.load),
+                            other_right_side = in_unit(right_side);
+    std::vector<double> bounds(data.bounds);
+    for (double &bound : bounds)
+      bound /= unit;
+    Vector<double> foundation_step(data.foundation_step);
+    if (foundation_step.size() > 0)
+      foundation_step /= unit;
+    scale(1. / unit);
+    ContactReport report =
+      solve_in_unit({old_u, load, other_right_side, bounds, foundation_step},
+                    tolerance,
+                    u,
+                    friction);
+    scale(unit);
+    report.duality_gap *= unit * unit;
+    report.error *= unit;
+    bulk_solver->set_rounding_error(unit * bulk_solver->rounding_error());
+    return report;
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  StepSolver<dim>::solve_in_unit(const Data        &data,
+                                 const double       tolerance,
+                                 DistributedVector &u,
+                                 FrictionState     &friction)
+  {
+    const Discretization<dim> &d = discretization;
+    bulk_solver->set_rounding_error(rounding_error(data, u));
+    if (d.slipping_face())
+      {
+        DistributedVector change(u);
+        change -= data.old_u;
+        Vector<double> increment = d.face->face_vector(change);
+        if (data.foundation_step.size() > 0)
+          increment -= data.foundation_step;
+        bulk_solver->begin(data.right_side, u);
+        return contact_solver.solve(*bulk_solver,
+                                    d.face->layout(),
+                                    data.bounds,
+                                    tolerance,
+                                    increment,
+                                    friction);
+      }
+    ContactReport report;
+    report.linear_iterations =
+      bulk_solver->solve(data.right_side, u, tolerance);
+    report.tolerance = tolerance;
+    report.error     = bulk_solver->rounding_error();
+    if (!bulk_solver->is_exact())
+      report.error =
+        std::max(report.error, tolerance * bulk_solver->energy_norm());
+    return report;
+  }
+
+
+
+  template <int dim>
+  void
+  StepSolver<dim>::set_displacement(const StepProblem<dim>  &problem,
+                                    const DistributedVector &u,
+                                    State<dim>              &state) const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    state.u                           = space.ghosted_vector();
+    state.velocity                    = space.ghosted_vector();
+    space.to_cartesian(u, state.u);
+    if (state.k > 0.)
+      {
+        DistributedVector velocity(u);
+        velocity -= problem.old_u();
+        velocity /= state.k;
+        space.to_cartesian(velocity, state.velocity);
+      }
+  }
+
+
+
+  template struct StepSolution<2>;
+  template struct StepSolution<3>;
+  template class StepSolver<2>;
+  template class StepSolver<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/contact_event.h>
+#include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Call @p work and throw what goes wrong as a failure of step @p n to
+    /// time @p t.
+    template <typename Work>
+    auto
+    as_part_of_step(const unsigned int n, const double t, const Work &work)
+    {
+      try
+        {
+          return work();
+        }
+      catch (const std::bad_alloc &)
+        {
+          throw;
+        }
+      catch (const StepFailure &)
+        {
+          throw; // which names the step
+        }
+      catch (const std::exception &exception)
+        {
+          throw StepFailure(n, t, reason(exception));
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  TimeStepper<dim>::TimeStepper(const Discretization<dim> &discretization,
+                                const ErrorBar<dim>       *error_bar,
+                                StepControl               &control,
+                                TimerOutput               &timer)
+    : discretization(discretization)
+    , scene(discretization.scene())
+    , error_bar(error_bar)
+    , control(control)
+    , timer(timer)
+    , space_estimator(SpaceEstimator<dim>::is_needed(scene) ?
+                        std::make_unique<SpaceEstimator<dim>>(discretization) :
+                        nullptr)
+    , step_method(make_step_method(discretization, timer))
+  {}
+
+
+
+  template <int dim>
+  bool
+  TimeStepper<dim>::needs_rate() const
+  {
+    return scene.has_viscosity() &&
+           (scene.parameters.time.scheme != "backward Euler" ||
+            error_bar != nullptr);
+  }
+
+
+
+  template <int dim>
+  AcceptedStep<dim>
+  TimeStepper<dim>::next(const EvaluatedState<dim> &accepted)
+  {
+    const State<dim>       &state = accepted.state;
+    std::optional<FlowRate> evaluated;
+    const FlowRate         *rate = accepted.rate ? &*accepted.rate : nullptr;
+    if (needs_rate() && rate == nullptr)
+      {
+        TimerOutput::Scope phase(timer, "rate");
+        evaluated = as_part_of_step(state.n + 1, state.t, [&] {
+          return evaluate_flow(discretization.laws, state.u, state.z, state.t);
+        });
+        rate      = &*evaluated;
+      }
+    double limit = std::numeric_limits<double>::infinity();
+    if (rate != nullptr && rate->relaxation_rate > 0. &&
+        scene.parameters.time.scheme != "backward Euler")
+      limit = 2. / rate->relaxation_rate;
+
+    const auto memory = control.may_reject() ?
+                          step_method->memory() :
+                          std::optional<BulkSolver::Memory>();
+    for (unsigned int n_rejections = 0;; ++n_rejections)
+      {
+        const TimeStep time_step = control.propose(state.n, state.t, limit);
+        try
+          {
+            AcceptedStep<dim> step   = try_step(accepted, rate, time_step);
+            const StepErrors  errors = assess(accepted, rate, step);
+            const bool        has_event =
+              control.is_on && discretization.face &&
+              has_contact_event(step.bounds,
+                                state.friction,
+                                step.end.state.friction,
+                                control.is_kink(time_step.t_old));
+            if (control.accepts(time_step, errors, has_event))
+              {
+                step.n_rejections = n_rejections;
+                return step;
+              }
+          }
+        catch (const StepFailure &failure)
+          {
+            const bool for_stability =
+              dynamic_cast<const StepBeyondStability *>(&failure) != nullptr;
+            if (!control.retries(time_step, for_stability))
+              throw;
+          }
+        step_method->restore(accepted, memory);
+      }
+  }
+
+
+
+  template <int dim>
+  StepProblem<dim>
+  TimeStepper<dim>::make_problem(const EvaluatedState<dim> &accepted,
+                                 const FlowRate            *old_rate,
+                                 const TimeStep            &time_step) const
+  {
+    TimerOutput::Scope         phase(timer, "load");
+    const Discretization<dim> &d = discretization;
+    StepProblem<dim>           problem{time_step,
+                             d.loads.assemble(time_step.t),
+                             {},
+                             {},
+                             tolerance(accepted),
+                             accepted,
+                             old_rate};
+    if (d.face)
+      {
+        problem.bounds = d.face->bounds(time_step.t);
+        problem.foundation_step =
+          d.face->foundation_step(time_step.t_old, time_step.t);
+      }
+    return problem;
+  }
+
+
+
+  template <int dim>
+  AcceptedStep<dim>
+  TimeStepper<dim>::try_step(const EvaluatedState<dim> &accepted,
+                             const FlowRate            *old_rate,
+                             const TimeStep            &time_step)
+  {
+    StepProblem<dim>  problem  = make_problem(accepted, old_rate, time_step);
+    StepSolution<dim> solution = as_part_of_step(time_step.n, time_step.t, [&] {
+      return step_method->advance(problem);
+    });
+
+    TimerOutput::Scope phase(timer, "balance");
+    AcceptedStep<dim>  step;
+    step.time_step         = time_step;
+    step.end.state         = std::move(solution.state);
+    step.end.forces        = evaluate_forces(discretization.sampling,
+                                      discretization.matrix,
+                                      std::move(problem.load),
+                                      step.end.state);
+    step.end.is_solution   = true;
+    step.bounds            = std::move(problem.bounds);
+    step.foundation_step   = std::move(problem.foundation_step);
+    step.report            = solution.report;
+    step.step_limit        = solution.step_limit;
+    step.critical_position = solution.critical_position;
+    step.capped_volume     = solution.capped_volume;
+    step.is_implicit       = solution.is_implicit;
+    step.newton_iterations = solution.newton_iterations;
+    return step;
+  }
+
+
+
+  template <int dim>
+  StepErrors
+  TimeStepper<dim>::assess(const EvaluatedState<dim> &accepted,
+                           const FlowRate            *old_rate,
+                           AcceptedStep<dim>         &step) const
+  {
+    EvaluatedState<dim> &end   = step.end;
+    const State<dim>    &state = end.state;
+    estimate(end);
+    if (error_bar == nullptr)
+      return {};
+    if (scene.has_viscosity())
+      {
+        // The step may have gone where the law has no value.
+        TimerOutput::Scope phase(timer, "rate");
+        end.rate = as_part_of_step(state.n, state.t, [&] {
+          return evaluate_flow(discretization.laws, state.u, state.z, state.t);
+        });
+      }
+    TimerOutput::Scope phase(timer, "estimate");
+    error_bar->assess(discretization.sampling,
+                      time_defect(step.is_implicit ?
+                                    "backward Euler" :
+                                    scene.parameters.time.scheme),
+                      step.report,
+                      accepted,
+                      old_rate,
+                      end);
+    const ErrorLedger &ledger = end.errors;
+    StepErrors         errors;
+    errors.indicator = ledger.time_indicator;
+    errors.change =
+      std::max(state.k * std::sqrt(std::max(0., ledger.velocity_square)),
+               ledger.irreversible_change);
+    errors.size = std::max(ledger.energy_norm, ledger.irreversible_norm);
+    if (!std::isfinite(errors.indicator + errors.change + errors.size))
+      throw StepFailure(state.n, state.t, "the solution is not finite.");
+    return errors;
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  TimeStepper<dim>::equilibrate(EvaluatedState<dim> &initial)
+  {
+    const Discretization<dim> &d = discretization;
+    if (d.face)
+      initial.state.friction = FrictionState(d.face->layout().points.size());
+    const StepProblem<dim> problem =
+      make_problem(initial, nullptr, {0, 0., 0., 0.});
+    initial.forces =
+      evaluate_forces(d.sampling, d.matrix, problem.load, initial.state);
+    StepSolution<dim> solution = step_method->equilibrate(problem);
+    initial.state.friction     = std::move(solution.state.friction);
+    initial.state.velocity     = std::move(solution.state.velocity);
+    initial.state.u            = std::move(solution.state.u);
+    initial.state.initial_u    = initial.state.u;
+    initial.is_solution        = true;
+    initial.forces =
+      evaluate_forces(d.sampling, d.matrix, problem.load, initial.state);
+    return solution.report;
+  }
+
+
+
+  template <int dim>
+  void
+  TimeStepper<dim>::estimate(EvaluatedState<dim> &evaluated) const
+  {
+    if (!space_estimator)
+      return;
+    TimerOutput::Scope phase(timer, "estimate");
+    evaluated.space_estimate = space_estimator->estimate(evaluated.state);
+  }
+
+
+
+  template <int dim>
+  double
+  TimeStepper<dim>::tolerance(const EvaluatedState<dim> &accepted) const
+  {
+    return error_bar ? error_bar->tolerance(accepted.errors) :
+                       scene.parameters.solver.strict_tolerance();
+  }
+
+
+
+  template class TimeStepper<2>;
+  template class TimeStepper<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Steps by themselves, without a run: they change nothing but their result,
+// and the schemes agree where they should. Every test holds on any number of
+// ranks.
+
+#include <deal.II/base/timer.h>
+
+#include "body.h"
+#include <viscoplastic_contact/initial_state.h>
+#include <viscoplastic_contact/time_stepping/explicit_step.h>
+#include <viscoplastic_contact/time_stepping/implicit_step.h>
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
+
+#include <sstream>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+
+
+  template <typename Dimension>
+  class TimeStepping : public testing::Test
+  {};
+  TYPED_TEST_SUITE(TimeStepping, Dimensions);
+
+
+
+  /// A block that is pushed over its foundation until parts of it slip, with a
+  /// hanging node on the contact face.
+  template <int dim>
+  struct SteppingBody : Body<dim>
+  {
+    explicit SteppingBody(const std::string &more)
+      : Body<dim>(scene_text(more))
+    {
+      this->refine_where(
+        [](const Point<dim> &x) { return x[0] < 0.6 && x[dim - 1] < 0.6; });
+      this->scene.inspect(this->triangulation);
+      this->dof_handler.distribute_dofs(this->fe);
+      discretization =
+        std::make_unique<Discretization<dim>>(this->dof_handler, this->scene);
+      discretization->assemble_matrix();
+      const Parameters &p = *this->parameters;
+      if (p.error_control.error_bar)
+        error_bar = std::make_unique<ErrorBar<dim>>(this->scene);
+      control = std::make_unique<StepControl>(p.step_control,
+                                              p.time.stiffness_policy,
+                                              this->scene.schedule,
+                                              p.time.scheme == "Heun" ? 2 : 1,
+                                              0.);
+      control->set_has_estimate(this->scene.has_viscosity());
+      stepper        = std::make_unique<TimeStepper<dim>>(*discretization,
+                                                   error_bar.get(),
+                                                   *control,
+                                                   timer);
+      accepted.state = make_initial_state(discretization->sampling, false);
+      if (discretization->face)
+        accepted.state.friction =
+          FrictionState(discretization->face->layout().points.size());
+      if (error_bar)
+        error_bar->begin(discretization->sampling, accepted);
+      accepted.forces = evaluate_forces(discretization->sampling,
+                                        discretization->matrix,
+                                        discretization->loads.assemble(0.),
+                                        accepted.state);
+    }
+
+    static std::string
+    scene_text(const std::string &more)
+    {
+      const std::string zero = dim == 3 ? "; 0" : "";
+      std::string       text =
+        box<dim>(2) +
+        boundary(0,
+                 "set Role = traction\nset Traction = 0.3*t; -0.1*t" + zero) +
+        boundary(1, "set Role = free") +
+        boundary(2 * (dim - 1),
+                 "set Role = contact\nset Friction law = tresca\n"
+                 "set Friction bound = 0.03") +
+        boundary(2 * (dim - 1) + 1, "set Role = clamped") + more;
+      if (dim == 3)
+        text +=
+          boundary(2, "set Role = symmetry") + boundary(3, "set Role = free");
+      return text;
+    }
+
+    FlowRate
+    rate() const
+    {
+      const State<dim> &state = accepted.state;
+      return evaluate_flow(discretization->laws, state.u, state.z, state.t);
+    }
+
+    /// Make @p n steps and accept them.
+    void
+    advance(const unsigned int n)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        accepted = stepper->next(accepted).end;
+    }
+
+    std::ostringstream nowhere;
+    TimerOutput timer{nowhere, TimerOutput::never, TimerOutput::wall_times};
+    std::unique_ptr<Discretization<dim>> discretization;
+    std::unique_ptr<ErrorBar<dim>>       error_bar;
+    std::unique_ptr<StepControl>         control;
+    std::unique_ptr<TimeStepper<dim>>    stepper;
+    EvaluatedState<dim>                  accepted;
+  };
+
+
+
+  const std::string maxwell =
+    subsection("Material", "set Law = maxwell\nset Poisson's ratio = 0.3");
+
+  std::string
+  time(const std::string &scheme, const std::string &phases)
+  {
+    return subsection("Time",
+                      "set Phases = " + phases + "\nset Scheme = " + scheme);
+  }
+
+  std::string
+  solver(const std::string &name)
+  {
+    return subsection("Solver", "set Linear solver = " + name);
+  }
+
+
+
+  double
+  difference(const DistributedVector &a, const DistributedVector &b)
+  {
+    // Ghosted vectors have no norms across ranks that are worth their words.
+    double largest = 0.;
+    EXPECT_EQ(a.local_size(), b.local_size());
+    for (std::size_t i = 0; i < a.local_size(); ++i)
+      largest = std::max(largest, std::abs(a.begin()[i] - b.begin()[i]));
+    return Utilities::MPI::max(largest, MPI_COMM_WORLD);
+  }
+
+
+
+  /// Bit by bit.
+  template <int dim>
+  void
+  expect_same(const EvaluatedState<dim> &a, const EvaluatedState<dim> &b)
+  {
+    EXPECT_EQ(a.state.n, b.state.n);
+    EXPECT_EQ(a.state.t, b.state.t);
+    EXPECT_EQ(a.state.k, b.state.k);
+    EXPECT_EQ(difference(a.state.u, b.state.u), 0.);
+    EXPECT_EQ(difference(a.state.velocity, b.state.velocity), 0.);
+    EXPECT_EQ(a.state.z, b.state.z);
+    EXPECT_EQ(a.state.time_error, b.state.time_error);
+    EXPECT_EQ(a.state.friction.slip, b.state.friction.slip);
+    EXPECT_EQ(a.state.friction.multiplier, b.state.friction.multiplier);
+    EXPECT_EQ(a.state.friction.sticks, b.state.friction.sticks);
+    EXPECT_EQ(difference(a.forces.u, b.forces.u), 0.);
+    EXPECT_EQ(a.forces.strain_energy, b.forces.strain_energy);
+    EXPECT_EQ(a.errors.total(), b.errors.total());
+    EXPECT_EQ(a.is_solution, b.is_solution);
+  }
+
+
+
+  TYPED_TEST(TimeStepping, TriedStepLeavesNothing)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const std::string scheme : {"forward Euler", "Heun", "backward Euler"})
+      for (const std::string linear_solver : {"direct", "multigrid"})
+        {
+          if (linear_solver == "direct" &&
+              Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+            continue;
+          SCOPED_TRACE(scheme + ", " + linear_solver);
+          SteppingBody<dim> body(maxwell + time(scheme, "1: 8") +
+                                 solver(linear_solver));
+          body.advance(3);
+          const EvaluatedState<dim> before = body.accepted;
+          const auto                memory = body.stepper->method().memory();
+          const FlowRate            rate   = body.rate();
+          const double              t      = before.state.t;
+          const auto                once =
+            body.stepper->try_step(before, &rate, {4, t, t + 0.125, 0.125});
+          // Another one between, longer and with other points that slip.
+          body.stepper->method().restore(before, memory);
+          const auto other =
+            body.stepper->try_step(before, &rate, {4, t, t + 0.6, 0.6});
+          EXPECT_GT(difference(other.end.state.u, once.end.state.u), 1e-3);
+          expect_same(body.accepted, before);
+          body.stepper->method().restore(before, memory);
+          const auto again =
+            body.stepper->try_step(before, &rate, {4, t, t + 0.125, 0.125});
+          expect_same(again.end, once.end);
+          EXPECT_EQ(again.report.linear_iterations,
+                    once.report.linear_iterations);
+        }
+  }
+
+
+
+  TYPED_TEST(TimeStepping, StepByHandIsThatOfARun)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const std::string scheme : {"forward Euler", "backward Euler"})
+      {
+        SCOPED_TRACE(scheme);
+        SteppingBody<dim> run(maxwell + time(scheme, "1: 8")),
+          by_hand(maxwell + time(scheme, "1: 8"));
+        run.advance(4);
+        bool any_slips = false;
+        for (unsigned int n = 1; n <= 4; ++n)
+          {
+            const FlowRate rate = by_hand.rate();
+            const auto     step =
+              by_hand.stepper->try_step(by_hand.accepted,
+                                        &rate,
+                                        by_hand.scene.schedule.step(n));
+            by_hand.accepted = step.end;
+            for (const bool sticks : step.end.state.friction.sticks)
+              any_slips |= !sticks;
+          }
+        EXPECT_TRUE(any_slips);
+        // Ledgers are a matter of the judgement that runs add.
+        by_hand.accepted.errors           = run.accepted.errors;
+        by_hand.accepted.state.time_error = run.accepted.state.time_error;
+        expect_same(by_hand.accepted, run.accepted);
+      }
+  }
+
+
+
+  TYPED_TEST(TimeStepping, SchemesAgreeInTheLimit)
+  {
+    // One step of size k of both: they differ by k^2 times something.
+    constexpr int       dim = TypeParam::value;
+    std::vector<double> differences;
+    for (const double k : {0.1, 0.05, 0.025})
+      {
+        std::vector<DistributedVector> u;
+        for (const std::string scheme : {"forward Euler", "backward Euler"})
+          {
+            SteppingBody<dim> body(
+              maxwell + time(scheme, "1: 8") +
+              subsection("Solver", "set Contact tolerance = 1e-12"));
+            // From the same state, which an elastic step makes.
+            const FlowRate          at_rest = body.rate();
+            ExplicitStep<dim>       first(*body.discretization, body.timer);
+            const StepSolution<dim> start =
+              first.advance({{1, 0., 0.5, 0.5},
+                             body.discretization->loads.assemble(0.5),
+                             body.discretization->face->bounds(0.5),
+                             {},
+                             1e-12,
+                             body.accepted,
+                             &at_rest});
+            body.accepted.state = start.state;
+            body.accepted.forces =
+              evaluate_forces(body.discretization->sampling,
+                              body.discretization->matrix,
+                              body.discretization->loads.assemble(0.5),
+                              start.state);
+            const FlowRate rate = body.rate();
+            u.push_back(
+              body.stepper->try_step(body.accepted, &rate, {2, 0.5, 0.5 + k, k})
+                .end.state.u);
+          }
+        differences.push_back(difference(u[0], u[1]));
+      }
+    for (unsigned int i = 1; i < differences.size(); ++i)
+      {
+        EXPECT_GT(differences[i - 1] / differences[i], 3.);
+        EXPECT_LT(differences[i - 1] / differences[i], 5.);
+      }
+  }
+} // namespace

@@ -87,8 +87,7 @@ namespace Viscoplastic
     const Discretization<dim> &d = *discretization;
     announce_mesh();
     announce_held_faces();
-    for (const Point<dim> &x : scene.output_points)
-      probes.emplace_back(d.space, x);
+    recorder.set_mesh(d);
 
     check_references();
     if (scene.exact_solution && scene.exact_solution->makes_data)

@@ -91,37 +91,10 @@ namespace Viscoplastic
     archive &state.n &state.t &state.k &accepted.is_solution;
     archive &state.friction.slip &state.friction.multiplier &state.friction
       .sticks;
-    archive &accounts.initial_energy &accounts.external_work &accounts
-      .viscous_dissipation &accounts.friction_dissipation &accounts
-      .largest_force &accounts.largest_work &accounts
-      .adaptation_energy &accounts.contact_iterations &accounts
-      .linear_iterations &accounts.newton_iterations &accounts.implicit_steps;
     control.exchange(archive);
     if (error_bar)
-      {
-        if (!summary.errors)
-          summary.errors.emplace();
-        for (ErrorLedger *ledger : {&accepted.errors, &summary.errors->largest})
-          archive & ledger->space & ledger->time & ledger->algebraic &
-            ledger->initial & ledger->time_indicator &
-            ledger->velocity_variation & ledger->energy_norm &
-            ledger->velocity_square;
-        archive &summary.errors->t &summary.errors->largest_energy_norm;
-      }
-    for (Largest *largest : {&summary.displacement,
-                             &summary.strain,
-                             &summary.von_mises,
-                             &summary.slip_area,
-                             &summary.capped_volume,
-                             &summary.tension_area,
-                             &summary.stiffness})
-      archive & largest->value & largest->t;
-    archive &summary.friction_area;
-    for (unsigned int d = 0; d < dim; ++d)
-      archive &summary.critical_position[d];
-    for (SolutionNorms *norms :
-         {&summary.largest_error, &summary.largest_exact})
-      archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
+      accepted.errors.exchange(archive);
+    recorder.exchange(archive);
   }
 
 
@@ -158,11 +131,11 @@ namespace Viscoplastic
         archive &(state.initial_u.size() > 0);
         archive &(indicators.size() > 0);
         archive & output->output_times();
-        archive &(earlier_seconds + run_timer.wall_time());
+        archive &recorder.elapsed_in_all();
         exchange(archive);
         exchange_memory(archive, memory);
         files[run_file] = archive.bytes();
-        statistics->synchronise(); // whose rows the checkpoint relies on
+        recorder.synchronize(); // whose rows the checkpoint relies on
       }
     const CheckpointStore store = checkpoints();
     store.make_directory(); // unless the scene has asked for checkpoints
@@ -190,14 +163,14 @@ namespace Viscoplastic
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       is_due |=
         wanted.wall_time_interval > 0. &&
-        run_timer.wall_time() - last_checkpoint >= wanted.wall_time_interval;
+        recorder.elapsed() - last_checkpoint >= wanted.wall_time_interval;
 
     const SignalRequests::Request request = signals.agree(communicator, is_due);
     const bool                    stops   = request.stop != nullptr && !is_last;
     if (!request.checkpoint && !stops)
       return "";
     write_checkpoint();
-    last_checkpoint = run_timer.wall_time();
+    last_checkpoint = recorder.elapsed();
     std::ostringstream text;
     text << "step " << state.n << " (t = " << state.t << "): '"
          << checkpoints().path(state.n) << "'";
@@ -262,6 +235,7 @@ namespace Viscoplastic
     BinaryReader        archive(store.read(checkpoint, run_file));
     CoarseMesh          coarse_mesh;
     bool                has_initial_u, has_estimate;
+    double              earlier_seconds;
     std::vector<double> output_times;
     archive &coarse_mesh.topology &coarse_mesh.vertices;
     AssertThrow(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
@@ -327,8 +301,8 @@ namespace Viscoplastic
       {
         try
           {
-            statistics = std::make_unique<Statistics>(
-              results_directory(parameters) + "statistics.csv", state.n);
+            recorder.write_to(std::make_unique<Statistics>(
+              results_directory(parameters) + "statistics.csv", state.n));
           }
         catch (const std::exception &exception)
           {
@@ -359,17 +333,8 @@ namespace Viscoplastic
       console.remark("Note: changed since the checkpoint: " +
                      enumeration(changes.allowed) + ".");
 
-    first_set_up_seconds =
-      timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
-    const double elapsed = run_timer.wall_time();
-    last_checkpoint      = elapsed;
-    // For the progress this is the beginning.
-    progress.report({0,
-                     state.t,
-                     state.k,
-                     static_cast<double>(
-                       triangulation.n_global_active_cells())},
-                    elapsed);
+    recorder.resume(state, earlier_seconds);
+    last_checkpoint = recorder.elapsed();
   }
 
 

@@ -44,8 +44,8 @@ namespace Viscoplastic
     , error_bar(parameters.error_control.error_bar ?
                   std::make_unique<ErrorBar<dim>>(scene) :
                   nullptr)
-    , progress(console, scene.schedule.n_steps())
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
+    , recorder(scene, control, console, timer)
   {}
 
 
@@ -116,8 +116,8 @@ namespace Viscoplastic
     record_initial_state();
     while (!is_finished())
       make_step();
-    check_sizes();
-    return summary;
+    recorder.check_sizes(/* at_end = */ true);
+    return recorder.summary();
   }
 
 
@@ -144,8 +144,8 @@ namespace Viscoplastic
     output.emplace(scene, communicator);
     begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      statistics =
-        std::make_unique<Statistics>(output->directory() + "statistics.csv");
+      recorder.write_to(
+        std::make_unique<Statistics>(output->directory() + "statistics.csv"));
     record_initial_state();
     write_fields();
   }
@@ -160,7 +160,7 @@ namespace Viscoplastic
     initial.time_step = {0, 0., 0., 0.};
     initial.end       = accepted;
     initial.report    = initial_report;
-    record(accepted, initial);
+    recorder.record(accepted, initial, measure_errors(accepted.state));
   }
 
 
@@ -175,9 +175,7 @@ namespace Viscoplastic
       adapt_mesh();
     AcceptedStep<dim> step = time_stepper->next(accepted);
     announce_solver();
-    if (error_bar)
-      summary.errors->update(step.end.errors, step.time_step.t);
-    record(accepted, step);
+    recorder.record(accepted, step, measure_errors(step.end.state));
     accepted = std::move(step.end);
     return step.time_step;
   }
@@ -219,9 +217,7 @@ namespace Viscoplastic
       announce_mesh();
     announce_held_faces();
     announce_solver();
-    probes.clear();
-    for (const Point<dim> &x : scene.output_points)
-      probes.emplace_back(discretization->space, x);
+    recorder.set_mesh(*discretization);
   }
 
 
@@ -234,10 +230,7 @@ namespace Viscoplastic
     const bool equilibrate       = parameters.initial_state.equilibrate;
     accepted.state               = make_initial_state(d.sampling, equilibrate);
     if (error_bar)
-      {
-        summary.errors.emplace();
-        error_bar->begin(d.sampling, accepted);
-      }
+      error_bar->begin(d.sampling, accepted);
     if (equilibrate)
       initial_report = time_stepper->equilibrate(accepted);
     else
@@ -250,10 +243,7 @@ namespace Viscoplastic
     if (scene.is_adaptive() || equilibrate)
       time_stepper->estimate(accepted);
     if (error_bar && equilibrate)
-      {
-        error_bar->assess_equilibrium(initial_report, accepted);
-        summary.errors->update(accepted.errors, 0.);
-      }
+      error_bar->assess_equilibrium(initial_report, accepted);
   }
 
 
@@ -304,7 +294,7 @@ namespace Viscoplastic
     DistributedVector density;
     if (discretization->face)
       density = discretization->face->density(state.friction);
-    const double       energy = stored_energy(accepted);
+    const double       energy = stored_energy(*discretization, accepted);
     StateTransfer<dim> transfer(triangulation,
                                 discretization->sampling,
                                 state,
@@ -346,19 +336,7 @@ namespace Viscoplastic
     accepted.rate.reset();
     if (error_bar)
       error_bar->change_mesh(d.space, d.matrix, accepted);
-    accounts.adaptation_energy += stored_energy(accepted) - energy;
-  }
-
-
-
-  template <int dim>
-  double
-  ViscoplasticContact<dim>::stored_energy(const EvaluatedState<dim> &of) const
-  {
-    // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
-    return of.forces.strain_energy + of.forces.irreversible_work +
-           summarise_stress(discretization->laws, of.state, of.state)
-             .irreversible_energy;
+    recorder.record_mesh_change(stored_energy(d, accepted) - energy);
   }
 
 

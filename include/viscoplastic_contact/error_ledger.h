@@ -34,6 +34,16 @@ namespace Viscoplastic
     /// step control only.
     double irreversible_norm = 0., irreversible_change = 0.;
 
+    /// Write to, or read from, an archive; but for the norms of step control,
+    /// which each step makes anew.
+    template <typename Archive>
+    void
+    exchange(Archive &archive)
+    {
+      archive &space &time &algebraic &initial &time_indicator
+        &velocity_variation &energy_norm &velocity_square;
+    }
+
     /// By the triangle inequality.
     double
     total() const

@@ -51,6 +51,14 @@ namespace Viscoplastic
       return *material_of_id.at(id);
     }
 
+    /// Whether errors are measured against a known solution.
+    bool
+    measures_errors() const
+    {
+      return exact_solution ||
+             !parameters.exact_solution.reference_directory.empty();
+    }
+
     /// Whether there is a G: laws, or the source of a manufactured solution.
     bool
     has_viscosity() const;

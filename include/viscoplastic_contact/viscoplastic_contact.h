@@ -12,12 +12,8 @@
 #include <viscoplastic_contact/console.h>
 #include <viscoplastic_contact/files.h>
 #include <viscoplastic_contact/output.h>
-#include <viscoplastic_contact/point_probe.h>
-#include <viscoplastic_contact/progress.h>
-#include <viscoplastic_contact/run_summary.h>
+#include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/signals.h>
-#include <viscoplastic_contact/solution_errors.h>
-#include <viscoplastic_contact/statistics.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <memory>
@@ -73,30 +69,10 @@ namespace Viscoplastic
     std::map<std::string, double>
     seconds() const
     {
-      auto result = timer.get_summary_data(TimerOutput::total_wall_time);
-      // Further set-ups are part of the adaptation.
-      result["set-up"] = first_set_up_seconds + result["adaptation"];
-      return result;
+      return recorder.seconds();
     }
 
   private:
-    /// What adds up over the steps.
-    struct Accounts
-    {
-      double initial_energy = 0., external_work = 0., viscous_dissipation = 0.,
-             friction_dissipation = 0.;
-      /// The largest load, reaction or friction force so far: the scale of
-      /// defects of balance, also where all forces pass through zero.
-      double largest_force = 0.;
-      /// The largest |external_work| so far: the scale of energies, also where
-      /// loads give back what they took.
-      double largest_work = 0.;
-      /// What changes of the mesh did to the stored energy.
-      double       adaptation_energy  = 0.;
-      unsigned int contact_iterations = 0, linear_iterations = 0,
-                   newton_iterations = 0, implicit_steps = 0;
-    };
-
     /// From the start: everything up to the initial state.
     void
     begin();
@@ -150,10 +126,6 @@ namespace Viscoplastic
     void
     adapt_mesh();
 
-    /// 1/2 int E^-1 sigma : sigma.
-    double
-    stored_energy(const EvaluatedState<dim> &of) const;
-
     /// Keep other processes out of the directories that this run writes into,
     /// as far as they exist and have no lock yet.
     void
@@ -206,22 +178,10 @@ namespace Viscoplastic
     void
     announce_solver();
 
-    /// Add a row to statistics.csv. Time step 0 is the initial state.
-    void
-    record(const EvaluatedState<dim> &old, const AcceptedStep<dim> &step);
-
     /// Against the exact solution, or a reference at the ends of phases; not
     /// a number where there is none. Writes such a reference where wanted.
     SolutionErrors
     measure_errors(const State<dim> &of);
-
-    /// Whether measure_errors() will give anything, now or later.
-    bool
-    measures_errors() const
-    {
-      return scene.exact_solution ||
-             !parameters.exact_solution.reference_directory.empty();
-    }
 
     /// Refuse missing references before the run.
     void
@@ -229,12 +189,6 @@ namespace Viscoplastic
 
     void
     write_fields();
-
-    /// Throws ExcMessage if the largest displacement, force or stress of the
-    /// run is so large, or at its end so small, that squares of it, as energies
-    /// are, mean nothing.
-    void
-    check_sizes() const;
 
     void
     close();
@@ -257,29 +211,17 @@ namespace Viscoplastic
     /// The last state that will do.
     EvaluatedState<dim> accepted;
     ContactReport       initial_report;
-    Accounts            accounts;
     /// The linear solver, and the frictional boundaries without friction
     /// points, that the user has been told of.
     std::string                  announced_solver;
     std::set<types::boundary_id> announced_held_faces;
-    /// Whether the user has been told that forces do not balance well.
-    bool balance_is_doubtful = false;
-
     DirectoryLock                results_lock, checkpoint_lock; // on rank 0
-    std::optional<Output<dim>>   output;     // absent without files
-    std::unique_ptr<Statistics>  statistics; // on rank 0, with files
-    std::vector<PointProbe<dim>> probes;
-    Progress                     progress;
-    RunSummary<dim>              summary;
+    std::optional<Output<dim>>   output; // absent without files
+    TimerOutput                  timer;  // wall time by phase
+    Recorder<dim>                recorder;
     /// What compare_with() was given.
     std::optional<RunSummary<dim>> coarser_summary;
-    /// Wall time by phase over the run, and what it was a step ago.
-    TimerOutput                   timer;
-    std::map<std::string, double> last_seconds;
-    double                        first_set_up_seconds = 0.;
-    Timer                         run_timer;
-    /// Wall time of the run before its last restart, and at its last
-    /// checkpoint.
-    double earlier_seconds = 0., last_checkpoint = 0.;
+    /// When the last checkpoint was written, as the recorder's clock has it.
+    double last_checkpoint = 0.;
   };
 } // namespace Viscoplastic

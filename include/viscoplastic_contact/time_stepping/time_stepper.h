@@ -28,6 +28,21 @@ namespace Viscoplastic
     unsigned int  newton_iterations = 0;
     /// How often a longer step has been tried.
     unsigned int n_rejections = 0;
+
+    /// k r.
+    double
+    stiffness() const
+    {
+      return 2. * time_step.k / step_limit;
+    }
+
+    /// To which r belongs: the rate of an explicit step is that of its
+    /// beginning.
+    double
+    time_of_rate() const
+    {
+      return is_implicit ? time_step.t : time_step.t_old;
+    }
   };
 
 

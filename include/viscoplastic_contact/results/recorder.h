@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/timer.h>
+
+#include <viscoplastic_contact/console.h>
+#include <viscoplastic_contact/number_range.h>
+#include <viscoplastic_contact/point_probe.h>
+#include <viscoplastic_contact/progress.h>
+#include <viscoplastic_contact/results/energy_balance.h>
+#include <viscoplastic_contact/results/step_quantities.h>
+#include <viscoplastic_contact/run_summary.h>
+#include <viscoplastic_contact/solution_errors.h>
+#include <viscoplastic_contact/statistics.h>
+
+#include <memory>
+
+namespace Viscoplastic
+{
+  /**
+   * Keeps the record of a run: measures each step, warns of what makes its
+   * numbers doubtful, writes its row of statistics.csv, shows the progress, and
+   * sums up at the end.
+   */
+  template <int dim>
+  class Recorder
+  {
+  public:
+    /// All arguments stay in use. @p timer has the seconds by phase.
+    Recorder(const Scene<dim>  &scene,
+             const StepControl &control,
+             Console           &console,
+             TimerOutput       &timer);
+
+    /// The scene is on another mesh now. Collective.
+    void
+    set_mesh(const Discretization<dim> &discretization);
+
+    /// Write the rows into a table from now on; on rank 0. Without, the record
+    /// is kept but not written.
+    void
+    write_to(std::unique_ptr<Statistics> table)
+    {
+      statistics = std::move(table);
+    }
+
+    /// Put all rows to disk. On rank 0.
+    void
+    synchronize()
+    {
+      statistics->synchronise();
+    }
+
+    /// Record a step from @p old; step 0 is the initial state. @p errors are
+    /// those against a known solution. Collective.
+    void
+    record(const EvaluatedState<dim> &old,
+           const AcceptedStep<dim>   &step,
+           const SolutionErrors      &errors);
+
+    /// A change of the mesh has added to the stored energy.
+    void
+    record_mesh_change(const double energy)
+    {
+      balance.add_mesh_change(energy);
+    }
+
+    /// Go on from a state that an earlier part of the run has reached in
+    /// @p seconds.
+    void
+    resume(const State<dim> &state, const double seconds);
+
+    /// Throws ExcMessage if the largest displacement, force or stress of the
+    /// run is so large, or at its end so small, that squares of it, as energies
+    /// are, mean nothing.
+    void
+    check_sizes(const bool at_end) const;
+
+    /// What the numbers of the run have to be taken with: sentences. @p state
+    /// is the last one. Collective.
+    std::vector<std::string>
+    remarks(const State<dim> &state) const;
+
+    /// The closing words but for the remarks. @p coarser: of a run with twice
+    /// the mesh width and time steps, or null. On all ranks.
+    void
+    print(std::ostream &out, const RunSummary<dim> *coarser) const;
+
+    const RunSummary<dim> &
+    summary() const
+    {
+      return run;
+    }
+
+    /// Wall time of this process by phase; `set-up' is that of all meshes.
+    std::map<std::string, double>
+    seconds() const;
+
+    /// Wall time of this process.
+    double
+    elapsed() const
+    {
+      return clock.wall_time();
+    }
+
+    /// The same with that of the parts of the run before restarts.
+    double
+    elapsed_in_all() const
+    {
+      return earlier_seconds + elapsed();
+    }
+
+    /// Write to, or read from, an archive what adds up over the run.
+    template <typename Archive>
+    void
+    exchange(Archive &archive);
+
+  private:
+    /// Warn of what makes the numbers of a step doubtful, once each.
+    void
+    judge(const AcceptedStep<dim> &step, const StepQuantities<dim> &quantities);
+
+    void
+    sum_up(const AcceptedStep<dim>   &step,
+           const StepQuantities<dim> &quantities,
+           const SolutionErrors      &errors);
+
+    void
+    write_row(const AcceptedStep<dim>   &step,
+              const StepQuantities<dim> &quantities,
+              const SolutionErrors      &errors);
+
+    /// Seconds of this step by phase.
+    void
+    write_seconds();
+
+    void
+    report_progress(const AcceptedStep<dim>   &step,
+                    const StepQuantities<dim> &quantities);
+
+    /// How far loads, reactions and friction are from adding up to zero,
+    /// relative to the largest force so far.
+    double
+    balance_defect(const StepQuantities<dim> &quantities) const
+    {
+      return largest_force > 0. ?
+               stable_norm(quantities.sum_of_forces) / largest_force :
+               0.;
+    }
+
+    const Scene<dim>  &scene;
+    const StepControl &control;
+    Console           &console;
+    TimerOutput       &timer;
+    const bool         has_error_bar, may_be_implicit;
+
+    const Discretization<dim>   *discretization = nullptr; // the present one
+    std::vector<PointProbe<dim>> probes;
+
+    EnergyBalance balance;
+    /// The largest load, reaction or friction force so far: the scale of
+    /// defects of balance, also where all forces pass through zero.
+    double       largest_force      = 0.;
+    unsigned int contact_iterations = 0, linear_iterations = 0,
+                 newton_iterations = 0, implicit_steps = 0;
+    RunSummary<dim> run;
+    /// Whether the user has been told that forces do not balance well.
+    bool balance_is_doubtful = false;
+
+    std::unique_ptr<Statistics> statistics;
+    Progress                    progress;
+    /// Wall time by phase a step ago, of the first set-up, and of the parts of
+    /// the run before the last restart.
+    std::map<std::string, double> last_seconds;
+    double                        first_set_up_seconds = 0.;
+    double                        earlier_seconds      = 0.;
+    Timer                         clock;
+  };
+
+
+
+  template <int dim>
+  template <typename Archive>
+  void
+  Recorder<dim>::exchange(Archive &archive)
+  {
+    balance.exchange(archive);
+    archive &largest_force &contact_iterations &linear_iterations
+      &newton_iterations &implicit_steps;
+    for (Largest *largest : {&run.displacement,
+                             &run.strain,
+                             &run.von_mises,
+                             &run.slip_area,
+                             &run.capped_volume,
+                             &run.tension_area,
+                             &run.stiffness})
+      archive & largest->value & largest->t;
+    archive &run.friction_area;
+    for (unsigned int d = 0; d < dim; ++d)
+      archive &run.critical_position[d];
+    for (SolutionNorms *norms : {&run.largest_error, &run.largest_exact})
+      archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
+    if (run.errors)
+      {
+        run.errors->largest.exchange(archive);
+        archive &run.errors->t &run.errors->largest_energy_norm;
+      }
+  }
+} // namespace Viscoplastic

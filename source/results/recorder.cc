@@ -1,0 +1,515 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/grid/grid_tools.h>
+
+#include <viscoplastic_contact/energy.h>
+#include <viscoplastic_contact/results/recorder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    void
+    add_errors(const SolutionErrors &errors, Statistics &row)
+    {
+      const auto add = [&row](const std::string   &prefix,
+                              const SolutionNorms &norms) {
+        row.add(prefix + "energy", norms.energy);
+        row.add(prefix + "h1", norms.h1);
+        row.add(prefix + "stress", norms.stress);
+        row.add(prefix + "multiplier", norms.multiplier);
+      };
+      add("error_", errors.error);
+      row.add("error_memory", errors.memory);
+      add("exact_", errors.exact);
+    }
+
+
+
+    void
+    add_estimates(const ErrorLedger &ledger, Statistics &row)
+    {
+      row.add("energy_norm", ledger.energy_norm);
+      row.add("estimate_space", ledger.space);
+      row.add("estimate_time", ledger.time);
+      row.add("estimate_algebraic", ledger.algebraic);
+      row.add("estimate_initial", ledger.initial);
+      row.add("estimate_total", ledger.total());
+      row.add("time_indicator", ledger.time_indicator);
+      row.add("velocity_variation", ledger.velocity_variation);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Recorder<dim>::Recorder(const Scene<dim>  &scene,
+                          const StepControl &control,
+                          Console           &console,
+                          TimerOutput       &timer)
+    : scene(scene)
+    , control(control)
+    , console(console)
+    , timer(timer)
+    , has_error_bar(scene.parameters.error_control.error_bar)
+    , may_be_implicit(
+        scene.has_viscosity() &&
+        (scene.parameters.time.scheme == "backward Euler" ||
+         scene.parameters.time.stiffness_policy == "backward Euler"))
+    , progress(console, scene.schedule.n_steps())
+  {
+    if (has_error_bar)
+      run.errors.emplace();
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::set_mesh(const Discretization<dim> &on_mesh)
+  {
+    discretization = &on_mesh;
+    probes.clear();
+    for (const Point<dim> &x : scene.output_points)
+      probes.emplace_back(on_mesh.space, x);
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::record(const EvaluatedState<dim> &old,
+                        const AcceptedStep<dim>   &step,
+                        const SolutionErrors      &errors)
+  {
+    const bool          is_initial = step.time_step.n == 0;
+    StepQuantities<dim> quantities;
+    {
+      // All ranks compute; rank 0 writes.
+      TimerOutput::Scope phase(timer, "balance");
+      quantities = measure_step(*discretization, old, step);
+      for (const PointProbe<dim> &probe : probes)
+        quantities.point_displacements.push_back(probe.value(step.end.state.u));
+    }
+    if (is_initial)
+      {
+        balance.begin(quantities.stored_energy);
+        first_set_up_seconds =
+          timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
+      }
+    else
+      balance.add_step({quantities.stored_energy,
+                        quantities.external_work,
+                        quantities.stress.viscous_dissipation,
+                        quantities.friction.dissipation});
+    largest_force = std::max(largest_force, quantities.largest_force);
+    contact_iterations += step.report.iterations;
+    linear_iterations += step.report.linear_iterations;
+    newton_iterations += step.newton_iterations;
+    implicit_steps += step.is_implicit;
+
+    judge(step, quantities);
+    sum_up(step, quantities, errors);
+    check_sizes(/* at_end = */ false);
+    if (statistics)
+      write_row(step, quantities, errors);
+    report_progress(step, quantities);
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::judge(const AcceptedStep<dim>   &step,
+                       const StepQuantities<dim> &quantities)
+  {
+    // The contact tolerance bounds the error in the energy norm, in which
+    // nearly incompressible bodies hide large errors of reactions.
+    const double defect = balance_defect(quantities);
+    if (step.time_step.n > 0 && !balance_is_doubtful &&
+        defect > std::max(1e-8, std::min(1e3 * step.report.tolerance, 1e-2)))
+      {
+        balance_is_doubtful = true;
+        std::ostringstream text;
+        text << "Warning: forces balance only to " << defect
+             << " of the largest at t = " << step.time_step.t
+             << "; a smaller 'Solver/Contact tolerance' mends this unless "
+                "Poisson's ratio is next to 1/2 or the body hardly resists.";
+        console.remark(text.str());
+      }
+    if (run.capped_volume.value == 0. && step.capped_volume > 0.)
+      {
+        std::ostringstream text;
+        text << "Warning: the stress has passed the cap of a law, in the "
+                "volume "
+             << step.capped_volume << " at t = " << step.time_of_rate()
+             << "; beyond it the law is continued linearly.";
+        console.remark(text.str());
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::sum_up(const AcceptedStep<dim>   &step,
+                        const StepQuantities<dim> &quantities,
+                        const SolutionErrors      &errors)
+  {
+    const double              t        = step.time_step.t;
+    const StressSummary      &stress   = quantities.stress;
+    const FrictionIdentities &friction = quantities.friction;
+    run.n_steps                        = step.time_step.n;
+    run.t                              = t;
+    run.reactions                      = quantities.reactions;
+    run.stored_energy                  = balance.stored_energy();
+    run.external_work                  = balance.external_work();
+    run.energy_balance_defect          = balance.defect();
+    run.max_displacement               = quantities.max_displacement;
+    run.point_displacements            = quantities.point_displacements;
+    run.tension_area.update(quantities.tension_area, t);
+    run.displacement.update(quantities.max_displacement, t);
+    run.strain.update(stress.max_strain, t);
+    run.von_mises.update(stress.max_von_mises, t);
+    run.capped_volume.update(step.capped_volume, step.time_of_rate());
+    run.largest_error.update(errors.error);
+    run.largest_exact.update(errors.exact);
+    if (scene.has_viscosity())
+      run.viscous_dissipation = balance.viscous_dissipation();
+    if (discretization->face)
+      {
+        run.friction_force       = quantities.friction_force;
+        run.friction_dissipation = balance.friction_dissipation();
+        run.slipping_area        = friction.slip_area;
+        // New meshes may have more friction points, or fewer.
+        if (friction.slip_area > run.slip_area.value ||
+            run.slip_area.value == 0.)
+          run.friction_area = friction.slip_area + friction.stick_area;
+        run.slip_area.update(friction.slip_area, t);
+      }
+    if (scene.is_adaptive())
+      {
+        run.adaptation_energy = balance.adaptation_energy();
+        if (!has_error_bar)
+          run.error_estimate = quantities.refinement_estimate;
+      }
+    // Initial data that have not been brought into equilibrium have no ledger.
+    if (run.errors && (step.time_step.n > 0 || step.end.is_solution))
+      run.errors->update(step.end.errors, t);
+    if (const double k_r = step.stiffness(); k_r > run.stiffness.value)
+      {
+        run.stiffness.update(k_r, t);
+        for (unsigned int d = 0; d < dim; ++d)
+          run.critical_position[d] = step.critical_position[d];
+      }
+    if (control.may_reject())
+      run.steps = control.counts();
+    if (may_be_implicit && scene.parameters.time.scheme != "backward Euler")
+      run.implicit_steps = implicit_steps;
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::write_row(const AcceptedStep<dim>   &step,
+                           const StepQuantities<dim> &quantities,
+                           const SolutionErrors      &errors)
+  {
+    const Discretization<dim> &d         = *discretization;
+    const TimeStep            &time_step = step.time_step;
+    const StressSummary       &stress    = quantities.stress;
+    const FrictionIdentities  &friction  = quantities.friction;
+    const Forces<dim>         &forces    = step.end.forces;
+    Statistics                &row       = *statistics;
+    row.add("step", time_step.n);
+    row.add("t", time_step.t);
+    row.add("k", time_step.k);
+    row.add("cells",
+            d.space.dof_handler.get_triangulation().n_global_active_cells());
+    row.add("dofs", d.space.dof_handler.n_dofs());
+    if (scene.has_viscosity())
+      {
+        row.add("step_limit", step.step_limit);
+        row.add("k_r", step.stiffness());
+        row.add_vector("critical_cell", step.critical_position, dim);
+      }
+    if (control.may_reject())
+      row.add("rejected", step.n_rejections);
+    if (d.tension)
+      row.add("tension_area", quantities.tension_area);
+    if (d.laws.any_cap)
+      row.add("capped_volume", step.capped_volume);
+    if (may_be_implicit)
+      row.add("newton_iterations", step.newton_iterations);
+    if (d.face)
+      row.add("contact_iterations", step.report.iterations);
+    row.add("linear_iterations", step.report.linear_iterations);
+    if (d.face)
+      {
+        row.add("duality_gap", step.report.duality_gap);
+        row.add("algebraic_error", step.report.relative_error);
+        row.add("stick_area", friction.stick_area);
+        row.add("slip_area", friction.slip_area);
+        row.add_vector("friction_force", quantities.friction_force, dim);
+      }
+    for (const auto &[id, force] : quantities.reactions)
+      row.add_vector("reaction_" + std::to_string(id), force, dim);
+    row.add_vector("load", forces.load.resultant, dim);
+    row.add("force_balance_defect", balance_defect(quantities));
+    if (d.face)
+      {
+        row.add("max_utilisation", friction.max_utilisation);
+        row.add("max_stick_slip", friction.max_stick_slip);
+        row.add("slip_misalignment", friction.slip_misalignment);
+      }
+    row.add("stored_energy", balance.stored_energy());
+    row.add("strain_energy", forces.strain_energy);
+    if (scene.has_viscosity())
+      row.add("viscous_dissipation", balance.viscous_dissipation());
+    if (d.face)
+      row.add("friction_dissipation", balance.friction_dissipation());
+    row.add("external_work", balance.external_work());
+    if (scene.is_adaptive())
+      row.add("adaptation_energy", balance.adaptation_energy());
+    row.add("energy_balance_defect", balance.defect());
+    row.add("max_displacement", quantities.max_displacement);
+    row.add("max_von_mises", stress.max_von_mises);
+    row.add("mean_von_mises", stress.mean_von_mises);
+    row.add("stress_norm", stress.stress_norm);
+    for (unsigned int i = 0; i < quantities.point_displacements.size(); ++i)
+      row.add_vector("point" + std::to_string(i),
+                     quantities.point_displacements[i],
+                     dim);
+    if (scene.is_adaptive())
+      row.add("estimator", quantities.refinement_estimate);
+    if (has_error_bar)
+      add_estimates(step.end.errors, row);
+    if (scene.measures_errors())
+      add_errors(errors, row);
+    write_seconds();
+    row.end_row();
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::write_seconds()
+  {
+    const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
+    for (const std::string name : {"rate",
+                                   "tangent",
+                                   "load",
+                                   "contact",
+                                   "balance",
+                                   "estimate",
+                                   "output"})
+      {
+        if ((name == "estimate" && !has_error_bar) ||
+            (name == "tangent" && !may_be_implicit))
+          continue;
+        const auto   entry = total.find(name);
+        const double now   = entry == total.end() ? 0. : entry->second;
+        statistics->add("wall_" + name, now - last_seconds[name]);
+        last_seconds[name] = now;
+      }
+    statistics->add("wall_total", elapsed_in_all());
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::report_progress(const AcceptedStep<dim>   &step,
+                                 const StepQuantities<dim> &quantities)
+  {
+    const TimeStep &time_step = step.time_step;
+    StepProgress    present{time_step.n,
+                         time_step.t,
+                         time_step.k,
+                         static_cast<double>(
+                           discretization->space.dof_handler.get_triangulation()
+                             .n_global_active_cells())};
+    if (discretization->face)
+      {
+        const FrictionIdentities &friction = quantities.friction;
+        const double area          = friction.slip_area + friction.stick_area;
+        present.contact_iterations = step.report.iterations;
+        if (area > 0.)
+          present.slipping = friction.slip_area / area;
+      }
+    if (scene.is_adaptive() && !has_error_bar)
+      present.error_estimate = quantities.refinement_estimate;
+    if (has_error_bar && step.end.errors.energy_norm > 0.)
+      present.relative_error =
+        step.end.errors.total() / step.end.errors.energy_norm;
+    if (control.may_reject())
+      {
+        present.expected_steps =
+          control.expected_steps(time_step.n, time_step.t, time_step.k);
+        present.done = time_step.t / scene.schedule.end_time();
+      }
+    progress.report(present, elapsed());
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::resume(const State<dim> &state, const double seconds_before)
+  {
+    earlier_seconds = seconds_before;
+    first_set_up_seconds =
+      timer.get_summary_data(TimerOutput::total_wall_time)["set-up"];
+    // For the progress this is the beginning.
+    progress.report({0,
+                     state.t,
+                     state.k,
+                     static_cast<double>(
+                       discretization->space.dof_handler.get_triangulation()
+                         .n_global_active_cells())},
+                    elapsed());
+  }
+
+
+
+  template <int dim>
+  std::map<std::string, double>
+  Recorder<dim>::seconds() const
+  {
+    auto result = timer.get_summary_data(TimerOutput::total_wall_time);
+    // Further set-ups are part of the adaptation.
+    result["set-up"] = first_set_up_seconds + result["adaptation"];
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::check_sizes(const bool at_end) const
+  {
+    for (const auto &[what, size] :
+         {std::make_pair("displacement", run.displacement.value),
+          std::make_pair("von Mises stress", run.von_mises.value),
+          std::make_pair("force", largest_force)})
+      AssertThrow(!(size > largest_size) &&
+                    !(at_end && size > 0. && size < least_size),
+                  ExcMessage(out_of_range("The largest " + std::string(what) +
+                                            " of the run",
+                                          size,
+                                          least_size,
+                                          largest_size)));
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  Recorder<dim>::remarks(const State<dim> &state) const
+  {
+    std::vector<std::string> result;
+    const double             fluctuation =
+      scene.has_viscosity() ?
+                    relative_stress_fluctuation(discretization->sampling, state) :
+                    0.;
+    if (fluctuation > 0.2 &&
+        scene.parameters.stress.stress_history == "cell means")
+      {
+        std::ostringstream text;
+        text << std::setprecision(3)
+             << "Note: the stress varies within cells by " << fluctuation
+             << " of its norm, so that cell means may be too stiff in long "
+                "creep; refine the mesh or set 'Material/Stress history' = "
+                "quadrature points.";
+        result.push_back(text.str());
+      }
+
+    const double tension =
+      discretization->tension ?
+        run.tension_area.value / discretization->tension->area() :
+        0.;
+    if (tension > 0.01)
+      {
+        std::ostringstream text;
+        text << "Note: at t = " << run.tension_area.t
+             << " the foundation pulls at the body on "
+             << std::lround(100. * tension)
+             << " % of the face in bilateral contact, which does not open.";
+        result.push_back(text.str());
+      }
+
+    // What meshes do is no physics.
+    if (std::abs(balance.adaptation_energy()) > 0.1 * balance.scale())
+      {
+        std::ostringstream text;
+        text << std::setprecision(3)
+             << "Warning: changes of the mesh have added "
+             << balance.adaptation_energy() << " to the stored energy, beside "
+             << balance.scale()
+             << " of the loads and the initial state: energies, and forces "
+                "after a change of the mesh, are not to be trusted. A fixed "
+                "mesh ('Mesh refinement/Strategy' = none) is free of it, and "
+                "fewer changes ('Every n steps') add less; bodies next to "
+                "incompressible are prone to it.";
+        result.push_back(text.str());
+      }
+
+    // All ranks have the coarse mesh.
+    const auto corners =
+      GridTools::compute_bounding_box(
+        discretization->space.dof_handler.get_triangulation())
+        .get_boundary_points();
+    const double size   = corners.first.distance(corners.second);
+    const bool   is_far = run.displacement.value > size;
+    if (is_far || run.strain.value > 1.)
+      {
+        std::ostringstream text;
+        text << std::setprecision(3)
+             << "Note: at t = " << (is_far ? run.displacement.t : run.strain.t);
+        if (is_far)
+          text << " the largest displacement is "
+               << run.displacement.value / size
+               << " times the size of the body";
+        else
+          text << " the norm of the strain is " << run.strain.value
+               << " in the mean of a cell";
+        text << "; small strains are assumed, so that this is flow without end "
+                "or a load far too large, and only its onset means something.";
+        result.push_back(text.str());
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  Recorder<dim>::print(std::ostream &out, const RunSummary<dim> *coarser) const
+  {
+    out << '
+'; run.print(out, coarser); const double n = run.n_steps;
+    out << std::setprecision(3) << "Iterations per step: ";
+    if (may_be_implicit)
+      out << newton_iterations / n << " of Newton's method, ";
+    if (discretization->face)
+      out << contact_iterations / n << " of the active set, ";
+    out << linear_iterations / n << " linear\n";
+    print_seconds(out,
+                  timer.get_summary_data(TimerOutput::total_wall_time),
+                  first_set_up_seconds,
+                  elapsed(),
+                  scene.has_viscosity(),
+                  discretization->face != nullptr);
+  }
+
+
+
+  template class Recorder<2>;
+  template class Recorder<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/error_estimator.h>
+#include <viscoplastic_contact/number_range.h>
+#include <viscoplastic_contact/results/step_quantities.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Frames are orthonormal, and hanging nodes lie between others.
+    template <int dim>
+    double
+    max_displacement(const AdmissibleSpace<dim> &space,
+                     const DistributedVector    &u_in_frames)
+    {
+      double result = 0.;
+      for (std::size_t i = 0; i < space.owned.n_elements(); i += dim)
+        {
+          Tensor<1, dim> u;
+          for (unsigned int c = 0; c < dim; ++c)
+            u[c] = u_in_frames.begin()[i + c];
+          result = std::max(result, stable_norm(u));
+        }
+      return Utilities::MPI::max(result, space.communicator);
+    }
+
+
+
+    /// From the integrals of the stress.
+    template <int dim>
+    double
+    stored_energy(const Forces<dim> &forces, const StressSummary &stress)
+    {
+      // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
+      return forces.strain_energy + forces.irreversible_work +
+             stress.irreversible_energy;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  StepQuantities<dim>
+  measure_step(const Discretization<dim> &d,
+               const EvaluatedState<dim> &old,
+               const AcceptedStep<dim>   &step)
+  {
+    const State<dim>   &state      = step.end.state;
+    const Forces<dim>  &forces     = step.end.forces;
+    const bool          is_initial = step.time_step.n == 0;
+    StepQuantities<dim> result;
+    result.stress           = summarise_stress(d.laws, old.state, state);
+    result.stored_energy    = stored_energy(forces, result.stress);
+    result.max_displacement = max_displacement(d.space, forces.u);
+    if (d.face)
+      {
+        DistributedVector change = forces.u;
+        change -= old.forces.u;
+        result.friction =
+          check_friction(*d.face,
+                         old.state.friction,
+                         state.friction,
+                         is_initial ? d.face->bounds(0.) : step.bounds,
+                         change,
+                         step.foundation_step,
+                         result.max_displacement);
+        result.friction_force = d.face->resultant(state.friction);
+      }
+    if (d.tension)
+      result.tension_area = d.tension->tension_area(state);
+
+    result.reactions     = reactions(d.space, forces);
+    result.sum_of_forces = forces.load.resultant - result.friction_force;
+    result.largest_force = std::max(stable_norm(forces.load.resultant),
+                                    stable_norm(result.friction_force));
+    for (const auto &pair : result.reactions)
+      {
+        result.sum_of_forces += pair.second;
+        result.largest_force =
+          std::max(result.largest_force, stable_norm(pair.second));
+      }
+    if (!is_initial)
+      result.external_work = external_work(d.space, old.forces, forces) +
+                             result.friction.foundation_work;
+    const Vector<double> &indicators =
+      step.end.space_estimate.squared_indicators;
+    if (indicators.size() > 0)
+      result.refinement_estimate =
+        total_estimate(indicators, d.space.communicator);
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  stored_energy(const Discretization<dim> &discretization,
+                const EvaluatedState<dim> &of)
+  {
+    return stored_energy(
+      of.forces, summarise_stress(discretization.laws, of.state, of.state));
+  }
+
+
+
+  template StepQuantities<2>
+  measure_step(const Discretization<2> &,
+               const EvaluatedState<2> &,
+               const AcceptedStep<2> &);
+  template StepQuantities<3>
+  measure_step(const Discretization<3> &,
+               const EvaluatedState<3> &,
+               const AcceptedStep<3> &);
+  template double
+  stored_energy(const Discretization<2> &, const EvaluatedState<2> &);
+  template double
+  stored_energy(const Discretization<3> &, const EvaluatedState<3> &);
+} // namespace Viscoplastic

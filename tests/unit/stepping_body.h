@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+// A body that makes time steps without a run.
+
+#include <deal.II/base/timer.h>
+
+#include "body.h"
+#include <viscoplastic_contact/initial_state.h>
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
+
+#include <sstream>
+
+namespace Viscoplastic::Testing
+{
+  /// A block that is pushed over its foundation until parts of it slip, with a
+  /// hanging node on the contact face.
+  template <int dim>
+  struct SteppingBody : Body<dim>
+  {
+    explicit SteppingBody(const std::string &more,
+                          const std::string &friction_bound = "0.03")
+      : Body<dim>(scene_text(more, friction_bound))
+    {
+      this->refine_where(
+        [](const Point<dim> &x) { return x[0] < 0.6 && x[dim - 1] < 0.6; });
+      this->scene.inspect(this->triangulation);
+      this->dof_handler.distribute_dofs(this->fe);
+      discretization =
+        std::make_unique<Discretization<dim>>(this->dof_handler, this->scene);
+      discretization->assemble_matrix();
+      const Parameters &p = *this->parameters;
+      if (p.error_control.error_bar)
+        error_bar = std::make_unique<ErrorBar<dim>>(this->scene);
+      control = std::make_unique<StepControl>(p.step_control,
+                                              p.time.stiffness_policy,
+                                              this->scene.schedule,
+                                              p.time.scheme == "Heun" ? 2 : 1,
+                                              0.);
+      control->set_has_estimate(this->scene.has_viscosity());
+      stepper        = std::make_unique<TimeStepper<dim>>(*discretization,
+                                                   error_bar.get(),
+                                                   *control,
+                                                   timer);
+      accepted.state = make_initial_state(discretization->sampling, false);
+      if (discretization->face)
+        accepted.state.friction =
+          FrictionState(discretization->face->layout().points.size());
+      if (error_bar)
+        error_bar->begin(discretization->sampling, accepted);
+      accepted.forces = evaluate_forces(discretization->sampling,
+                                        discretization->matrix,
+                                        discretization->loads.assemble(0.),
+                                        accepted.state);
+    }
+
+    static std::string
+    scene_text(const std::string &more, const std::string &friction_bound)
+    {
+      const std::string zero = dim == 3 ? "; 0" : "";
+      std::string       text =
+        box<dim>(2) +
+        boundary(0,
+                 "set Role = traction\nset Traction = 0.3*t; -0.1*t" + zero) +
+        boundary(1, "set Role = free") +
+        boundary(2 * (dim - 1),
+                 "set Role = contact\nset Friction law = tresca\n"
+                 "set Friction bound = " +
+                   friction_bound) +
+        boundary(2 * (dim - 1) + 1, "set Role = clamped") + more;
+      if (dim == 3)
+        text +=
+          boundary(2, "set Role = symmetry") + boundary(3, "set Role = free");
+      return text;
+    }
+
+    FlowRate
+    rate() const
+    {
+      const State<dim> &state = accepted.state;
+      return evaluate_flow(discretization->laws, state.u, state.z, state.t);
+    }
+
+    /// Make @p n steps and accept them.
+    void
+    advance(const unsigned int n)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        accepted = stepper->next(accepted).end;
+    }
+
+    std::ostringstream nowhere;
+    TimerOutput timer{nowhere, TimerOutput::never, TimerOutput::wall_times};
+    std::unique_ptr<Discretization<dim>> discretization;
+    std::unique_ptr<ErrorBar<dim>>       error_bar;
+    std::unique_ptr<StepControl>         control;
+    std::unique_ptr<TimeStepper<dim>>    stepper;
+    EvaluatedState<dim>                  accepted;
+  };
+
+
+
+  inline const std::string maxwell =
+    subsection("Material", "set Law = maxwell\nset Poisson's ratio = 0.3");
+
+  inline std::string
+  time(const std::string &scheme, const std::string &phases)
+  {
+    return subsection("Time",
+                      "set Phases = " + phases + "\nset Scheme = " + scheme);
+  }
+
+  inline std::string
+  solver(const std::string &name)
+  {
+    return subsection("Solver", "set Linear solver = " + name);
+  }
+} // namespace Viscoplastic::Testing

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/backward_euler.h>
 #include <viscoplastic_contact/messages.h>
 
@@ -12,97 +10,7 @@
 namespace Viscoplastic
 {
   namespace
-  {
-    /// z - z_old - k G(E eps + z, eps) = 0 at one sample.
-    struct SampleEquation
-    {
-      const ViscoplasticLaw       &law;
-      const SymmetricTensor<2, 3> &strain, &old_z;
-      const double                 k;
-      const Stiffness             &stiffness;
-      const LawPoint              &point;
-      const SymmetricTensor<2, 3>  elastic = stiffness.stress(strain);
-
-      SymmetricTensor<2, 3>
-      residual(const SymmetricTensor<2, 3> &z) const
-      {
-        return z - old_z - k * law.rate(elastic + z, strain, stiffness, point);
-      }
-
-      /// Its norm; not finite where the law has no value, which a trial may
-      /// meet.
-      double
-      try_residual(const SymmetricTensor<2, 3> &z,
-                   SymmetricTensor<2, 3>       &F) const
-      {
-        try
-          {
-            F = residual(z);
-            return norm(F);
-          }
-        catch (const ExceptionBase &)
-          {
-            return std::numeric_limits<double>::quiet_NaN();
-          }
-      }
-
-      /// In the energy norm of stresses, in which flow with a potential is
-      /// monotone.
-      double
-      norm(const SymmetricTensor<2, 3> &stress) const
-      {
-        return std::sqrt(stress * stiffness.strain(stress));
-      }
-
-      /// Newton's method; nothing if it fails.
-      std::optional<SymmetricTensor<2, 3>>
-      solve(SymmetricTensor<2, 3> z) const
-      {
-        const double          scale = norm(elastic) + norm(old_z) + norm(z);
-        SymmetricTensor<2, 3> F;
-        double                size = try_residual(z, F);
-        for (unsigned int iteration = 0; iteration < 100; ++iteration)
-          {
-            if (size == 0.)
-              return z;
-            if (!std::isfinite(size))
-              return {};
-            const auto tangents =
-              law.tangents(elastic + z, strain, stiffness, point);
-            const SymmetricTensor<2, 3> step =
-              -1. * (invert(identity_tensor<3>() - k * tangents.stress) * F);
-            const double step_size = norm(step);
-            if (!std::isfinite(step_size))
-              return {};
-            // Rounding of F, which k r multiplies, does not matter: that of
-            // the correction does.
-            if (step_size <= 1e-12 * scale)
-              return z + step;
-            double damping = 1.;
-            for (;; damping *= 0.5)
-              {
-                // All that rounding leaves; beside a kink of the law, a shorter
-                // step does better.
-                if (damping < 1e-3 && step_size <= 1e-9 * scale)
-                  return z + step;
-                if (damping < 1e-9)
-                  return {};
-                const SymmetricTensor<2, 3> trial = z + damping * step;
-                SymmetricTensor<2, 3>       F_trial;
-                const double new_size = try_residual(trial, F_trial);
-                if (new_size <= (1. - 1e-4 * damping) * size)
-                  {
-                    z    = trial;
-                    F    = F_trial;
-                    size = new_size;
-                    break;
-                  }
-              }
-          }
-        return {};
-      }
-    };
-  } // namespace
+  {} // namespace
 
 
 
@@ -116,7 +24,8 @@ namespace Viscoplastic
                                const SymmetricTensor<2, 3> &start)
   {
     // Where a law is steep, the way from zero stress is shorter.
-    const SampleEquation equation{law, strain, old_z, k, stiffness, point};
+    const BackwardEulerEquation equation{
+      law, strain, old_z, k, stiffness, point};
     for (const auto &from : {start, -1. * equation.elastic})
       if (const auto z = equation.solve(from))
         return *z;
@@ -128,7 +37,8 @@ namespace Viscoplastic
       {
         const double next = std::min(1., done + step);
         if (const auto result =
-              SampleEquation{law, strain, old_z, next * k, stiffness, point}
+              BackwardEulerEquation{
+                law, strain, old_z, next * k, stiffness, point}
                 .solve(z))
           {
             z    = *result;
@@ -214,96 +124,4 @@ namespace Viscoplastic
       }
     return E;
   }
-
-
-
-  namespace
-  {
-    /// Newton's step for a law with constant tangents, which is exact; keeps
-    /// the inverse of the last sample, of which most have the same.
-    class LinearEquation
-    {
-    public:
-      SymmetricTensor<2, 3>
-      solve(const SampleEquation &equation, const SymmetricTensor<2, 3> &start)
-      {
-        if (law != &equation.law || stiffness != &equation.stiffness ||
-            k != equation.k || parameters != equation.point.parameters)
-          {
-            law        = &equation.law;
-            stiffness  = &equation.stiffness;
-            k          = equation.k;
-            parameters = equation.point.parameters;
-            inverse    = invert(
-              identity_tensor<3>() -
-              k * law->tangents({}, {}, *stiffness, equation.point).stress);
-          }
-        return start - inverse * equation.residual(start);
-      }
-
-    private:
-      const ViscoplasticLaw *law       = nullptr;
-      const Stiffness       *stiffness = nullptr;
-      double                 k         = 0.;
-      std::array<double, 6>  parameters{};
-      SymmetricTensor<4, 3>  inverse;
-    };
-  } // namespace
-
-
-
-  template <int dim>
-  IrreversibleStress
-  implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,
-                               const StressSampling<dim>            &sampling,
-                               const DistributedVector              &ghosted_u,
-                               const IrreversibleStress             &old_z,
-                               const double                          k,
-                               const IrreversibleStress             &start)
-  {
-    IrreversibleStress                 z(old_z);
-    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
-    LinearEquation                     linear_equation;
-    const auto                         solve_cell = [&](const std::size_t c) {
-      const ViscoplasticLaw &law       = *laws.law(c);
-      const Stiffness       &stiffness = sampling.moduli(c);
-      sampling.strains(c, ghosted_u.begin(), strain.data());
-      for (unsigned int s = 0; s < sampling.n_samples; ++s)
-        {
-          const std::size_t i = c * sampling.n_samples + s;
-          const LawPoint    point = laws.point(c, s);
-          z[i] =
-            law.has_constant_tangents() ?
-                                      linear_equation.solve(
-                {law, strain[s], old_z[i], k, stiffness, point}, start[i]) :
-                                      implicit_irreversible_stress(
-                law, strain[s], old_z[i], k, stiffness, point, start[i]);
-        }
-    };
-
-    // A sample without a solution fails the step.
-    fail_together(sampling.space.communicator, [&] {
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-        if (laws.law(c) != nullptr)
-          solve_cell(c);
-    });
-    return z;
-  }
-
-
-
-  template IrreversibleStress
-  implicit_irreversible_stress<2>(const FlowLaws<2>::AtTime &,
-                                  const StressSampling<2> &,
-                                  const DistributedVector &,
-                                  const IrreversibleStress &,
-                                  const double,
-                                  const IrreversibleStress &);
-  template IrreversibleStress
-  implicit_irreversible_stress<3>(const FlowLaws<3>::AtTime &,
-                                  const StressSampling<3> &,
-                                  const DistributedVector &,
-                                  const IrreversibleStress &,
-                                  const double,
-                                  const IrreversibleStress &);
 } // namespace Viscoplastic

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/bulk_solver_factory.h>
 #include <viscoplastic_contact/initial_state.h>
 #include <viscoplastic_contact/solution_errors.h>
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
@@ -120,11 +121,13 @@ namespace Viscoplastic
       }
 
     const unsigned int n_face_dofs = d.face ? d.face->layout().n_dofs() : 0;
-    const bool         direct      = is_direct(d.space,
+    const bool         direct      = is_direct({parameters.solver.linear_solver,
+                                                d.moduli.max_poissons_ratio(),
+                                                d.n_solves},
+                                  dim,
+                                  dof_handler.n_dofs(),
                                   n_face_dofs,
-                                  parameters.solver.linear_solver,
-                                  d.moduli.max_poissons_ratio(),
-                                  d.n_solves);
+                                  communicator);
     Utilities::System::MemoryStats now;
     Utilities::System::get_memory_stats(now);
     const double bytes =

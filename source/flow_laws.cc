@@ -270,34 +270,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  FlowStep<dim>
-  advance_irreversible_stress(const FlowLaws<dim>      &laws,
-                              const DistributedVector  &ghosted_u,
-                              const IrreversibleStress &z,
-                              const double              t,
-                              const double              k)
-  {
-    FlowRate flow = evaluate_flow(laws, ghosted_u, z, t);
-    return advance_irreversible_stress<dim>(flow, z, k);
-  }
-
-
-
-  template <int dim>
-  FlowStep<dim>
-  advance_irreversible_stress(const FlowRate           &flow,
-                              const IrreversibleStress &z,
-                              const double              k)
-  {
-    FlowStep<dim> result{z, flow.relaxation_rate, flow.capped_volume};
-    for (std::size_t i = 0; i < z.size(); ++i)
-      result.z[i] += k * flow.rate[i];
-    return result;
-  }
-
-
-
   template class FlowLaws<2>;
   template class FlowLaws<3>;
   template FlowRate
@@ -312,24 +284,4 @@ namespace Viscoplastic
                    const IrreversibleStress &,
                    const double,
                    const ExactSolution<3>::Side);
-  template FlowStep<2>
-  advance_irreversible_stress<2>(const FlowRate &,
-                                 const IrreversibleStress &,
-                                 const double);
-  template FlowStep<3>
-  advance_irreversible_stress<3>(const FlowRate &,
-                                 const IrreversibleStress &,
-                                 const double);
-  template FlowStep<2>
-  advance_irreversible_stress<2>(const FlowLaws<2> &,
-                                 const DistributedVector &,
-                                 const IrreversibleStress &,
-                                 const double,
-                                 const double);
-  template FlowStep<3>
-  advance_irreversible_stress<3>(const FlowLaws<3> &,
-                                 const DistributedVector &,
-                                 const IrreversibleStress &,
-                                 const double,
-                                 const double);
 } // namespace Viscoplastic

@@ -3,6 +3,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <viscoplastic_contact/bulk_system.h>
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/initial_state.h>
 
@@ -170,7 +171,7 @@ namespace Viscoplastic
           });
         const FrictionFace                         no_face;
         const std::vector<types::global_dof_index> no_dofs;
-        make_bulk_solver(space, matrix, no_face, no_dofs, "automatic", 0., 1)
+        make_bulk_solver(make_bulk_system(space, matrix, no_face, no_dofs), {})
           ->solve(load, prescribed, 1e-10);
         space.to_cartesian(prescribed, state.u);
         state.initial_u = state.u;

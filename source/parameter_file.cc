@@ -5,7 +5,6 @@
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/mesh_file.h>
 #include <viscoplastic_contact/parameter_file.h>
 #include <viscoplastic_contact/spelling.h>
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/admissible_space.h>
 #include <viscoplastic_contact/face_matrix.h>
+#include <viscoplastic_contact/types.h>
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -173,34 +172,4 @@ namespace Viscoplastic
   private:
     double rounding = 0.;
   };
-
-
-  /**
-   * Whether make_bulk_solver() would take the direct solver. Throws ExcMessage
-   * for a choice that cannot be had.
-   */
-  template <int dim>
-  bool
-  is_direct(const AdmissibleSpace<dim> &space,
-            const unsigned int          n_face_dofs,
-            const std::string          &choice,
-            const double                max_poissons_ratio,
-            const unsigned int          n_solves);
-
-
-  /**
-   * Choose and set up a solver. @p choice is `automatic', `direct' or
-   * `multigrid'; @p face_dofs are the global indices of the face vector's
-   * entries (empty without friction); @p n_solves is how often it will be used
-   * at least. Throws ExcMessage for a choice that cannot be had.
-   */
-  template <int dim>
-  std::unique_ptr<BulkSolver>
-  make_bulk_solver(const AdmissibleSpace<dim>                 &space,
-                   const DistributedMatrix                    &matrix,
-                   const FrictionFace                         &face,
-                   const std::vector<types::global_dof_index> &face_dofs,
-                   const std::string                          &choice,
-                   const double       max_poissons_ratio,
-                   const unsigned int n_solves);
 } // namespace Viscoplastic

@@ -128,34 +128,4 @@ namespace Viscoplastic
                 const double                            t,
                 const typename ExactSolution<dim>::Side side =
                   ExactSolution<dim>::Side::after);
-
-
-  /// Forward Euler for z, (3.19), and what the step meant.
-  template <int dim>
-  struct FlowStep
-  {
-    IrreversibleStress z;
-    /// As in FlowRate.
-    double relaxation_rate;
-    double capped_volume;
-  };
-
-  /**
-   * z_n = z_{n-1} + k G(t_{n-1}, sigma_{n-1}, eps_{n-1}), one evaluation a
-   * sample. Collective.
-   */
-  template <int dim>
-  FlowStep<dim>
-  advance_irreversible_stress(const FlowLaws<dim>      &laws,
-                              const DistributedVector  &ghosted_u,
-                              const IrreversibleStress &z,
-                              const double              t,
-                              const double              k);
-
-  /// The same with G as evaluated at the beginning of the step.
-  template <int dim>
-  FlowStep<dim>
-  advance_irreversible_stress(const FlowRate           &flow,
-                              const IrreversibleStress &z,
-                              const double              k);
 } // namespace Viscoplastic

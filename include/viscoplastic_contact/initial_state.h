@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/bulk_solver.h>
 #include <viscoplastic_contact/contact_face.h>
 #include <viscoplastic_contact/loads.h>
 #include <viscoplastic_contact/state.h>

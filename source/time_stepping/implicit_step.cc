@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/backward_euler.h>
+#include <viscoplastic_contact/implicit_flow.h>
 #include <viscoplastic_contact/messages.h>
 #include <viscoplastic_contact/nonsymmetric_correction.h>
 #include <viscoplastic_contact/time_stepping/implicit_step.h>

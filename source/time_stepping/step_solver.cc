@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/bulk_system.h>
 #include <viscoplastic_contact/number_range.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
@@ -44,21 +45,18 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       diagonal.begin()[i] =
         matrix.diag_element(space.owned.nth_index_in_set(i));
-    const FrictionFace &face   = d.friction_face();
-    const std::string  &choice = d.scene().parameters.solver.linear_solver;
+    const FrictionFace &face = d.friction_face();
+    const SolverDemand  demand{d.scene().parameters.solver.linear_solver,
+                              max_poissons_ratio,
+                              d.n_solves};
     if (bulk_solver &&
-        is_direct(
-          space, face.n_dofs(), choice, max_poissons_ratio, d.n_solves) &&
+        is_direct(demand, dim, matrix.m(), face.n_dofs(), space.communicator) &&
         bulk_solver->renew(matrix))
       return;
     bulk_solver.reset(); // factors are what fills memory
-    bulk_solver = make_bulk_solver(space,
-                                   matrix,
-                                   face,
-                                   d.face_dofs(),
-                                   choice,
-                                   max_poissons_ratio,
-                                   d.n_solves);
+    bulk_solver =
+      make_bulk_solver(make_bulk_system(space, matrix, face, d.face_dofs()),
+                       demand);
   }
 
 

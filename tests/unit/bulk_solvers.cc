@@ -7,6 +7,7 @@
 
 #include "body.h"
 #include "refusals.h"
+#include <viscoplastic_contact/bulk_system.h>
 #include <viscoplastic_contact/contact_solver.h>
 #include <viscoplastic_contact/krylov_solver.h>
 #include <viscoplastic_contact/schur_solver.h>
@@ -587,11 +588,12 @@ namespace
     Vector<double> exact = dense.solve(dense.residual(dense.start));
     exact += dense.start;
     const bool serial = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+    const BulkSystem system =
+      make_bulk_system(*scenario.space, scenario.matrix, no_face, no_dofs);
     for (const std::string choice : {"direct", "multigrid", "automatic"})
       {
         const auto make = [&] {
-          return make_bulk_solver(
-            *scenario.space, scenario.matrix, no_face, no_dofs, choice, 0.3, 1);
+          return make_bulk_solver(system, {choice, 0.3, 1});
         };
         if (choice == "direct" && !serial)
           {
@@ -607,8 +609,7 @@ namespace
       }
     expect_refusal(
       [&] {
-        make_bulk_solver(
-          *scenario.space, scenario.matrix, no_face, no_dofs, "magic", 0.3, 1);
+        make_bulk_solver(system, {"magic", 0.3, 1});
       },
       "it must be automatic, direct or multigrid");
   }

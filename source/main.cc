@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/command_line.h>
-#include <viscoplastic_contact/messages.h>
-#include <viscoplastic_contact/mpi_singleton.h>
-#include <viscoplastic_contact/parameter_description.h>
-#include <viscoplastic_contact/price_mode.h>
-#include <viscoplastic_contact/signals.h>
-#include <viscoplastic_contact/study.h>
-#include <viscoplastic_contact/two_level.h>
-#include <viscoplastic_contact/viscoplastic_contact.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/mpi_singleton.h>
+#include <viscoplastic_contact/base/signals.h>
+#include <viscoplastic_contact/parameters/parameter_description.h>
+#include <viscoplastic_contact/run/command_line.h>
+#include <viscoplastic_contact/run/two_level.h>
+#include <viscoplastic_contact/run/viscoplastic_contact.h>
+#include <viscoplastic_contact/study/price_mode.h>
+#include <viscoplastic_contact/study/study.h>
 
 #include <chrono>
 #include <iostream>

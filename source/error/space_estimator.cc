@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/error/space_estimator.h>
-#include <viscoplastic_contact/error_estimator.h>
 
 namespace Viscoplastic
 {

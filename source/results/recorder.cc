@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/grid/grid_tools.h>
 
-#include <viscoplastic_contact/energy.h>
+#include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/results/recorder.h>
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/implicit_flow.h>
-#include <viscoplastic_contact/messages.h>
-#include <viscoplastic_contact/nonsymmetric_correction.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/discretization/implicit_flow.h>
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
+#include <viscoplastic_contact/time_stepping/nonsymmetric_correction.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/step_control.h>
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
+#include <viscoplastic_contact/time_stepping/step_control.h>
 
 namespace Viscoplastic
 {

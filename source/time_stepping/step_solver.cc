@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/bulk_system.h>
-#include <viscoplastic_contact/number_range.h>
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
 #include <algorithm>

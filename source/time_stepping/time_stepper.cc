@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/contact_event.h>
-#include <viscoplastic_contact/messages.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/contact/contact_event.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/mpi_singleton.h>
+#include <viscoplastic_contact/base/mpi_singleton.h>
 
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -7,9 +7,9 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include "body.h"
-#include <viscoplastic_contact/error_estimator.h>
-#include <viscoplastic_contact/mesh_adaptation.h>
-#include <viscoplastic_contact/residual_estimator.h>
+#include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/error/mesh_adaptation.h>
+#include <viscoplastic_contact/error/residual_estimator.h>
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "refusals.h"
 #include "tensors.h"
-#include <viscoplastic_contact/backward_euler.h>
-#include <viscoplastic_contact/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/backward_euler.h>
+#include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <gtest/gtest.h>
 

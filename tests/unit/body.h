@@ -10,12 +10,12 @@
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/lac/full_matrix.h>
 
-#include <viscoplastic_contact/contact_face.h>
-#include <viscoplastic_contact/elasticity.h>
-#include <viscoplastic_contact/flow_laws.h>
-#include <viscoplastic_contact/loads.h>
-#include <viscoplastic_contact/mesh.h>
-#include <viscoplastic_contact/stress_history.h>
+#include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/elasticity.h>
+#include <viscoplastic_contact/discretization/flow_laws.h>
+#include <viscoplastic_contact/discretization/loads.h>
+#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/mesh/mesh.h>
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -7,10 +7,10 @@
 
 #include "body.h"
 #include "refusals.h"
-#include <viscoplastic_contact/bulk_system.h>
-#include <viscoplastic_contact/contact_solver.h>
-#include <viscoplastic_contact/krylov_solver.h>
-#include <viscoplastic_contact/schur_solver.h>
+#include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/discretization/bulk_system.h>
+#include <viscoplastic_contact/linear_solvers/krylov_solver.h>
+#include <viscoplastic_contact/linear_solvers/schur_solver.h>
 
 #include <cmath>
 #include <limits>

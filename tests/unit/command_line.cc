@@ -5,9 +5,9 @@
 #include "body.h"
 #include "folder.h"
 #include "refusals.h"
-#include <viscoplastic_contact/command_line.h>
-#include <viscoplastic_contact/mpi_singleton.h>
-#include <viscoplastic_contact/progress.h>
+#include <viscoplastic_contact/base/mpi_singleton.h>
+#include <viscoplastic_contact/base/progress.h>
+#include <viscoplastic_contact/run/command_line.h>
 
 #include <cstdlib>
 #include <map>

@@ -5,7 +5,7 @@
 
 #include "dense_bulk.h"
 #include "refusals.h"
-#include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/contact/contact_solver.h>
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <deal.II/lac/vector.h>
 
 #include "random.h"
-#include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/contact/contact_solver.h>
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <deal.II/lac/solver_cg.h>
 
 #include "convex_problem.h"
-#include <viscoplastic_contact/contact_solver.h>
+#include <viscoplastic_contact/contact/contact_solver.h>
 
 #include <gtest/gtest.h>
 

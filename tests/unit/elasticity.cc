@@ -9,7 +9,7 @@
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include "body.h"
-#include <viscoplastic_contact/elasticity.h>
+#include <viscoplastic_contact/discretization/elasticity.h>
 
 #include <cmath>
 

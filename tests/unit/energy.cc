@@ -4,7 +4,7 @@
 
 #include "body.h"
 #include "refusals.h"
-#include <viscoplastic_contact/energy.h>
+#include <viscoplastic_contact/discretization/energy.h>
 
 #include <cmath>
 

@@ -7,8 +7,8 @@
 
 #include "body.h"
 #include "plain_estimator.h"
-#include <viscoplastic_contact/error_bar.h>
-#include <viscoplastic_contact/residual_estimator.h>
+#include <viscoplastic_contact/error/error_bar.h>
+#include <viscoplastic_contact/error/residual_estimator.h>
 
 namespace
 {

@@ -3,7 +3,7 @@
 // Exact solutions: their derivatives, which are differences, against those by
 // hand; errors of states that are known.
 
-#include <viscoplastic_contact/exact_solution.h>
+#include <viscoplastic_contact/scene/exact_solution.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#include <viscoplastic_contact/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <algorithm>
 

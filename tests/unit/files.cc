@@ -4,7 +4,7 @@
 
 #include "folder.h"
 #include "refusals.h"
-#include <viscoplastic_contact/files.h>
+#include <viscoplastic_contact/base/files.h>
 
 #include <sys/resource.h>
 #include <sys/wait.h>

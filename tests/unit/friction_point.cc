@@ -3,8 +3,8 @@
 // One point with friction, against a grid search.
 
 #include "random.h"
-#include <viscoplastic_contact/friction_points.h>
-#include <viscoplastic_contact/number_range.h>
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/contact/friction_points.h>
 
 #include <gtest/gtest.h>
 

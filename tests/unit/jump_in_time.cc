@@ -3,7 +3,7 @@
 // Jumps of data in time, and what is none: kinks, steep ramps, loads that
 // wander.  What data do within time steps, where the run does not see it.
 
-#include <viscoplastic_contact/jump_in_time.h>
+#include <viscoplastic_contact/scene/jump_in_time.h>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include "tensors.h"
-#include <viscoplastic_contact/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <iomanip>
 #include <memory>

@@ -4,7 +4,7 @@
 
 #include "law_bodies.h"
 #include "refusals.h"
-#include <viscoplastic_contact/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ namespace
     EXPECT_NE(manual.find("```cpp\n" + example + "```\n"), std::string::npos);
 
     // Each line of the manual's list, the new one excepted.
-    const std::string registry = contents("source/viscoplastic_law.cc");
+    const std::string registry = contents("source/laws/viscoplastic_law.cc");
     const std::size_t begin    = manual.find("#define VISCOPLASTIC_LAWS");
     ASSERT_NE(begin, std::string::npos);
     std::istringstream list(

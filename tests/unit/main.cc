@@ -6,7 +6,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/mpi_singleton.h>
+#include <viscoplastic_contact/base/mpi_singleton.h>
 
 #include <gtest/gtest.h>
 

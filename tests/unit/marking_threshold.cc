@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/marking_threshold.h>
+#include <viscoplastic_contact/mesh/marking_threshold.h>
 
 #include <gtest/gtest.h>
 

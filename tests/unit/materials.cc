@@ -4,7 +4,7 @@
 
 #include "refusals.h"
 #include "tensors.h"
-#include <viscoplastic_contact/material.h>
+#include <viscoplastic_contact/scene/material.h>
 
 #include <gtest/gtest.h>
 

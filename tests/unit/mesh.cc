@@ -4,7 +4,7 @@
 // generators and bodies that are refused. On any number of ranks.
 
 #include "meshes.h"
-#include <viscoplastic_contact/mesh_pieces.h>
+#include <viscoplastic_contact/mesh/mesh_pieces.h>
 
 #include <sys/resource.h>
 

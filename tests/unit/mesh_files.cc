@@ -4,8 +4,8 @@
 // is refused. On any number of ranks.
 
 #include "meshes.h"
-#include <viscoplastic_contact/mesh_file.h>
-#include <viscoplastic_contact/mesh_pieces.h>
+#include <viscoplastic_contact/mesh/files/mesh_file.h>
+#include <viscoplastic_contact/mesh/mesh_pieces.h>
 
 using namespace Viscoplastic;
 using namespace Viscoplastic::Testing;

@@ -5,8 +5,8 @@
 
 #include "body.h"
 #include "refusals.h"
-#include <viscoplastic_contact/mesh.h>
-#include <viscoplastic_contact/mesh_ids.h>
+#include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/mesh/mesh_ids.h>
 
 #include <map>
 

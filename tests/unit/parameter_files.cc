@@ -6,8 +6,8 @@
 #include "body.h"
 #include "folder.h"
 #include "refusals.h"
-#include <viscoplastic_contact/parameter_description.h>
-#include <viscoplastic_contact/parameter_file.h>
+#include <viscoplastic_contact/parameters/parameter_description.h>
+#include <viscoplastic_contact/parameters/parameter_file.h>
 
 #include <random>
 

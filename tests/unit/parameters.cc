@@ -5,8 +5,8 @@
 
 #include "body.h"
 #include "refusals.h"
-#include <viscoplastic_contact/mesh.h>
-#include <viscoplastic_contact/time_schedule.h>
+#include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/parameters/time_schedule.h>
 
 #include <cmath>
 

@@ -9,7 +9,7 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/grid_tools.h>
 
-#include <viscoplastic_contact/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_history.h>
 
 #include <vector>
 

@@ -2,8 +2,8 @@
 
 // The choice of time steps on model problems, and what counts as an event.
 
-#include <viscoplastic_contact/contact_event.h>
-#include <viscoplastic_contact/step_control.h>
+#include <viscoplastic_contact/contact/contact_event.h>
+#include <viscoplastic_contact/time_stepping/step_control.h>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <deal.II/base/timer.h>
 
 #include "body.h"
-#include <viscoplastic_contact/initial_state.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <sstream>

@@ -3,7 +3,7 @@
 // Fits to made-up errors and costs whose coefficients are known, and the prices
 // that follow from them.
 
-#include <viscoplastic_contact/price_list.h>
+#include <viscoplastic_contact/study/price_list.h>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
-#include <viscoplastic_contact/stiffness.h>
+#include <viscoplastic_contact/laws/stiffness.h>
 
 #include <gtest/gtest.h>
 

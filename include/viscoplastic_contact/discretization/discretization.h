@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact_face.h>
-#include <viscoplastic_contact/contact_tension.h>
-#include <viscoplastic_contact/elasticity.h>
-#include <viscoplastic_contact/flow_laws.h>
-#include <viscoplastic_contact/loads.h>
-#include <viscoplastic_contact/stress_history.h>
+#include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/contact_tension.h>
+#include <viscoplastic_contact/discretization/elasticity.h>
+#include <viscoplastic_contact/discretization/flow_laws.h>
+#include <viscoplastic_contact/discretization/loads.h>
+#include <viscoplastic_contact/discretization/stress_history.h>
 
 #include <memory>
 #include <vector>

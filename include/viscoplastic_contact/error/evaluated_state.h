@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/discretization/flow_laws.h>
+#include <viscoplastic_contact/discretization/force_balance.h>
+#include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/error/error_ledger.h>
 #include <viscoplastic_contact/error/space_estimator.h>
-#include <viscoplastic_contact/error_ledger.h>
-#include <viscoplastic_contact/flow_laws.h>
-#include <viscoplastic_contact/force_balance.h>
-#include <viscoplastic_contact/state.h>
 
 #include <optional>
 

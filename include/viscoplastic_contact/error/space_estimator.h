@@ -2,8 +2,8 @@
 #pragma once
 
 #include <viscoplastic_contact/discretization/discretization.h>
-#include <viscoplastic_contact/residual_estimator.h>
-#include <viscoplastic_contact/state.h>
+#include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/error/residual_estimator.h>
 
 #include <memory>
 

@@ -3,15 +3,15 @@
 
 #include <deal.II/base/timer.h>
 
-#include <viscoplastic_contact/console.h>
-#include <viscoplastic_contact/number_range.h>
-#include <viscoplastic_contact/point_probe.h>
-#include <viscoplastic_contact/progress.h>
+#include <viscoplastic_contact/base/console.h>
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/base/progress.h>
+#include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/results/energy_balance.h>
+#include <viscoplastic_contact/results/point_probe.h>
+#include <viscoplastic_contact/results/run_summary.h>
+#include <viscoplastic_contact/results/statistics.h>
 #include <viscoplastic_contact/results/step_quantities.h>
-#include <viscoplastic_contact/run_summary.h>
-#include <viscoplastic_contact/solution_errors.h>
-#include <viscoplastic_contact/statistics.h>
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/energy.h>
+#include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <map>
@@ -24,7 +24,7 @@ namespace Viscoplastic
     /// On each boundary with prescribed displacements.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
     /// Loads, reactions and friction on the body, which add up to zero, and the
-    /// largest of them.
+    /// largest of them, or what rounding makes of them if that is more.
     Tensor<1, dim> sum_of_forces;
     double         largest_force    = 0.;
     double         max_displacement = 0.;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/tangent_matrix.h>
+#include <viscoplastic_contact/discretization/tangent_matrix.h>
 #include <viscoplastic_contact/time_stepping/step_method.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 

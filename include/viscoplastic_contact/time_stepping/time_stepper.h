@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/error_bar.h>
-#include <viscoplastic_contact/step_control.h>
+#include <viscoplastic_contact/error/error_bar.h>
+#include <viscoplastic_contact/time_stepping/step_control.h>
 #include <viscoplastic_contact/time_stepping/step_method.h>
 
 namespace Viscoplastic

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/distributed/tria.h>
+#include <deal.II/lac/vector.h>
+
+#include <viscoplastic_contact/base/binary_archive.h>
+#include <viscoplastic_contact/discretization/state.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  // What a checkpoint holds of mesh and fields, in bytes. Nothing depends on
+  // the numbering of cells or degrees of freedom or on the number of ranks:
+  // values belong to cells and to vertices of cells, and cells are named by
+  // their place in the refinement tree.
+  //
+  // deal.II's Triangulation::save() and load() do the same, but end the process
+  // on a full disk or a damaged file, since p4est does.
+
+  /// A cell by its coarse cell and the way down from it.
+  struct CellAddress
+  {
+    std::uint32_t coarse_cell = 0;
+    std::uint32_t level       = 0;
+    /// The number of the child on each level, from the top, in dim bits each.
+    std::uint64_t children = 0;
+
+    template <int dim>
+    static CellAddress
+    of(const typename Triangulation<dim>::cell_iterator &cell);
+
+    bool
+    operator==(const CellAddress &other) const
+    {
+      return coarse_cell == other.coarse_cell && level == other.level &&
+             children == other.children;
+    }
+  };
+
+
+
+  /// The active cells of this rank, in their order.
+  template <int dim>
+  std::string
+  pack_mesh(const parallel::distributed::Triangulation<dim> &triangulation);
+
+  /**
+   * Refine and coarsen until the mesh is the one that pack_mesh() has seen on
+   * all ranks together, whose results are @p parts. Throws ExcMessage if that
+   * is no mesh on the present coarse cells. Collective.
+   */
+  template <int dim>
+  void
+  restore_mesh(const std::vector<std::string>            &parts,
+               parallel::distributed::Triangulation<dim> &triangulation);
+
+  /**
+   * What is attached to the cells of this rank and to their vertices:
+   * displacements, fields at samples, and @p squared_estimate of active cells
+   * (empty without an estimator).
+   */
+  template <int dim>
+  std::string
+  pack_fields(const StressSampling<dim> &sampling,
+              const State<dim>          &state,
+              const Vector<double>      &squared_estimate);
+
+  /**
+   * The inverse, on the same mesh. @p meshes and @p fields are what pack_mesh()
+   * and pack_fields() have returned on some ranks, or all of them. Sets u,
+   * velocity, initial_u and the fields at samples of @p state; @p
+   * has_initial_u,
+   * @p has_estimate and @p n_sample_fields, of which none is missing before the
+   * last, tell what there was. Returns whether that was all that this rank
+   * needs. Throws ExcMessage for bytes that make no sense. Not collective but
+   * for the exchange of ghost values at its end.
+   */
+  template <int dim>
+  bool
+  unpack_fields(const std::vector<std::string> &meshes,
+                const std::vector<std::string> &fields,
+                const StressSampling<dim>      &sampling,
+                const bool                      has_initial_u,
+                const bool                      has_estimate,
+                const unsigned int              n_sample_fields,
+                State<dim>                     &state,
+                Vector<double>                 &squared_estimate);
+
+
+
+  /**
+   * The coarse mesh in a form that can be compared: topology with ids, and
+   * places of the vertices.
+   */
+  struct CoarseMesh
+  {
+    std::vector<std::uint8_t> topology;
+    std::vector<double>       vertices;
+
+    /// Whether it is the same up to rounding of the vertices.
+    bool
+    agrees_with(const CoarseMesh &other) const;
+  };
+
+  template <int dim>
+  CoarseMesh
+  describe_coarse_mesh(
+    const parallel::distributed::Triangulation<dim> &triangulation);
+
+
+
+  /// What has become of the parameters since a checkpoint.
+  struct ParameterChanges
+  {
+    /// "'Time/Phases' is 2: 20 (was 1: 10)", those that a run may go on with
+    /// and those with which it cannot.
+    std::vector<std::string> allowed, forbidden;
+  };
+
+  ParameterChanges
+  compare_parameters(const std::map<std::string, std::string> &old_values,
+                     const std::map<std::string, std::string> &new_values);
+} // namespace Viscoplastic

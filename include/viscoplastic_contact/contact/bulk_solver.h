@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/base/types.h>
+#include <viscoplastic_contact/contact/face_matrix.h>
+
+#include <optional>
+#include <string>
+
+namespace Viscoplastic
+{
+  /**
+   * The constant elastic operator as solvers of contact see it: the energy
+   * 1/2 a(u,u) - l(u) with everything but friction. It is set up once a mesh;
+   * only the truncation of the face changes from solve to solve.
+   *
+   * The displacement stays inside. A contact solver moves it by the calls below
+   * and sees only its values on the face, so it needs neither a mesh nor
+   * distributed vectors, and a new way to solve linear systems (a multigrid
+   * with masks on all levels) is a new derived class and nothing else.
+   *
+   * All calls are collective; results are the same on all ranks.
+   */
+  class BulkSolver
+  {
+  public:
+    virtual ~BulkSolver() = default;
+
+    /// What a solver knows from earlier solves and uses in later ones, beyond
+    /// the matrix: how a preconditioner was built, and how it is doing.
+    struct Memory
+    {
+      /// For which truncation.
+      FaceTruncation built_for;
+      double         best_rate = 0., lost_iterations = 0.;
+      bool           is_fresh = false;
+    };
+
+    /// Nothing if all solves are alike.
+    virtual std::optional<Memory>
+    memory() const
+    {
+      return {};
+    }
+
+    /// Go on like the solver that had this memory, on the same mesh; without
+    /// one like a new solver.
+    virtual void
+    recall(const std::optional<Memory> &)
+    {}
+
+    /**
+     * The matrix has other values in the same pattern: adapt. Returns false if
+     * @p matrix is another object or a new solver is as good; then this one is
+     * of no use any more.
+     */
+    virtual bool
+    renew(const DistributedMatrix & /*matrix*/)
+    {
+      return false;
+    }
+
+    /// Whether solve() leaves nothing but rounding, whatever its tolerance.
+    virtual bool
+    is_exact() const = 0;
+
+    /// For the user: "direct (CHOLMOD)".
+    virtual std::string
+    name() const = 0;
+
+    /**
+     * Solve a(u,v) = l(v) without friction. @p u brings the prescribed values
+     * and a start, and takes the solution up; @p load and @p u are in frames.
+     * Stops at the relative energy error @p tolerance. Returns the number of
+     * linear iterations (1 for a direct solver). Throws ExcMessage.
+     */
+    virtual unsigned int
+    solve(const DistributedVector &load,
+          DistributedVector       &u,
+          const double             tolerance) = 0;
+
+    /**
+     * Begin a frictional solve at @p u; both vectors stay in use until
+     * finish().
+     */
+    virtual void
+    begin(const DistributedVector &load, DistributedVector &u) = 0;
+
+    /// The matrix for Gauss-Seidel sweeps whose effect move_face() has.
+    virtual const FaceMatrix &
+    face_matrix() const = 0;
+
+    /// l - A u on the face.
+    virtual void
+    face_residual(Vector<double> &r) = 0;
+
+    /// Change the displacement of the face.
+    virtual void
+    move_face(const Vector<double> &change) = 0;
+
+    /// How the calls below treat the face. A truncation that is only tried
+    /// must not be what a solver adapts its set-up to.
+    virtual void
+    set_truncation(const FaceTruncation &truncation,
+                   const bool            may_rebuild = true) = 0;
+
+    /**
+     * The norm of l - A u - force in the dual of the energy norm; @p force is a
+     * face vector. This bounds the algebraic error. Exact for direct solvers,
+     * an estimate by the preconditioner otherwise.
+     */
+    virtual double
+    dual_norm(const Vector<double> &force) = 0;
+
+    /// dual_norm() without the quality of a preconditioner in it, for the
+    /// final word; adds its iterations to @p iterations.
+    virtual double
+    confirmed_dual_norm(const Vector<double> &force,
+                        unsigned int         &iterations) = 0;
+
+    /// A norm of the solution to compare dual_norm() with. Zero for rigid
+    /// translations, hence the next one.
+    virtual double
+    energy_norm() const = 0;
+
+    /**
+     * An error in the energy norm that rounding leaves in any case, and that
+     * counts as none: of a body that moves without strain, or whose loads
+     * balance, nothing else remains.
+     */
+    void
+    set_rounding_error(const double error)
+    {
+      rounding = error;
+    }
+
+    double
+    rounding_error() const
+    {
+      return rounding;
+    }
+
+    /**
+     * Solve (A + springs) w = l - A u - force on the truncated space to the
+     * relative accuracy @p tolerance; returns the face part in @p w and the
+     * number of linear iterations.
+     */
+    virtual unsigned int
+    correct(const Vector<double> &force,
+            const double          tolerance,
+            Vector<double>       &w) = 0;
+
+    /// (l - A u) . w and w . A w of a correction.
+    struct SearchTerms
+    {
+      double slope, curvature;
+    };
+
+    /// Replace the face part of the correction by @p w and prepare its use.
+    virtual SearchTerms
+    search_terms(const Vector<double> &w) = 0;
+
+    /// u := u + step w.
+    virtual void
+    take_step(const double step) = 0;
+
+    /// Complete the displacement given to begin(). Returns the linear
+    /// iterations this took.
+    virtual unsigned int
+    finish() = 0;
+
+  private:
+    double rounding = 0.;
+  };
+} // namespace Viscoplastic

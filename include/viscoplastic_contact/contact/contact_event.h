@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/friction_face.h>
+
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Whether something happens in a step whose time matters: slip begins where
+   * there was none, comes to cover the face, ends everywhere, or turns back
+   * somewhere (the slip of the step is against that of the step before, with
+   * no rest between). Points that cannot slip or that slip without friction do
+   * not count.
+   *
+   * @p bounds: of the points in the step. @p from_kink: slip may end in this
+   * step without being an event, since its beginning is a known kink of the
+   * data.
+   */
+  bool
+  has_contact_event(const std::vector<double> &bounds,
+                    const FrictionState       &old_state,
+                    const FrictionState       &state,
+                    const bool                 from_kink);
+} // namespace Viscoplastic

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/contact/friction_points.h>
+
+namespace Viscoplastic
+{
+  /// How a frictional solve went.
+  struct ContactReport
+  {
+    /// Corrections of the active set iteration.
+    unsigned int iterations = 0;
+    /// Linear iterations of all of them.
+    unsigned int linear_iterations = 0;
+    /// Primal minus dual energy, a bound on half the squared energy error.
+    double duality_gap = 0.;
+    /// That bound on the error over the energy norm of the solution.
+    double relative_error = 0.;
+    /// The bound itself; without friction that of the linear solver.
+    double error = 0.;
+    /// The relative tolerance of the solve; zero where nothing was solved.
+    double tolerance = 0.;
+  };
+
+
+  /**
+   * Minimises the energy of one step,
+   *
+   *     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev),
+   *
+   * by a primal-dual active set iteration that cannot cycle: (1) nonlinear
+   * Gauss-Seidel over the face nodes, which minimises J node by node, decides
+   * who sticks and in which direction who slips; (2) a linear solve on the
+   * truncated space with the tangent stiffness of turning slip is a semismooth
+   * Newton step; (3) increments that would reverse a slip stop at stick, and a
+   * line search minimises J along the rest. Where that is no descent, the
+   * reversing points are brought to rest first, or the correction is taken as
+   * it is, which always descends. J never increases, so no set comes twice
+   * (compare Kornhuber's monotone multigrid and TNNMG by Graeser and Sander,
+   * where (1) covers all unknowns; here the linear solve covers the bulk).
+   *
+   * The iteration stops when the duality gap bounds the error: with
+   * multipliers in their balls, the remaining residual R and the defect
+   * eps = sum rho |s| - lambda . s of complementarity, gap = 1/2 |R|^2 + eps in
+   * the dual energy norm and |error| <= (|R| + sqrt(|R|^2 + 4 eps))/2. The
+   * multipliers satisfy the friction law exactly (eps = 0), except at points
+   * that have hardly begun to slip.
+   */
+  class ContactSolver
+  {
+  public:
+    explicit ContactSolver(const unsigned int max_iterations);
+
+    /**
+     * @p bounds: rho_c >= 0 of each point (infinite for glued ones);
+     * @p increment: face part of u - u_prev at the start given to
+     * bulk.begin(), and of the solution on return; @p state: the sets and
+     * multipliers to start from and those of the solution; @p tolerance: the
+     * relative error at which to stop.
+     *
+     * Throws ExcMessage when the iteration is exhausted or a value is not
+     * finite: there is no unconverged result.
+     */
+    ContactReport
+    solve(BulkSolver                &bulk,
+          const FrictionFace        &face,
+          const std::vector<double> &bounds,
+          const double               tolerance,
+          Vector<double>            &increment,
+          FrictionState             &state) const;
+
+  private:
+    class Iteration;
+
+    const unsigned int max_iterations;
+  };
+} // namespace Viscoplastic

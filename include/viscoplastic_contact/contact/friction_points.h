@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/friction_face.h>
+
+#include <utility>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * The frictional problem of a single point: the multiplier that minimises
+   * 1/2 lambda . C lambda - q . lambda over |lambda| <= rho, with C the
+   * symmetric flexibility seen by the point and q its slip at lambda = 0.
+   * |lambda| < rho (or C lambda = q) means stick, otherwise the slip
+   * q - C lambda is parallel to lambda.
+   */
+  struct PointSolution
+  {
+    Tensor<1, 2> multiplier;
+    bool         sticks;
+  };
+
+  PointSolution
+  solve_friction_point(const Tensor<2, 2> &flexibility,
+                       const Tensor<1, 2> &free_slip,
+                       const unsigned int  n_tangents,
+                       const double        bound);
+
+  /**
+   * Multipliers inside their balls that fit @p residual = l - A u on the face
+   * best and obey the friction law exactly: rho s/|s| where slipping, the
+   * residual clipped where sticking. Where pieces meet, the fit may leave a
+   * choice: the one of least norm is taken. Gives the face vector of their
+   * forces, too.
+   */
+  void
+  fit_multipliers(const FrictionFace        &face,
+                  const std::vector<double> &bounds,
+                  const Vector<double>      &residual,
+                  FrictionState             &state,
+                  Vector<double>            &force);
+
+
+  /**
+   * The nonlinear Gauss-Seidel step at one node: minimise J over the node's
+   * components. By duality, block by block over the node's points; exact at
+   * once for a single point, i.e. away from corners.
+   */
+  Tensor<1, 3>
+  relax_node(const FrictionFace        &face,
+             const unsigned int         node,
+             const Tensor<2, 3>        &inverse_diagonal,
+             const Tensor<1, 3>        &force, // residual + D x
+             const std::vector<double> &bounds,
+             FrictionState             &state);
+
+
+  /// Multipliers that bound the error: those of fit_multipliers() but for
+  /// the points listed.
+  struct Certificate
+  {
+    Vector<double> force;
+    /// sum of rho |s| - lambda . s.
+    double                                             defect = 0.;
+    std::vector<std::pair<unsigned int, Tensor<1, 2>>> replaced;
+  };
+
+  /**
+   * A point that has hardly begun to slip in the plane has a direction s/|s|
+   * blurred by rounding: its multiplier rho s/|s| misses the residual by more
+   * than its slip is worth. There the clipped residual is the better
+   * multiplier, at the price of a small defect of complementarity. A miss of
+   * more than 1e-5 of the bound is not rounding, unless the slip is as small as
+   * @p rounding, an error in the energy norm, makes it.
+   */
+  Certificate
+  certify(const FrictionFace              &face,
+          const std::vector<double>       &bounds,
+          const Vector<double>            &residual,
+          const std::vector<Tensor<2, 3>> &diagonal,
+          const FrictionState             &state,
+          const Vector<double>            &force,
+          double                           rounding);
+
+
+  /**
+   * How the linear system of a Newton step treats the face: sticking points
+   * are held, slipping ones resist turning. @p inverse_diagonal: of the blocks
+   * of the face matrix, beyond which a spring is as good as stick.
+   */
+  FaceTruncation
+  make_truncation(const FrictionFace              &face,
+                  const std::vector<double>       &bounds,
+                  const FrictionState             &state,
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal);
+} // namespace Viscoplastic

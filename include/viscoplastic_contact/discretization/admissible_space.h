@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <viscoplastic_contact/base/types.h>
+#include <viscoplastic_contact/discretization/nodal_frame.h>
+#include <viscoplastic_contact/scene/scene.h>
+
+namespace Viscoplastic
+{
+  /**
+   * The space U^h of admissible displacements and its translates: hanging
+   * nodes, prescribed components in nodal frames of any orientation, and their
+   * values at time t. Displacement vectors come in two forms:
+   *
+   * - Cartesian: for evaluation and output;
+   * - in frames: each independent node in the components of its NodalFrame,
+   *   hanging nodes Cartesian. Matrices and load vectors are assembled in this
+   *   form, in which every prescribed component is one degree of freedom.
+   *
+   * Built anew on every mesh. The dim degrees of freedom of a node are
+   * consecutive (FE_Q(1) without renumbering), so nodes are addressed by their
+   * first one.
+   */
+  template <int dim>
+  class AdmissibleSpace
+  {
+  public:
+    /**
+     * Collective. Throws ExcMessage when the conditions leave a rigid motion
+     * free, naming it.
+     */
+    AdmissibleSpace(const DoFHandler<dim> &dof_handler,
+                    const Scene<dim>      &scene);
+
+    const DoFHandler<dim> &dof_handler;
+    const Scene<dim>      &scene;
+    const MPI_Comm         communicator;
+    const IndexSet         owned, relevant;
+
+    /// Hanging nodes only, in frames; for assembling matrices.
+    const AffineConstraints<double> &
+    hanging_nodes() const
+    {
+      return hanging_in_frames;
+    }
+
+    /// Hanging nodes only, in Cartesian components.
+    const AffineConstraints<double> &
+    cartesian_hanging_nodes() const
+    {
+      return hanging_cartesian;
+    }
+
+    /// A vector of owned entries, and one with ghosts on `relevant`.
+    DistributedVector
+    owned_vector() const;
+    DistributedVector
+    ghosted_vector() const;
+
+    /**
+     * Add @p cartesian, sums over the owned cells in the order of `relevant`,
+     * to a load vector in frames: hanging nodes pass their share on.
+     * Changes @p cartesian; collective.
+     */
+    void
+    add_cartesian_load(std::vector<double> &cartesian,
+                       DistributedVector   &load) const;
+
+    /// The Cartesian, ghosted form of @p in_frames; hanging nodes are
+    /// interpolated. Collective.
+    void
+    to_cartesian(const DistributedVector &in_frames,
+                 DistributedVector       &ghosted) const;
+
+    /// Interpolate hanging nodes of a Cartesian vector of owned entries.
+    /// Collective.
+    void
+    distribute_hanging_nodes(DistributedVector &cartesian) const;
+
+    /// The inverse, into a vector of owned entries, zero at hanging nodes.
+    void
+    to_frames(const DistributedVector &ghosted,
+              DistributedVector       &in_frames) const;
+
+    /// Rotate a Cartesian cell matrix into the frames of its nodes.
+    void
+    rotate(const std::vector<types::global_dof_index> &dofs,
+           FullMatrix<double>                         &cell_matrix) const;
+
+    /// Write the prescribed values at time t into a vector in frames.
+    void
+    set_prescribed(const double t, DistributedVector &in_frames) const;
+
+    /// Owned degrees of freedom that are no unknowns: prescribed or hanging;
+    /// one entry for each owned index.
+    const std::vector<bool> &
+    excluded() const
+    {
+      return is_excluded;
+    }
+
+    /// A node with conditions or friction on the boundary, owned by this rank.
+    struct BoundaryNode
+    {
+      types::global_dof_index first_dof;
+      Point<dim>              position;
+      unsigned int            frame; // index into frames
+    };
+
+    const std::vector<BoundaryNode> &
+    boundary_nodes() const
+    {
+      return nodes;
+    }
+
+    const NodalFrame<dim> &
+    frame(const unsigned int index) const
+    {
+      return frames[index];
+    }
+
+    /**
+     * The rigid body modes (3 or 6) in frames on owned entries, zero where
+     * excluded; each relative to the centre of the body.
+     */
+    std::vector<DistributedVector>
+    rigid_body_modes() const;
+
+  private:
+    void
+    make_frames();
+    void
+    make_hanging_nodes_in_frames();
+    void
+    check_rigid_motions() const;
+
+    AffineConstraints<double> hanging_cartesian, hanging_in_frames;
+    /// Whether any rank has hanging nodes.
+    bool any_hanging;
+    /// Position of the first owned entry among the relevant ones.
+    std::size_t first_owned;
+    /// Frame 0 is that of a node without conditions.
+    std::vector<NodalFrame<dim>> frames;
+    /// Index into frames for each node of `relevant`, by position / dim.
+    std::vector<unsigned int> frame_of_node;
+    /// The nodes of `relevant` (position of their first entry) whose frames
+    /// are rotated: few, so that rotations cost little.
+    std::vector<std::size_t>  rotated_nodes;
+    std::vector<BoundaryNode> nodes;
+    std::vector<bool>         is_excluded;
+    /// Owned entries of hanging nodes, by local position.
+    std::vector<std::size_t> hanging_entries;
+    /// Support point of each owned node.
+    std::vector<Point<dim>> node_position;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/admissible_space.h>
+#include <viscoplastic_contact/linear_solvers/bulk_solver_factory.h>
+
+namespace Viscoplastic
+{
+  /// A matrix on a space as solvers see it.
+  template <int dim>
+  BulkSystem
+  make_bulk_system(const AdmissibleSpace<dim>                 &space,
+                   const DistributedMatrix                    &matrix,
+                   const FrictionFace                         &face,
+                   const std::vector<types::global_dof_index> &face_dofs)
+  {
+    return {dim,
+            matrix,
+            space.excluded(),
+            [&space] { return space.rigid_body_modes(); },
+            face,
+            face_dofs};
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/discretization/admissible_space.h>
+
+#include <set>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Gamma_3 on the mesh: makes the friction points of a FrictionFace from the
+   * nodes with friction, and their bounds rho_c(t) = int rho(x,t) phi_c, with
+   * phi_c the basis functions that hanging nodes leave. All ranks hold the
+   * whole face, in an order that does not depend on the partition.
+   */
+  template <int dim>
+  class ContactFace
+  {
+  public:
+    /// Collective.
+    explicit ContactFace(const AdmissibleSpace<dim> &space);
+
+    const FrictionFace &
+    layout() const
+    {
+      return face;
+    }
+
+    /// Frictional boundaries none of whose nodes can slip, because other
+    /// conditions hold them all. The same on all ranks.
+    std::set<types::boundary_id>
+    held_boundaries() const;
+
+    /// Global index of each entry of a face vector.
+    const std::vector<types::global_dof_index> &
+    dofs() const
+    {
+      return global_dofs;
+    }
+
+    /// rho_c of each point. Throws ExcMessage for negative bounds. Collective.
+    std::vector<double>
+    bounds(const double t) const;
+
+    /// int phi_c over the pieces of each point: the area it stands for.
+    const std::vector<double> &
+    weights() const
+    {
+      return point_weights;
+    }
+
+    const Point<dim> &
+    position(const unsigned int node) const
+    {
+      return nodes[node].position;
+    }
+
+    /// Cartesian force of a multiplier (lambda; the body feels its negative).
+    Tensor<1, dim>
+    cartesian(const unsigned int point, const Tensor<1, 2> &multiplier) const;
+
+    /// sum_c lambda_c.
+    Tensor<1, dim>
+    resultant(const FrictionState &state) const;
+
+    /// Owned entries of a vector in frames as a face vector, the same on all
+    /// ranks. Collective.
+    Vector<double>
+    face_vector(const DistributedVector &in_frames) const;
+
+    /**
+     * How far the foundation slides between two times, as a face vector. At a
+     * node of several boundary ids it is what fits the motions of all of them
+     * best, each weighed by its share of the bound at time t: a piece without
+     * friction does not count. Empty if no foundation moves. Collective.
+     */
+    Vector<double>
+    foundation_step(const double t_old, const double t) const;
+
+    /// The slip that a change of the displacement (in frames, owned entries)
+    /// means at each point, relative to a step of the foundation. Collective.
+    std::vector<Tensor<1, 2>>
+    slips(const DistributedVector &change,
+          const Vector<double>    &foundation_step) const;
+
+    /// The same for a face vector on all ranks.
+    std::vector<Tensor<1, 2>>
+    slips(const Vector<double> &change) const;
+
+    /**
+     * The multiplier as a nodal density lambda_c/m_c, Cartesian and with
+     * ghosts; zero off Gamma_3. Collective.
+     */
+    DistributedVector
+    density(const FrictionState &state) const;
+
+    /// The inverse where a node has one point, for a face on a new mesh; at
+    /// corners, where the density is that of all points, zero.
+    /// @p ghosted_density is Cartesian. Collective.
+    std::vector<Tensor<1, 2>>
+    multipliers(const DistributedVector &ghosted_density) const;
+
+    /// A value a point as a nodal field, with ghosts: at the first component of
+    /// each node, the mean over its points. Collective.
+    DistributedVector
+    nodal_field(const std::vector<double> &values) const;
+
+  private:
+    struct Node
+    {
+      types::global_dof_index       first_dof;
+      Point<dim>                    position;
+      Tensor<2, dim>                directions; // of the nodal frame
+      std::array<unsigned int, dim> components; // of its face entries
+    };
+
+    /// A quadrature point of an owned face of Gamma_3.
+    struct Sample
+    {
+      Point<dim>                    x;
+      const BoundaryCondition<dim> *condition;
+    };
+
+    /// value is added to the point for each unit of rho at the sample.
+    struct Share
+    {
+      unsigned int sample, point;
+      double       value;
+    };
+
+    void
+    make_nodes();
+    void
+    make_shares();
+
+    /// The bounds at time t by point and boundary id, in the order of
+    /// boundary_ids. Collective.
+    std::vector<double>
+    bounds_by_id(const double t) const;
+
+    const AdmissibleSpace<dim>          &space;
+    FrictionFace                         face;
+    std::vector<Node>                    nodes;
+    std::vector<types::global_dof_index> global_dofs;
+    /// Boundary ids of each point.
+    std::vector<std::vector<types::boundary_id>> boundary_ids;
+    std::vector<Sample>                          samples;
+    std::vector<Share>                           shares;
+    std::vector<double>                          point_weights;
+    bool                                         bounds_vary;
+    mutable std::vector<double>                  constant_bounds;
+  };
+} // namespace Viscoplastic

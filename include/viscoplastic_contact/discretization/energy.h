@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/flow_laws.h>
+#include <viscoplastic_contact/discretization/state.h>
+
+namespace Viscoplastic
+{
+  /// Integrals over the stress of a state and of the step that led to it.
+  struct StressSummary
+  {
+    /// Of cell means; the mean is weighted by volume.
+    double max_von_mises = 0., mean_von_mises = 0.;
+    /// (eps : eps)^(1/2) of cell means.
+    double max_strain = 0.;
+    /// (int sigma : sigma)^(1/2) of cell means.
+    double stress_norm = 0.;
+    /// 1/2 int E^-1 z : z, and what laws with an energy of their own store
+    /// beyond 1/2 int E^-1 sigma : sigma.
+    double irreversible_energy = 0.;
+    /**
+     * -int (z_n - z_{n-1}) : A with the driving strain A of the law,
+     * E^-1 sigma for most, at the mean of the states at t_{n-1} and t_n: the
+     * viscous dissipation of the step; with this mean the balance of energy of
+     * the bulk is exact, whatever the step size.
+     */
+    double viscous_dissipation = 0.;
+  };
+
+  /// Collective. Without a step (initial state), give the same state twice.
+  template <int dim>
+  StressSummary
+  summarise_stress(const FlowLaws<dim> &laws,
+                   const State<dim>    &old_state,
+                   const State<dim>    &state);
+
+  /**
+   * norm(sigma - P0 sigma)/norm(sigma) with sigma = E eps(u) + z: how much of
+   * the stress the cell means do not see. Collective.
+   */
+  template <int dim>
+  double
+  relative_stress_fluctuation(const StressSampling<dim> &sampling,
+                              const State<dim>          &state);
+} // namespace Viscoplastic

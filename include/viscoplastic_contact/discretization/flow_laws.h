@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/laws/viscoplastic_law.h>
+
+#include <array>
+#include <map>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Which law G each owned cell has, and what the parameters of the law are at
+   * each of its samples. Parameters of laws that do not depend on time are
+   * evaluated once.
+   */
+  template <int dim>
+  class FlowLaws
+  {
+  public:
+    /// Throws ExcMessage if a parameter is out of range somewhere, or a law
+    /// does not go with the elastic tensor of a cell.
+    explicit FlowLaws(const StressSampling<dim> &sampling);
+
+    const StressSampling<dim> &sampling;
+
+    /// Whether any material has a law, and one with a cap on the stress.
+    /// Known on all ranks.
+    bool any, any_cap, any_own_energy;
+
+    /// Whether the derivatives of G are the same at all times and states.
+    bool
+    have_constant_tangents() const;
+
+    /// Null unless a manufactured solution has a source.
+    const ExactSolution<dim> *const source_solution;
+
+    /// Throws ExcMessage if a parameter is out of range somewhere at time t.
+    void
+    check(const double t) const;
+
+    /// Evaluates time-dependent parameters at one time.
+    class AtTime
+    {
+    public:
+      /// Null where the cell is elastic.
+      const ViscoplasticLaw *
+      law(const std::size_t cell) const
+      {
+        return laws
+          .materials[laws.material_of_cell.empty() ?
+                       0 :
+                       laws.material_of_cell[cell]]
+          .law;
+      }
+
+      /// For law(cell) at one of the cell's samples.
+      LawPoint
+      point(const std::size_t cell, const unsigned int s) const;
+
+    private:
+      friend class FlowLaws;
+      AtTime(const FlowLaws &laws, const double t);
+
+      const FlowLaws       &laws;
+      const double          t;
+      std::vector<LawPoint> uniform; // a material
+    };
+
+    AtTime
+    at(const double t) const
+    {
+      return AtTime(*this, t);
+    }
+
+    /**
+     * What a manufactured solution adds to G at a sample,
+     * sigma' - E eps(u') - G(t, sigma, eps(u)) of that solution; zero in other
+     * scenes. The time derivatives are those of the step on this side of
+     * the time of @p now.
+     */
+    SymmetricTensor<2, 3>
+    source(const AtTime                           &now,
+           const std::size_t                       cell,
+           const unsigned int                      s,
+           const typename ExactSolution<dim>::Side side) const;
+
+  private:
+    struct Entry
+    {
+      const ViscoplasticLaw *law;
+      bool                   varies_in_space, varies_in_time;
+    };
+
+    std::vector<Entry> materials;
+    /// Index into materials; empty if there is but one.
+    std::vector<unsigned int> material_of_cell;
+    /// By sample; empty unless parameters of some law depend on position but
+    /// not on time.
+    std::vector<std::array<double, 6>> parameters;
+  };
+
+
+  /// G at a state, and what it means for a step from there.
+  struct FlowRate
+  {
+    /// At each sample.
+    IrreversibleStress rate;
+    /// The largest relaxation rate r; forward Euler is stable for k <= 2/r.
+    /// Collective result.
+    double relaxation_rate;
+    /// Volume of the samples with stresses beyond the cap of their law.
+    /// Collective result.
+    double capped_volume;
+    /// The sample with the largest rate, or the first one of those. Collective
+    /// result.
+    Point<3> critical_position = {};
+  };
+
+  /// One evaluation a sample; a source is that of the step on this side of t.
+  /// Collective.
+  template <int dim>
+  FlowRate
+  evaluate_flow(const FlowLaws<dim>                    &laws,
+                const DistributedVector                &ghosted_u,
+                const IrreversibleStress               &z,
+                const double                            t,
+                const typename ExactSolution<dim>::Side side =
+                  ExactSolution<dim>::Side::after);
+} // namespace Viscoplastic

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/energy.h>
+#include <viscoplastic_contact/discretization/loads.h>
+#include <viscoplastic_contact/discretization/state.h>
+
+#include <map>
+
+namespace Viscoplastic
+{
+  /// The forces of a state, in nodal frames.
+  template <int dim>
+  struct Forces
+  {
+    /// u of the state.
+    DistributedVector u;
+    /// L(t, .), and its resultant.
+    Load<dim> load;
+    /// a(u, .), and with (z, eps(.)) added.
+    DistributedVector elastic, internal;
+    /// 1/2 a(u, u), and (z, eps(u)).
+    double strain_energy, irreversible_work;
+  };
+
+  /// Collective.
+  template <int dim>
+  Forces<dim>
+  evaluate_forces(const StressSampling<dim> &sampling,
+                  const DistributedMatrix   &matrix,
+                  Load<dim>                  load,
+                  const State<dim>          &state);
+
+  /**
+   * The forces on the body at prescribed components, summed for each boundary
+   * id. The force at a node that several conditions hold has a part along the
+   * direction of each condition, which counts for its id, so that the sum over
+   * the ids is the total. Collective.
+   */
+  template <int dim>
+  std::map<types::boundary_id, Tensor<1, dim>>
+  reactions(const AdmissibleSpace<dim> &space, const Forces<dim> &forces);
+
+  /**
+   * Work by prescribed displacements and loads between two states, with mean
+   * forces (trapezoidal rule). Collective.
+   */
+  template <int dim>
+  double
+  external_work(const AdmissibleSpace<dim> &space,
+                const Forces<dim>          &old_forces,
+                const Forces<dim>          &forces);
+
+
+  /// How well the discrete friction law holds: all zero but for the first.
+  struct FrictionIdentities
+  {
+    /// max |lambda_c|/rho_c, at most 1.
+    double max_utilisation = 0.;
+    /// max |s_c| where sticking, measured on the displacement.
+    double max_stick_slip = 0.;
+    /// max |lambda_c - rho_c s_c/|s_c||/rho_c where slipping.
+    double slip_misalignment = 0.;
+    /// Areas of sticking and slipping points.
+    double stick_area = 0., slip_area = 0.;
+    /// sum_c lambda_c . s_c of the step.
+    double dissipation = 0.;
+    /// Work of a moving foundation on the body, -sum_c lambda_c . dw_c with
+    /// the mean of the multipliers before and after, as external_work() has.
+    double foundation_work = 0.;
+  };
+
+  /// @p change of the displacement in the step, in frames, and what the
+  /// foundation moved meanwhile (empty: nothing). Collective.
+  template <int dim>
+  FrictionIdentities
+  check_friction(const ContactFace<dim>    &face,
+                 const FrictionState       &old_state,
+                 const FrictionState       &state,
+                 const std::vector<double> &bounds,
+                 const DistributedVector   &change,
+                 const Vector<double>      &foundation_step,
+                 const double               max_displacement);
+} // namespace Viscoplastic

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/flow_laws.h>
+
+namespace Viscoplastic
+{
+  /**
+   * Backward Euler at all samples: z_n for the strains of @p ghosted_u, from
+   * @p start. Elastic cells keep their z. Throws on all ranks if there is no
+   * solution at a sample of one. Collective.
+   */
+  template <int dim>
+  IrreversibleStress
+  implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,
+                               const StressSampling<dim>            &sampling,
+                               const DistributedVector              &ghosted_u,
+                               const IrreversibleStress             &old_z,
+                               const double                          k,
+                               const IrreversibleStress             &start);
+} // namespace Viscoplastic

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/loads.h>
+#include <viscoplastic_contact/discretization/state.h>
+
+namespace Viscoplastic
+{
+  /**
+   * u0^h, the projection of u0 in (eps(u), eps(v)), and
+   * z_0 = sigma0^h - E eps(u0^h) with the L2 projection sigma0^h of sigma0;
+   * zero fields stay absent. Collective.
+   *
+   * Throws ExcMessage if u0 contradicts the displacements prescribed at t = 0,
+   * unless @p equilibrate will mend that.
+   */
+  template <int dim>
+  State<dim>
+  make_initial_state(const StressSampling<dim> &sampling,
+                     const bool                 equilibrate);
+
+  /**
+   * |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
+   * stresses, (int E^-1 s : s)^{1/2}, by quadrature; @p state as
+   * make_initial_state() gives it. Zero and free without initial data.
+   * Collective.
+   */
+  template <int dim>
+  double
+  initial_data_error(const StressSampling<dim> &sampling,
+                     const State<dim>          &state);
+
+  /**
+   * The violation of compatibility (2.12),
+   *
+   *     (sigma0, eps(v)) + j(v) >= L(0, v)  for all v,
+   *
+   * relative to the loads: the norm of the residual off Gamma_3 and of its
+   * excess over the friction ball on Gamma_3. Evaluated with sigma0 itself by
+   * quadrature: its projection would violate equilibrium by O(h). Also gives
+   * the multipliers at t = 0. @p face is null without friction. Collective.
+   */
+  template <int dim>
+  double
+  compatibility_violation(const AdmissibleSpace<dim> &space,
+                          const Load<dim>            &load,
+                          const ContactFace<dim>     *face,
+                          FrictionState              &friction);
+} // namespace Viscoplastic

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/admissible_space.h>
+
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// The loads at one time.
+  template <int dim>
+  struct Load
+  {
+    /// L(t, .) in nodal frames.
+    DistributedVector values;
+    /// The resultant force of b, F and S.
+    Tensor<1, dim> resultant;
+  };
+
+
+  /**
+   * The load functional L(t,v) = int b.v + int_Gamma2 F.v + int_Gamma3 S v_nu.
+   * What does not depend on time is integrated once.
+   */
+  template <int dim>
+  class Loads
+  {
+  public:
+    explicit Loads(const AdmissibleSpace<dim> &space);
+
+    /// L(t, .). Collective.
+    Load<dim>
+    assemble(const double t) const;
+
+  private:
+    using Cell = typename DoFHandler<dim>::active_cell_iterator;
+
+    struct Face
+    {
+      Cell                          cell;
+      unsigned int                  face;
+      const BoundaryCondition<dim> *condition;
+    };
+
+    /// Add the part of the load that does (or does not) depend on time.
+    void
+    add(const double t, const bool time_dependent, Load<dim> &load) const;
+
+    const AdmissibleSpace<dim> &space;
+    std::vector<Face>           faces; // owned, with F or S
+    Load<dim>                   constant;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/tensor.h>
+
+#include <viscoplastic_contact/scene/scene.h>
+
+#include <array>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * The slip that one friction point can make. At a node where Gamma_3 is flat
+   * this is the tangent plane. Where pieces meet at an angle there is one point
+   * a piece; its slip is the part of the piece's tangential displacement that
+   * the other conditions at the node leave free.
+   */
+  template <int dim>
+  struct FrictionPlane
+  {
+    /// Number of independent slip directions, 1 or 2.
+    unsigned int n_tangents;
+    /// slip = map u: n_tangents rows over the frame components of the node.
+    std::array<Tensor<1, dim>, dim - 1> map;
+    /// Boundary ids whose bounds add up here (coplanar pieces, or pieces that
+    /// leave the same direction free).
+    std::vector<types::boundary_id> boundary_ids;
+  };
+
+
+  /**
+   * The orthonormal frame of displacement components at a node, chosen so that
+   * what is prescribed there are single components.
+   */
+  template <int dim>
+  struct NodalFrame
+  {
+    /// Columns are the frame's directions; the identity wherever conditions
+    /// are along coordinate axes.
+    Tensor<2, dim> directions;
+    bool           is_cartesian = true;
+    /// The first n_fixed entries of `fixed` are prescribed components.
+    std::array<unsigned int, dim> fixed;
+    unsigned int                  n_fixed = 0;
+    /// The accepted conditions direction . u = datum, as many as components are
+    /// fixed (not one by one: they may be oblique to each other, see
+    /// condition_matrix()): their directions, and whose datum it is (boundary
+    /// id, and for given components the component, otherwise
+    /// numbers::invalid_unsigned_int).
+    std::array<Tensor<1, dim>, dim>     condition_direction;
+    std::array<types::boundary_id, dim> condition_boundary;
+    std::array<unsigned int, dim>       condition_component;
+    /// Friction points at the node.
+    std::vector<FrictionPlane<dim>> planes;
+  };
+
+
+  /**
+   * The frame of a node where @p conditions meet (in the order of their ids).
+   * Where conditions compete, those that fix more come first: clamped, given
+   * components, glued, symmetry, bilateral contact; a condition whose direction
+   * depends on the others is dropped.
+   */
+  template <int dim>
+  NodalFrame<dim>
+  make_nodal_frame(
+    const std::vector<const BoundaryCondition<dim> *> &conditions);
+
+
+  /**
+   * M_ij = (direction of condition i) . (direction of fixed component j),
+   * padded by the identity: the fixed components a satisfy M a = data, and
+   * constraint forces r in the fixed components are made of M^-T r along the
+   * directions of the conditions.
+   */
+  template <int dim>
+  Tensor<2, dim>
+  condition_matrix(const NodalFrame<dim> &frame);
+
+
+  /// Column @p j of a matrix: a direction of a frame.
+  template <int dim>
+  Tensor<1, dim>
+  column(const Tensor<2, dim> &matrix, const unsigned int j)
+  {
+    Tensor<1, dim> result;
+    for (unsigned int i = 0; i < dim; ++i)
+      result[i] = matrix[i][j];
+    return result;
+  }
+} // namespace Viscoplastic

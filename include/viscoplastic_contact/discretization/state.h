@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/base/types.h>
+#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/discretization/stress_history.h>
+
+#include <array>
+
+namespace Viscoplastic
+{
+  /**
+   * All that a step changes. A step is a pure function of an accepted state, a
+   * time and a step size: it makes a new State and leaves the old one alone.
+   */
+  template <int dim>
+  struct State
+  {
+    /// Number of the step that led here, its time and its size.
+    unsigned int n = 0;
+    double       t = 0., k = 0.;
+
+    /// u_n and delta u_n = (u_n - u_{n-1})/k_n: Cartesian, with ghosts.
+    DistributedVector u, velocity;
+
+    /// z_n at the samples of the owned cells; empty in elastic bodies without
+    /// initial stress.
+    IrreversibleStress z;
+
+    /// At the same samples, with viscosity and an error bar only: what the time
+    /// scheme has left out of z so far, to leading order, and what its second
+    /// order needs (see ErrorBar).
+    IrreversibleStress time_error, rate_slope;
+
+    /// Of the step that led here; no points without friction.
+    FrictionState friction;
+
+    /// u_0, Cartesian with ghosts; empty where zero.
+    DistributedVector initial_u;
+  };
+
+
+
+  /// The fields of a state that have values at the samples.
+  template <typename StateType>
+  auto
+  sample_fields(StateType &state)
+  {
+    return std::array<decltype(&state.z), 3>{
+      {&state.z, &state.time_error, &state.rate_slope}};
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/flow_laws.h>
+#include <viscoplastic_contact/discretization/state.h>
+
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * The matrix of a step of backward Euler,
+   *
+   *     a(u, v) + sum_s w_s (C_s - E) eps_s(u) : eps_s(v),
+   *
+   * with an algorithmic tangent C_s at each sample, where the flow sees the
+   * strain; the rest of the strain within cells stays elastic.
+   */
+  template <int dim>
+  class TangentMatrix
+  {
+  public:
+    /// @p elastic is the matrix of a(u, v); it stays in use.
+    TangentMatrix(const FlowLaws<dim> &laws, const DistributedMatrix &elastic);
+
+    /// Whether the tangents depend on the step size alone.
+    const bool is_constant;
+
+    /**
+     * Take the tangents at the strain of @p ghosted_u and at z, at time t, and
+     * make the matrix of them, unless it has them already. Returns whether it
+     * is another matrix now. Collective.
+     */
+    bool
+    linearise(const DistributedVector  &ghosted_u,
+              const IrreversibleStress &z,
+              const double              t,
+              const double              k);
+
+    const DistributedMatrix &
+    matrix() const
+    {
+      return tangent_matrix;
+    }
+
+    /// Where Poisson's ratio would be if the tangents were isotropic.
+    double
+    max_poissons_ratio() const
+    {
+      return max_nu;
+    }
+
+    /// A bound on the energy norm of a(.,.) over that of the matrix, at least
+    /// 1 and about (1 + k r)^(1/2).
+    double
+    norm_ratio() const
+    {
+      return ratio;
+    }
+
+    /// z + (C - E) (eps(to) - eps(from)), at the samples.
+    IrreversibleStress
+    extrapolate(const IrreversibleStress &z,
+                const DistributedVector  &ghosted_from,
+                const DistributedVector  &ghosted_to) const;
+
+    /**
+     * The norm of stresses (sum_s w_s C^-1 tau : tau)^(1/2). It bounds the norm
+     * of the functional sum_s w_s tau : eps_s(v) in the dual of the matrix's
+     * energy norm. Collective.
+     */
+    double
+    norm(const IrreversibleStress &stress) const;
+
+  private:
+    void
+    assemble();
+
+    const FlowLaws<dim>               &laws;
+    const DistributedMatrix           &elastic_matrix;
+    std::vector<SymmetricTensor<4, 3>> tangents, compliances; // a sample
+    DistributedMatrix                  tangent_matrix;
+    double                             step_size = 0., max_nu = -1., ratio = 1.;
+  };
+} // namespace Viscoplastic

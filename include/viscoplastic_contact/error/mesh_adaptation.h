@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/distributed/solution_transfer.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/parameters/parameters.h>
+
+#include <array>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Mark the cells that make up the given fractions of the squared estimate,
+   * within the limits of level and number of cells, and prepare the change of
+   * the mesh. Of cells beyond the budget the ones with the smallest estimate
+   * stay as they are; the budget may be exceeded by the cells that keep
+   * neighbours within one level of each other.
+   *
+   * @p squared_estimate has an entry for each active cell, of which those of
+   * owned cells are read. Returns whether the mesh will change on any rank.
+   * Collective.
+   */
+  template <int dim>
+  bool
+  mark_cells(parallel::distributed::Triangulation<dim> &triangulation,
+             const Vector<double>                      &squared_estimate,
+             const RefinementParameters                &parameters);
+
+
+  /**
+   * Carries a state over a change of the mesh and to the ranks that own the new
+   * cells:
+   *
+   * - displacements and multiplier density by interpolation;
+   * - z and the other fields at samples by an L2 projection that conserves int
+   * z over every cell that is refined or coarsened. Samples on the children of
+   * a cell are values of the polynomial through the parent's samples: a copy of
+   * cell means, the (bi-, tri-)linear interpolant of quadrature points.
+   *
+   * Equilibrium is restored by the next step, which solves for the total
+   * displacement.
+   *
+   * Construct it when the cells are marked, change the mesh, distribute the
+   * degrees of freedom, then unpack(). Keeps copies of what it carries, but
+   * addresses the DoFHandler of @p old_sampling until unpack().
+   */
+  template <int dim>
+  class StateTransfer
+  {
+  public:
+    /// @p multiplier_density is ghosted, and null without friction. Collective.
+    StateTransfer(parallel::distributed::Triangulation<dim> &triangulation,
+                  const StressSampling<dim>                 &old_sampling,
+                  const State<dim>                          &state,
+                  const DistributedVector *multiplier_density);
+
+    /// The triangulation calls back until unpack().
+    StateTransfer(const StateTransfer &) = delete;
+    StateTransfer &
+    operator=(const StateTransfer &) = delete;
+
+    struct Result
+    {
+      /// Without friction points: their number depends on the new face.
+      State<dim> state;
+      /// Ghosted; empty without friction.
+      DistributedVector multiplier_density;
+    };
+
+    /// To be called once. Collective.
+    Result
+    unpack(const StressSampling<dim> &new_sampling);
+
+  private:
+    using CellIterator = typename Triangulation<dim>::cell_iterator;
+    using CellStatus   = typename Triangulation<dim>::CellStatus;
+
+    std::vector<char>
+    pack(const CellIterator &cell, const CellStatus status) const;
+
+    parallel::distributed::Triangulation<dim> &triangulation;
+    const unsigned int                         n_samples;
+
+    /// Old u, velocity, initial_u, multiplier density; absent ones are empty.
+    std::array<DistributedVector, 4> old_fields;
+    parallel::distributed::SolutionTransfer<dim, DistributedVector>
+      field_transfer;
+
+    /// Which of the fields at samples there are (without any: nothing else
+    /// below), their old values, the weights of the samples, and the number of
+    /// each owned cell by active cell index.
+    std::vector<unsigned int>       carried;
+    std::vector<IrreversibleStress> old_samples;
+    std::vector<double>             old_weights;
+    std::vector<unsigned int>       old_cell;
+    unsigned int                    handle;
+    /// Samples on each child = prolongation * samples on the parent.
+    std::vector<FullMatrix<double>> prolongation;
+
+    unsigned int n;
+    double       t, k;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/vector.h>
+
+#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/scene/boundary_condition.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * The residual estimator for the friction inequality of one step,
+   *
+   *     eta_K^2 = ( h_K^2 |b + div E eps(u_h)|^2
+   *                 + sum_e 1/2 h_e |[sigma_h nu]|^2     interior faces
+   *                 + h_e |F - sigma_h nu|^2             Gamma_2
+   *                 + h_e |lambda_h + (sigma_h nu)_tau|^2
+   *                 + h_e |S - sigma_nu|^2 ) / (2 mu),   Gamma_3
+   *
+   * with L2 norms on cell and faces, sigma_h = E eps(u_h) + z_h and z_h the
+   * cell means of z. The scaling makes the sum comparable to the squared error
+   * in the energy norm. On Gamma_3 the normal part appears where the normal
+   * stress is given. Where only some components of u are prescribed, the
+   * residual of the others counts with F = 0 (symmetry: the tangential ones).
+   *
+   * The terms of complementarity and of violated bounds are zero at the nodes:
+   * the contact solver's multipliers satisfy the friction law to rounding.
+   * Between nodes the density exceeds a bound that jumps, which counts.
+   *
+   * The estimate bounds the error of one step for given z; the error that has
+   * accumulated in z is not part of it.
+   *
+   * What depends on the mesh alone is kept from step to step: gradients at
+   * faces and second derivatives for each shape of cell (cells that differ by a
+   * translation share them), and data that do not depend on time. So a step
+   * evaluates no finite elements.
+   */
+  template <int dim>
+  class ResidualEstimator
+  {
+  public:
+    explicit ResidualEstimator(const StressSampling<dim> &sampling);
+
+    /**
+     * eta_K^2 for each active cell, zero on cells of other ranks.
+     * @p z may be empty. @p multiplier_density is the nodal field lambda_h on
+     * Gamma_3, Cartesian with ghosts, and null without friction. Collective.
+     */
+    Vector<double>
+    estimate(const DistributedVector  &ghosted_u,
+             const IrreversibleStress &z,
+             const double              t,
+             const DistributedVector  *multiplier_density) const;
+
+  private:
+    static constexpr unsigned int n_vertices = 1u << dim, n_points = 1u << dim,
+                                  n_faces       = 2 * dim,
+                                  n_face_points = 1u << (dim - 1);
+
+    using NodalValues = std::array<Tensor<1, dim>, n_vertices>;
+    using Cell        = typename DoFHandler<dim>::active_cell_iterator;
+
+    /// A face or subface at its quadrature points.
+    struct FaceShape
+    {
+      /// Of the vertices' shape functions.
+      std::array<NodalValues, n_face_points>    gradients;
+      std::array<Tensor<1, dim>, n_face_points> normals;
+      std::array<Tensor<1, dim>, n_face_points> positions; // from vertex 0
+      std::array<double, n_face_points>         weights;
+    };
+
+    struct Shape
+    {
+      double diameter, volume;
+      /// Whether they are the same at all points.
+      bool                                 constant_hessians;
+      NodalValues                          mean_gradients;
+      std::array<double, n_points>         weights;
+      std::array<FaceShape, n_faces>       faces;
+      std::array<Tensor<1, dim>, n_points> positions; // from vertex 0
+      std::array<std::array<Tensor<2, dim>, n_vertices>, n_points> hessians;
+    };
+
+    /// A cell of this rank or a ghost: the owned ones first, in the order of
+    /// the sampling.
+    struct LocalCell
+    {
+      unsigned int                         shape, active_index;
+      std::array<unsigned int, n_vertices> nodes;
+      Stiffness                            stiffness;
+    };
+
+    /// A part of a cell's face that hanging nodes bound.
+    struct SubfaceSide
+    {
+      unsigned int cell, table;
+    };
+
+    struct InteriorFace
+    {
+      /// The finer one first: its weights count.
+      std::array<unsigned int, 2> cells;
+      unsigned int                face;
+      /// Position of the first traction of each side.
+      std::array<unsigned int, 2> tractions;
+      /// The point of the second side at each point of the first.
+      std::array<unsigned char, n_face_points> partner;
+      double                                   diameter;
+    };
+
+    struct BoundaryFace
+    {
+      unsigned int                          cell, face;
+      const BoundaryCondition<dim>         *condition;
+      double                                diameter;
+      std::array<Point<dim>, n_face_points> positions;
+      /// The given traction or normal stress and the friction bound, as far as
+      /// they do not depend on time.
+      std::array<Tensor<1, dim>, n_face_points> data;
+      std::array<double, n_face_points>         bounds;
+    };
+
+    /// What makes the stress at points of one cell.
+    struct StressTerms
+    {
+      NodalValues      u;
+      const Stiffness *stiffness;
+      double           dilatation; // cell mean of div u_h
+      Tensor<2, dim>   z;          // in the plane
+    };
+
+    void
+    make_cells();
+    void
+    make_faces();
+
+    /// The number of a cell's shape, made if it is new.
+    unsigned int
+    find_shape(const Cell        &cell,
+               FEValues<dim>     &values,
+               FEFaceValues<dim> &on_face);
+
+    StressTerms
+    stress_terms(const std::size_t            cell,
+                 const double                *u,
+                 const SymmetricTensor<2, 3> *mean_z) const;
+
+    /// sigma_h nu at the points of a face.
+    void
+    add_tractions(const FaceShape   &face,
+                  const StressTerms &terms,
+                  Tensor<1, dim>    *tractions) const;
+
+    /// |b + div E eps(u_h)|^2 integrated over a cell.
+    double
+    volume_residual(const Shape          &shape,
+                    const StressTerms    &terms,
+                    const Tensor<1, dim> *body_force) const;
+
+    double
+    boundary_residual(const BoundaryFace      &face,
+                      const double             t,
+                      const Tensor<1, dim>    *tractions,
+                      const DistributedVector *multiplier_density) const;
+
+    /// Means of z of owned cells and ghosts, kept in @p means if z is not them
+    /// itself; null without z. Collective.
+    const SymmetricTensor<2, 3> *
+    mean_irreversible_stress(const IrreversibleStress &z,
+                             IrreversibleStress       &means) const;
+
+    const StressSampling<dim> &sampling;
+    /// Whether b is the same in the whole body.
+    bool uniform_body_force;
+
+    std::vector<Shape>                    shapes;
+    std::vector<FaceShape>                subface_shapes;
+    std::vector<LocalCell>                cells;
+    std::vector<types::global_cell_index> ghosts;  // behind the owned cells
+    std::vector<Point<dim>>               origins; // vertex 0 of owned cells
+    std::vector<SubfaceSide>              subface_sides;
+    std::vector<InteriorFace>             interior_faces;
+    std::vector<BoundaryFace>             boundary_faces;
+    /// Shape functions at the points of each face.
+    std::array<std::array<std::array<double, n_vertices>, n_face_points>,
+               n_faces>
+      face_values;
+    /// b at the points of owned cells if it does not depend on time.
+    std::vector<Tensor<1, dim>> body_force;
+
+    /// sigma nu at all faces: kept, since a new array for each step costs as
+    /// much as to fill it.
+    mutable std::vector<Tensor<1, dim>> traction_buffer;
+
+    /// Only for the construction.
+    static constexpr unsigned int key_size = dim * (n_vertices - 1) + 2;
+    using ShapeKey                         = std::array<std::int64_t, key_size>;
+    std::map<ShapeKey, unsigned int> shape_of_key;
+    std::map<std::tuple<unsigned int, unsigned int, unsigned int>, unsigned int>
+      subface_shape_of;
+  };
+} // namespace Viscoplastic

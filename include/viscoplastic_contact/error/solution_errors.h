@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/error/solution_norms.h>
+
+namespace Viscoplastic
+{
+  /// Errors of a state against the exact solution at its time, and the norms of
+  /// that solution.
+  struct SolutionErrors
+  {
+    /// u - u_h; sigma - sigma_h with the cell means sigma_h; lambda - lambda_h
+    /// with lambda = -sigma_tau and the nodal densities lambda_h.
+    SolutionNorms error, exact;
+    /// (int E^-1 (z - z_h) : (z - z_h))^(1/2): what the steps before this one
+    /// have left, and what cell means cannot hold. A history at quadrature
+    /// points is compared at these points only.
+    double memory = 0.;
+  };
+
+  /**
+   * By quadrature with three points in each direction. Norms of stress,
+   * multiplier and memory stay zero where the solution has no stress.
+   * @p multiplier_density is null without friction. Collective.
+   */
+  template <int dim>
+  SolutionErrors
+  solution_errors(const StressSampling<dim> &sampling,
+                  const State<dim>          &state,
+                  const DistributedVector   *multiplier_density);
+
+  /**
+   * Hold the exact solution against the scene whose data it makes: what is
+   * prescribed on clamped, symmetry and contact pieces, the friction law on
+   * Gamma_3, and whether its rates exist. At the times of some 20 steps.
+   *
+   * Throws ExcMessage naming boundary, place, time and what is violated.
+   * Collective: a rank that finds nothing wrong does not wait for others.
+   */
+  template <int dim>
+  void
+  check_exact_solution(const AdmissibleSpace<dim> &space);
+} // namespace Viscoplastic

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/laws/viscoplastic_law.h>
+
+namespace Viscoplastic
+{
+  /// The equation z - z_old - k G(t_n, E eps + z, eps) = 0 of one sample.
+  struct BackwardEulerEquation
+  {
+    const ViscoplasticLaw       &law;
+    const SymmetricTensor<2, 3> &strain, &old_z;
+    const double                 k;
+    const Stiffness             &stiffness;
+    const LawPoint              &point;
+    const SymmetricTensor<2, 3>  elastic = stiffness.stress(strain);
+
+    SymmetricTensor<2, 3>
+    residual(const SymmetricTensor<2, 3> &z) const
+    {
+      return z - old_z - k * law.rate(elastic + z, strain, stiffness, point);
+    }
+
+    /// Its norm; not finite where the law has no value, which a trial may
+    /// meet.
+    double
+    try_residual(const SymmetricTensor<2, 3> &z, SymmetricTensor<2, 3> &F) const
+    {
+      try
+        {
+          F = residual(z);
+          return norm(F);
+        }
+      catch (const ExceptionBase &)
+        {
+          return std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+
+    /// In the energy norm of stresses, in which flow with a potential is
+    /// monotone.
+    double
+    norm(const SymmetricTensor<2, 3> &stress) const
+    {
+      return std::sqrt(stress * stiffness.strain(stress));
+    }
+
+    /// Newton's method; nothing if it fails.
+    std::optional<SymmetricTensor<2, 3>>
+    solve(SymmetricTensor<2, 3> z) const
+    {
+      const double          scale = norm(elastic) + norm(old_z) + norm(z);
+      SymmetricTensor<2, 3> F;
+      double                size = try_residual(z, F);
+      for (unsigned int iteration = 0; iteration < 100; ++iteration)
+        {
+          if (size == 0.)
+            return z;
+          if (!std::isfinite(size))
+            return {};
+          const auto tangents =
+            law.tangents(elastic + z, strain, stiffness, point);
+          const SymmetricTensor<2, 3> step =
+            -1. * (invert(identity_tensor<3>() - k * tangents.stress) * F);
+          const double step_size = norm(step);
+          if (!std::isfinite(step_size))
+            return {};
+          // Rounding of F, which k r multiplies, does not matter: that of
+          // the correction does.
+          if (step_size <= 1e-12 * scale)
+            return z + step;
+          double damping = 1.;
+          for (;; damping *= 0.5)
+            {
+              // All that rounding leaves; beside a kink of the law, a shorter
+              // step does better.
+              if (damping < 1e-3 && step_size <= 1e-9 * scale)
+                return z + step;
+              if (damping < 1e-9)
+                return {};
+              const SymmetricTensor<2, 3> trial = z + damping * step;
+              SymmetricTensor<2, 3>       F_trial;
+              const double new_size = try_residual(trial, F_trial);
+              if (new_size <= (1. - 1e-4 * damping) * size)
+                {
+                  z    = trial;
+                  F    = F_trial;
+                  size = new_size;
+                  break;
+                }
+            }
+        }
+      return {};
+    }
+  };
+
+
+  /**
+   * Backward Euler for one sample at a given strain: the z that solves
+   *
+   *     z = z_old + k G(t_n, E eps + z, eps)
+   *
+   * by Newton's method from @p start, damped so that the residual decreases,
+   * and by continuation in k where that fails. @p point has the time t_n.
+   * Throws ExcMessage if there is no solution within reach.
+   */
+  SymmetricTensor<2, 3>
+  implicit_irreversible_stress(const ViscoplasticLaw       &law,
+                               const SymmetricTensor<2, 3> &strain,
+                               const SymmetricTensor<2, 3> &old_z,
+                               const double                 k,
+                               const Stiffness             &stiffness,
+                               const LawPoint              &point,
+                               const SymmetricTensor<2, 3> &start);
+
+  /**
+   * The algorithmic tangent, the derivative of sigma = E eps + z(eps):
+   *
+   *     C = (I - k dG/dsigma)^-1 (E + k dG/deps).
+   *
+   * Symmetric and positive definite if the flow has a potential, and E itself
+   * where nothing flows.
+   */
+  SymmetricTensor<4, 3>
+  algorithmic_tangent(const ViscoplasticLaw       &law,
+                      const SymmetricTensor<2, 3> &stress,
+                      const SymmetricTensor<2, 3> &strain,
+                      const double                 k,
+                      const Stiffness             &stiffness,
+                      const LawPoint              &point);
+
+  /**
+   * What a solver may take for C: its symmetric part, moved towards E as far as
+   * it takes to be positive definite. Laws without a potential, such as those
+   * that harden, do not have a symmetric one.
+   */
+  SymmetricTensor<4, 3>
+  definite_tangent(const SymmetricTensor<4, 3> &tangent,
+                   const Stiffness             &stiffness);
+} // namespace Viscoplastic

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+#pragma once
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/point.h>
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/laws/stiffness.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /// The subsection of the parameter file that a law is made from.
+  struct LawSection
+  {
+    /// Inside the subsection.
+    const ParameterHandler &prm;
+
+    /// Names it in messages, such as "Material 2/norton".
+    std::string path;
+
+    /// Of the scene: in 2 dimensions there is no z.
+    unsigned int dim;
+  };
+
+
+
+  /**
+   * A number in a law, such as a viscosity: an expression of x, y, (z,) and t
+   * of the parameter file, with the range that it must have everywhere.
+   */
+  class LawParameter
+  {
+  public:
+    enum class Range
+    {
+      positive,
+      non_negative,
+      at_least_one,
+      poissons_ratio, // larger than -1 and smaller than 1/2
+      any             // finite
+    };
+
+    /**
+     * Read @p entry of the section. Throws ExcMessage if it cannot be parsed,
+     * or is constant and out of range.
+     */
+    LawParameter(const LawSection  &section,
+                 const std::string &entry,
+                 const Range        range);
+
+    /// Throws ExcMessage naming entry, value, range, place and time if out of
+    /// range.
+    double
+    value(const Point<3> &x, const double t) const;
+
+    bool
+    depends_on_position() const
+    {
+      return expression->depends_on_position();
+    }
+
+    bool
+    depends_on_time() const
+    {
+      return expression->depends_on_time();
+    }
+
+    /// With its section, such as "Material 2/norton/Exponent".
+    const std::string &
+    get_name() const
+    {
+      return name;
+    }
+
+    /// The expression.
+    const std::string &
+    get_text() const
+    {
+      return text;
+    }
+
+  private:
+    std::string name, text;
+    Range       range;
+    // Shared, since lists of parameters are copied.
+    std::shared_ptr<const Expression<3>> expression;
+  };
+
+
+
+  /// Where and when a law is evaluated (in 2D, z = 0), and what the
+  /// parameters of the law are there, in the order of its constructor.
+  struct LawPoint
+  {
+    Point<3>              x;
+    double                t = 0;
+    std::array<double, 6> parameters{};
+  };
+
+  /**
+   * The function G of the constitutive equation (1.1),
+   *
+   *     sigma' = E eps(u') + G(t, sigma, eps(u)),
+   *
+   * also the rate of the irreversible stress z = sigma - E eps(u). A law knows
+   * no mesh and has no state: all its functions are const and depend on their
+   * arguments only, so cells can be visited in any order and by several
+   * threads. G must be Lipschitz in stress and strain, (2.8).
+   *
+   * A new law is one file in source/laws and one line in the list of
+   * source/laws/viscoplastic_law.cc, see doc/adding_a_law.md.
+   */
+  class ViscoplasticLaw
+  {
+  public:
+    virtual ~ViscoplasticLaw() = default;
+
+    /// The point with the values of the parameters there. Evaluates
+    /// expressions: keep the result where they do not change.
+    LawPoint
+    point(const Point<3> &x, const double t) const;
+
+    /// Whether point() differs from place to place.
+    bool
+    depends_on_position() const;
+
+    /// Whether a point must be evaluated anew at each time.
+    virtual bool
+    depends_on_time() const;
+
+    /**
+     * Whether the law goes with this elastic tensor; throws ExcMessage if not,
+     * e.g. for a long-term modulus beyond the elastic one.
+     */
+    virtual void
+    check(const Stiffness & /*stiffness*/, const LawPoint & /*point*/) const
+    {}
+
+    /// G, stress per time.
+    virtual SymmetricTensor<2, 3>
+    rate(const SymmetricTensor<2, 3> &stress,
+         const SymmetricTensor<2, 3> &strain,
+         const Stiffness             &stiffness,
+         const LawPoint              &point) const = 0;
+
+    /// The partial derivatives of G.
+    struct Tangents
+    {
+      /// dG/dsigma, 1/time.
+      SymmetricTensor<4, 3> stress;
+      /// dG/deps, stress/time.
+      SymmetricTensor<4, 3> strain;
+    };
+
+    /**
+     * The derivatives of rate(). Where G has a kink, one of the one-sided
+     * derivatives, as a semismooth Newton method needs it.
+     */
+    virtual Tangents
+    tangents(const SymmetricTensor<2, 3> &stress,
+             const SymmetricTensor<2, 3> &strain,
+             const Stiffness             &stiffness,
+             const LawPoint              &point) const = 0;
+
+    /// Whether the derivatives depend on the point alone: G is linear in stress
+    /// and strain, up to a constant.
+    virtual bool
+    has_constant_tangents() const
+    {
+      return false;
+    }
+
+    /**
+     * Whether the tangent of a step of backward Euler (algorithmic_tangent())
+     * is symmetric at all states, as it is for flow that has a potential. If
+     * not, the linear systems of a step are solved by GMRES as well.
+     */
+    virtual bool
+    has_symmetric_tangents() const
+    {
+      return false;
+    }
+
+    /**
+     * The rate r, 1/time, at which stress relaxes at fixed strain: at least
+     * the largest eigenvalue of -dG/dsigma at this stress. Forward Euler is
+     * stable for time steps up to 2/r. A law whose rate may jump to a larger
+     * value within one step returns the larger one.
+     */
+    virtual double
+    relaxation_rate(const SymmetricTensor<2, 3> &stress,
+                    const SymmetricTensor<2, 3> &strain,
+                    const Stiffness             &stiffness,
+                    const LawPoint              &point) const = 0;
+
+    /**
+     * Whether the flow preserves volume. Such a flow locks volumetrically on
+     * quadrilaterals and hexahedra whatever Poisson's ratio is, so mean
+     * dilatation is the default then.
+     */
+    virtual bool
+    deviatoric_flow() const = 0;
+
+    /**
+     * A: the flow dissipates the power -G : A, unit of strain. E^-1 sigma
+     * unless part of the energy is stored elsewhere.
+     */
+    virtual SymmetricTensor<2, 3>
+    driving_strain(const SymmetricTensor<2, 3> &stress,
+                   const SymmetricTensor<2, 3> &strain,
+                   const Stiffness             &stiffness,
+                   const LawPoint              &point) const;
+
+    /// Whether stored_energy() is other than 1/2 sigma : E^-1 sigma, and so
+    /// driving_strain() other than E^-1 sigma.
+    virtual bool
+    has_own_energy() const
+    {
+      return false;
+    }
+
+    /// Stored energy, per volume.
+    virtual double
+    stored_energy(const SymmetricTensor<2, 3> &stress,
+                  const SymmetricTensor<2, 3> &strain,
+                  const Stiffness             &stiffness,
+                  const LawPoint              &point) const;
+
+    /// Whether the law is continued linearly beyond a cap on the stress, as a
+    /// power must be to be Lipschitz.
+    virtual bool
+    has_cap() const
+    {
+      return false;
+    }
+
+    virtual bool
+    is_beyond_cap(const SymmetricTensor<2, 3> & /*stress*/,
+                  const LawPoint & /*point*/) const
+    {
+      return false;
+    }
+
+    /// What the user should know of this law at the start of a run, such as
+    /// its cap; may be empty.
+    virtual std::string
+    announcement() const
+    {
+      return "";
+    }
+
+  protected:
+    /// Points will hold the values of the parameters in this order.
+    explicit ViscoplasticLaw(std::vector<LawParameter> parameters);
+
+    const std::vector<LawParameter> parameters;
+  };
+
+
+
+  /**
+   * The derivative, with respect to stress, of the strain rate
+   * 3/2 f dev(stress)/sigma_eq of a flow along the deviator, where f depends
+   * on the von Mises stress sigma_eq. @p secant is f/sigma_eq and @p tangent
+   * is df/dsigma_eq, both 1/(stress time): along the deviator the strain rate
+   * grows with the tangent; across it, it only turns.
+   */
+  SymmetricTensor<4, 3>
+  flow_tangent(const SymmetricTensor<2, 3> &stress,
+               const double                 secant,
+               const double                 tangent);
+
+
+
+  /// What the registry knows of a law.
+  struct LawDescription
+  {
+    /// The value of the entry `Law`, and the name of the law's subsection.
+    std::string name;
+
+    /// The manual entry: formula, meaning, units, reference.
+    std::string help;
+
+    /// Declares the entries of the law; called inside its subsection.
+    std::function<void(ParameterHandler &)> declare;
+
+    /// Reads and checks these entries.
+    std::function<std::unique_ptr<ViscoplasticLaw>(const LawSection &)> make;
+  };
+
+  /**
+   * The allowed values of the entry `Law` as for Patterns::Selection:
+   * `elastic` and the registered laws, separated by `|`.
+   */
+  std::string
+  viscoplastic_law_names();
+
+  /// The manual entries of `elastic` and all registered laws, one paragraph
+  /// each.
+  std::string
+  viscoplastic_law_help();
+
+  /// Declares one subsection per law inside the current subsection.
+  void
+  declare_viscoplastic_law_parameters(ParameterHandler &prm);
+
+  /**
+   * The law of this name, with the parameters of its subsection of the
+   * current subsection, which @p section names in messages; @p dim is the
+   * dimension of the scene. Null for `elastic`: a body without viscosity has
+   * no law object and no irreversible stress. Throws ExcMessage for an unknown
+   * name and for parameters outside their range.
+   */
+  std::unique_ptr<ViscoplasticLaw>
+  make_viscoplastic_law(const std::string &name,
+                        ParameterHandler  &prm,
+                        const std::string &section = "Material",
+                        const unsigned int dim     = 3);
+} // namespace Viscoplastic

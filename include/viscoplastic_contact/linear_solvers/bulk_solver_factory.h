@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/bulk_solver.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// The matrix of a step on one mesh, with what solvers have to know of its
+  /// unknowns. All references stay in use.
+  struct BulkSystem
+  {
+    unsigned int             dim; // degrees of freedom a node
+    const DistributedMatrix &matrix;
+    /// Owned degrees of freedom that are no unknowns.
+    const std::vector<bool> &excluded;
+    /// The rigid body modes on owned entries, zero where excluded.
+    std::function<std::vector<DistributedVector>()> rigid_body_modes;
+    /// The friction points, and the global index of each entry of a face
+    /// vector; both empty without friction.
+    const FrictionFace                         &face;
+    const std::vector<types::global_dof_index> &face_dofs;
+  };
+
+
+  /// What decides on the solver of a system.
+  struct SolverDemand
+  {
+    /// `automatic', `direct' or `multigrid'.
+    std::string choice = "automatic";
+    /// Of the material that the matrix stands for.
+    double max_poissons_ratio = 0.;
+    /// How often the solver will be used at least.
+    unsigned int n_solves = 1;
+  };
+
+
+  /**
+   * Whether make_bulk_solver() would take the direct solver, for a system with
+   * @p n_dofs degrees of freedom in @p dim dimensions, @p n_face_dofs of them
+   * on the face. Throws ExcMessage for a choice that cannot be had.
+   */
+  bool
+  is_direct(const SolverDemand           &demand,
+            const unsigned int            dim,
+            const types::global_dof_index n_dofs,
+            const unsigned int            n_face_dofs,
+            const MPI_Comm                communicator);
+
+
+  /// Choose and set up a solver. Throws ExcMessage for a choice that cannot be
+  /// had. Collective.
+  std::unique_ptr<BulkSolver>
+  make_bulk_solver(const BulkSystem &system, const SolverDemand &demand);
+} // namespace Viscoplastic

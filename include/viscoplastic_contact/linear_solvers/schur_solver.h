@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/lac/lapack_full_matrix.h>
+
+#include <viscoplastic_contact/contact/bulk_solver.h>
+
+#include <memory>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Direct solver on one rank: a sparse Cholesky factorisation (CHOLMOD) with
+   * the face ordered last, K = L L^T. The last block of L then factorises the
+   * Schur complement S = L_cc L_cc^T of the bulk on the face, so that a step is
+   *
+   *     one forward substitution, a dense problem on the face, one backward
+   *     substitution,
+   *
+   * that is one plain solve, whatever the active set does.
+   */
+  class SchurSolver : public BulkSolver
+  {
+  public:
+    /**
+     * @p excluded: see AdmissibleSpace::excluded(); @p dim decides the fill
+     * reducing ordering. Throws ExcMessage if the matrix is not positive
+     * definite or memory is short.
+     */
+    SchurSolver(const DistributedMatrix                    &matrix,
+                const std::vector<bool>                    &excluded,
+                const FrictionFace                         &face,
+                const std::vector<types::global_dof_index> &face_dofs,
+                const unsigned int                          dim);
+    ~SchurSolver() override;
+
+    /// Keeps the ordering of the unknowns.
+    bool
+    renew(const DistributedMatrix &matrix) override;
+
+    bool
+    is_exact() const override
+    {
+      return true;
+    }
+
+    std::string
+    name() const override;
+
+    unsigned int
+    solve(const DistributedVector &load,
+          DistributedVector       &u,
+          const double             tolerance) override;
+
+    void
+    begin(const DistributedVector &load, DistributedVector &u) override;
+
+    const FaceMatrix &
+    face_matrix() const override;
+
+    void
+    face_residual(Vector<double> &r) override;
+
+    void
+    move_face(const Vector<double> &change) override;
+
+    void
+    set_truncation(const FaceTruncation &truncation,
+                   const bool            may_rebuild = true) override;
+
+    double
+    dual_norm(const Vector<double> &force) override;
+
+    double
+    confirmed_dual_norm(const Vector<double> &force,
+                        unsigned int         &iterations) override;
+
+    double
+    energy_norm() const override;
+
+    unsigned int
+    correct(const Vector<double> &force,
+            const double          tolerance,
+            Vector<double>       &w) override;
+
+    SearchTerms
+    search_terms(const Vector<double> &w) override;
+
+    void
+    take_step(const double step) override;
+
+    unsigned int
+    finish() override;
+
+  private:
+    /// CHOLMOD's data, hidden from those who include this file.
+    struct Factor;
+
+    /// Order the unknowns, interior first, and analyse the pattern.
+    void
+    analyse(const std::vector<bool>                    &excluded,
+            const std::vector<types::global_dof_index> &face_dofs,
+            const unsigned int                          dim);
+
+    void
+    factorise();
+
+    void
+    extract_schur_complement();
+
+    /// y := L^{-1} (load - K u) on the unknowns.
+    void
+    forward(const DistributedVector &load, const DistributedVector &u);
+
+    /// u += L^{-T} y.
+    void
+    backward(DistributedVector &u);
+
+    const DistributedMatrix &matrix;
+    const FrictionFace      &face;
+    std::unique_ptr<Factor>  factor;
+    /// Position in u of each unknown in the order of the factorisation.
+    std::vector<unsigned int> unknowns;
+    /// Factor of the Schur complement, lower triangular.
+    LAPACKFullMatrix<double>         face_factor;
+    std::unique_ptr<DenseFaceMatrix> schur_complement;
+
+    // The solve under way.
+    DistributedVector *u = nullptr;
+    Vector<double>     y, face_load, face_change, correction, product;
+    FaceTruncation     truncation;
+    double             squared_norm = 0.;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /**
+   * What a mesh file says, before it is a mesh: nodes, and the elements of
+   * highest dimension (cells) and one below (faces), with their ids.
+   */
+  struct MeshFile
+  {
+    /// A quadrilateral or hexahedron; a line or quadrilateral as a face.
+    struct Element
+    {
+      /// Indices of its nodes: around, in 3D around the lower and then around
+      /// the upper face. The first 2, 4 or 8 count.
+      std::array<unsigned int, 8> nodes{};
+      /// Of the material or the boundary.
+      unsigned int id = 0;
+      /// Where the file has it, for error messages.
+      unsigned int line = 0;
+    };
+
+    std::vector<Point<3>> nodes;
+    std::vector<Element>  cells, faces;
+  };
+
+
+  /**
+   * Read @p name as one of the formats of the parameter file: automatic, msh,
+   * ucd, vtk or abaqus, for a body of @p dim dimensions. What is returned is
+   * consistent: indices are in range, numbers are finite, there are cells, none
+   * of them twice, no face belongs to more than two of them, and the faces are
+   * those on the boundary; what else a file has is left out. Throws ExcMessage
+   * with a sentence for the user that names the file and the line.
+   *
+   * deal.II's GridIn of version 9.4 is no base for this: it waits forever for
+   * the end of truncated sections, checks indices in debug mode only, takes
+   * the lines of Gmsh's ABAQUS files for cells, reads ABAQUS coordinates with
+   * nine digits, and VTK files of one version only.
+   */
+  MeshFile
+  read_mesh_file(const std::string &name,
+                 const std::string &format,
+                 const unsigned int dim);
+} // namespace Viscoplastic

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/distributed/tria.h>
+
+#include <viscoplastic_contact/parameters/parameters.h>
+
+namespace Viscoplastic
+{
+  /**
+   * The coarse mesh of `Geometry/Generator'. Collective. Throws ExcMessage with
+   * a sentence for the user, also where the mesh would be larger than any
+   * memory.
+   */
+  template <int dim>
+  void
+  generate_mesh(const GeometryParameters                  &geometry,
+                parallel::distributed::Triangulation<dim> &triangulation);
+} // namespace Viscoplastic

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/parameters/parameter_text.h>
+#include <viscoplastic_contact/parameters/parameters.h>
+
+#include <boost/property_tree/ptree_fwd.hpp>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * One or several parameter files, read and checked as far as that is possible
+   * without a mesh. Expressions stay texts here: their number of components
+   * depends on the dimension, so Scene<dim> parses them.
+   */
+  class Parameters
+  {
+  public:
+    /**
+     * Read @p files, of which later ones override earlier ones, and then the
+     * assignments `Section/Entry=value' of @p overrides. Subsections
+     * `Boundary 0', `Material 1' and so on are declared for the ids that these
+     * name. Without files everything has its default.
+     *
+     * Throws ExcMessage with a sentence that says where something unknown or
+     * wrong is, and what would be right.
+     */
+    explicit Parameters(const std::vector<std::string> &files,
+                        const std::vector<std::string> &overrides = {});
+
+    explicit Parameters(const std::string &file);
+
+    /// The structs below are bound to entries of the handler.
+    Parameters(const Parameters &) = delete;
+    Parameters &
+    operator=(const Parameters &) = delete;
+
+    /// The first of the files, which gives the scene its name.
+    const std::string  file;
+    unsigned int       dimension = 2;
+    GeometryParameters geometry;
+    /// Of all cells, or of none where there are numbered materials.
+    MaterialParameters material;
+    StressParameters   stress;
+    /// By material id of the cells.
+    std::map<unsigned int, MaterialParameters> materials;
+    LoadParameters                             loads;
+    InitialStateParameters                     initial_state;
+    ExactSolutionParameters                    exact_solution;
+    std::map<unsigned int, BoundaryParameters> boundaries;
+    TimeParameters                             time;
+    StepControlParameters                      step_control;
+    SolverParameters                           solver;
+    ErrorControlParameters                     error_control;
+    RefinementParameters                       refinement;
+    OutputParameters                           output;
+    CheckpointParameters                       checkpoint;
+    StudyParameters                            study;
+
+    /// The value of every entry, by `Section/Subsection/Entry'.
+    std::map<std::string, std::string>
+    values() const;
+
+    /// The same with every entry, for law parameters and for the record.
+    mutable ParameterHandler handler;
+
+  private:
+    void
+    declare();
+
+    /// The ids that the names of subsections contain decide what is declared.
+    void
+    find_numbered_subsections(
+      const std::vector<ParameterStatement> &statements);
+
+    /// Give an entry its value.
+    void
+    apply(const ParameterStatement          &statement,
+          const boost::property_tree::ptree &declared);
+
+    /// Make the name of the mesh file independent of the working directory.
+    void
+    locate_mesh_file(const ParameterStatement &statement);
+  };
+
+
+
+  /**
+   * Everything that is declared, in the order of declaration: a node with a
+   * leaf `value' is an entry, with the leaves `default_value', `documentation'
+   * and `pattern_description'; others are subsections.
+   */
+  boost::property_tree::ptree
+  declared_entries(const ParameterHandler &handler);
+
+  /// Whether a node of that tree is an entry.
+  bool
+  is_entry(const boost::property_tree::ptree &node);
+
+  /// What a pattern of ParameterHandler allows, in words: "one of a, b".
+  std::string
+  allowed_values(const std::string &pattern_description);
+} // namespace Viscoplastic

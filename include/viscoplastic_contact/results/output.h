@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/error/error_ledger.h>
+
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// `Output/Directory', or what it is by default; ends with a slash.
+  std::string
+  results_directory(const Parameters &parameters);
+
+  /// Make it. Throws ExcMessage.
+  void
+  make_results_directory(const std::string &path);
+
+
+
+  /**
+   * Results in one directory: fields of the body (solution.pvd) and of Gamma_3
+   * (contact.pvd) as VTU series, and what is needed to reproduce the run
+   * (parameters.prm, run.json).
+   */
+  template <int dim>
+  class Output
+  {
+  public:
+    /**
+     * Makes the directory and writes the record of the run. Collective. Throws
+     * ExcMessage if the directory cannot be written, or has files of somebody
+     * else under the names of results.
+     */
+    Output(const Scene<dim> &scene, const MPI_Comm communicator);
+
+    /// Go on after the outputs at the times @p earlier: the series list these
+    /// and no later ones. On all ranks.
+    void
+    resume(const std::vector<double> &earlier);
+
+    const std::vector<double> &
+    output_times() const
+    {
+      return times;
+    }
+
+    /// Add the estimated error to the record of the run. On all ranks.
+    void
+    record_errors(const ErrorSummary &errors) const;
+
+    const std::string &
+    directory() const
+    {
+      return path;
+    }
+
+    /// Whether the fields of step @p n, from t_old to t, are to be written.
+    bool
+    is_due(const TimeStep &step) const;
+
+    /**
+     * Write the fields of a state. @p face is null without friction,
+     * @p squared_estimate without an estimator. Returns sentences about fields
+     * that are beyond the range of the files for the first time. Collective.
+     */
+    std::vector<std::string>
+    write_fields(const StressSampling<dim> &sampling,
+                 const State<dim>          &state,
+                 const ContactFace<dim>    *face,
+                 const Vector<double>      *squared_estimate);
+
+  private:
+    // What these return: see write_fields().
+    std::string
+    write_body(const StressSampling<dim> &sampling,
+               const State<dim>          &state,
+               const Vector<double>      *squared_estimate);
+    std::string
+    write_contact(const AdmissibleSpace<dim> &space,
+                  const State<dim>           &state,
+                  const ContactFace<dim>     *face);
+    /// Write the last output of a series: the piece of each rank and the record
+    /// of them all. @p cut_off is of this rank.
+    template <typename Data>
+    std::string
+    write_vtu(const std::string              &name,
+              const Data                     &data,
+              const std::set<unsigned int>   &cut_off,
+              const std::vector<std::string> &data_sets);
+    void
+    write_pvd(const std::string &name) const;
+    /// Remove pieces of outputs that do not count, on rank 0.
+    void
+    remove_later(const std::string &name) const;
+
+    const Scene<dim>   &scene;
+    const MPI_Comm      communicator;
+    std::string         path; // ends with a slash
+    std::vector<double> times;
+    /// Fields that the user has been told of.
+    std::set<std::string> cut_fields;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/admissible_space.h>
+
+#include <array>
+
+namespace Viscoplastic
+{
+  /// The displacement at one point of the body, on the present mesh.
+  template <int dim>
+  class PointProbe
+  {
+  public:
+    /// Collective. Throws ExcMessage if @p x is not in the body.
+    PointProbe(const AdmissibleSpace<dim> &space, const Point<dim> &x);
+
+    /// Collective.
+    Tensor<1, dim>
+    value(const DistributedVector &ghosted_u) const;
+
+  private:
+    static constexpr unsigned int n_vertices =
+      GeometryInfo<dim>::vertices_per_cell;
+
+    MPI_Comm communicator;
+    /// Whether the point is in an owned cell of this rank (one rank only).
+    bool                                is_mine = false;
+    std::array<std::size_t, n_vertices> nodes;
+    std::array<double, n_vertices>      shape_values;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
+
+#include <viscoplastic_contact/error/error_ledger.h>
+#include <viscoplastic_contact/error/solution_norms.h>
+#include <viscoplastic_contact/time_stepping/step_control.h>
+
+#include <map>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /// The largest value over a run, and when it was reached.
+  struct Largest
+  {
+    double value = 0., t = 0.;
+
+    void
+    update(const double new_value, const double new_t)
+    {
+      if (new_value > value)
+        {
+          value = new_value;
+          t     = new_t;
+        }
+    }
+  };
+
+
+
+  /**
+   * The quantities of interest for the closing words of a run, as
+   * doc/results.md defines them. Absent: what the scene does not have.
+   */
+  template <int dim>
+  struct RunSummary
+  {
+    // Of the last step.
+    double                                       t = 0.;
+    std::optional<Tensor<1, dim>>                friction_force;
+    std::map<types::boundary_id, Tensor<1, dim>> reactions;
+    double stored_energy = 0., external_work = 0., energy_balance_defect = 0.;
+    std::optional<double> viscous_dissipation, friction_dissipation,
+      adaptation_energy;
+    std::optional<double>       slipping_area;
+    std::vector<Tensor<1, dim>> point_displacements;
+    double                      max_displacement = 0.;
+    /// Of an adaptive scene without error bar.
+    std::optional<double> error_estimate;
+    /// Of a scene with error bar.
+    std::optional<ErrorSummary> errors;
+
+    Largest displacement, strain, von_mises, slip_area, capped_volume,
+      tension_area;
+    /// Of all friction points, on the mesh on which slip_area was reached.
+    double friction_area = 0.;
+    /// k r, and where r was that large.
+    Largest    stiffness;
+    Point<dim> critical_position;
+    /// Of all steps; absent where they are those of the phases.
+    unsigned int                n_steps = 0;
+    std::optional<StepCounts>   steps;
+    std::optional<unsigned int> implicit_steps;
+    /// Against an exact solution; zero without one.
+    SolutionNorms largest_error, largest_exact;
+
+    /// @p coarser: of a run with twice the mesh width and twice the time steps,
+    /// or null. The difference is the uncertainty of each quantity, by first
+    /// order convergence.
+    void
+    print(std::ostream &out, const RunSummary *coarser = nullptr) const;
+
+    /// The quantities at the end, by the names that statistics.csv has.
+    std::vector<std::pair<std::string, double>>
+    quantities() const;
+  };
+
+
+
+  /// A table `quantity,value,uncertainty'. Throws ExcMessage if it cannot be
+  /// written.
+  template <int dim>
+  void
+  write_uncertainties(const std::string     &file,
+                      const RunSummary<dim> &summary,
+                      const RunSummary<dim> &coarser);
+
+
+
+  /**
+   * Where the time of a run went.
+   *
+   * @param seconds by phase, as ViscoplasticContact::timer names them; phases
+   *   of effects that the scene does not have are left out
+   * @param first_set_up of the set-up; later ones are part of the adaptation
+   * @param total of the run
+   */
+  void
+  print_seconds(std::ostream                        &out,
+                const std::map<std::string, double> &seconds,
+                const double                         first_set_up,
+                const double                         total,
+                const bool                           has_viscosity,
+                const bool                           has_friction);
+} // namespace Viscoplastic

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/conditional_ostream.h>
+#include <deal.II/base/timer.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/fe_system.h>
+
+#include <viscoplastic_contact/base/console.h>
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/signals.h>
+#include <viscoplastic_contact/checkpoint/checkpoint_store.h>
+#include <viscoplastic_contact/results/output.h>
+#include <viscoplastic_contact/results/recorder.h>
+#include <viscoplastic_contact/run/command_line.h>
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
+
+#include <memory>
+#include <optional>
+#include <set>
+
+namespace Viscoplastic
+{
+  /**
+   * The fully discrete problem P^hk (3.18)-(3.20) in total form, for one scene.
+   * This class owns the mesh, the spaces, the matrix and the state, and decides
+   * the order in which its collaborators work:
+   *
+   *     state at t_{n-1} -> rate of z -> load -> contact solver
+   *                      -> statistics, output, checkpoint
+   *                      -> mesh adaptation, before the next step
+   *
+   * Displacements are FE_Q(1). Stresses and z are FE_DGQ(0), or live at the
+   * quadrature points: tensors for each owned cell (see StressSampling), whose
+   * cell means are what is reported.
+   */
+  template <int dim>
+  class ViscoplasticContact
+  {
+  public:
+    /// Throws ExcMessage with a sentence for the user, as run() does.
+    ViscoplasticContact(const Parameters &parameters, Console &console);
+
+    /// Returns a sentence if a signal has ended the run early, after a
+    /// checkpoint.
+    std::string
+    run(const CommandLine::Restart restart = CommandLine::Restart::no);
+
+    /// All steps without any file, and what is known at the end.
+    RunSummary<dim>
+    run_without_files();
+
+    /// The closing words of run() give each quantity with its difference from
+    /// that of a run with twice the mesh width and twice the time steps.
+    void
+    compare_with(const RunSummary<dim> &coarser);
+
+    /**
+     * Everything that can be known without solving: validates the scene with
+     * its mesh, initial data and the data of all times, and prints size,
+     * solver and what memory they need. Source: source/run/check.cc.
+     */
+    void
+    check();
+
+    /// Wall time of a run by phase, as the timer names them; `set-up' is that
+    /// of all meshes.
+    std::map<std::string, double>
+    seconds() const
+    {
+      return recorder.seconds();
+    }
+
+  private:
+    /// From the start: everything up to the initial state.
+    void
+    begin();
+
+    /// Add the row of the initial state.
+    void
+    record_initial_state();
+
+    bool
+    is_finished() const
+    {
+      return accepted.state.t >= scene.schedule.end_time();
+    }
+
+    /// The next step, recorded and accepted. Returns what it was.
+    TimeStep
+    make_step();
+
+    void
+    make_mesh();
+
+    /// Refuse a first step beyond the stability limit, before anything is
+    /// written, and warn of later ones. Source: source/run/check.cc.
+    void
+    check_steps();
+
+    void
+    set_up();
+
+    void
+    set_initial_state();
+
+    /// Throws ExcMessage if the initial data violate (2.12).
+    void
+    check_compatibility(const Load<dim> &load);
+
+    bool
+    is_implicit() const
+    {
+      return parameters.time.scheme == "backward Euler" &&
+             scene.has_viscosity();
+    }
+
+    /// Whether some steps may be of backward Euler and others not.
+    bool
+    changes_scheme() const
+    {
+      return control.passes_limit && scene.has_viscosity() && !is_implicit();
+    }
+
+    void
+    adapt_mesh();
+
+    /// Keep other processes out of the directories that this run writes into,
+    /// as far as they exist and have no lock yet.
+    void
+    lock_directories(const bool make_results = false);
+
+    // Checkpoints: source/run/restart.cc.
+
+    /// Where the scene keeps its checkpoints.
+    CheckpointStore
+    checkpoints() const;
+
+    /// Remove those of an earlier run, which go with its results.
+    void
+    begin_checkpoints();
+
+    /// The checkpoint to go on from, if the run is to go on and there is one.
+    std::optional<CheckpointManifest>
+    find_checkpoint(const CommandLine::Restart restart);
+
+    /// From a checkpoint: what begin() does, and all steps up to there.
+    void
+    resume(const CheckpointManifest &checkpoint);
+
+    /// Write a checkpoint at the end of a step if it is time for it, or a
+    /// signal has asked for it. Returns a sentence if the run is to end.
+    std::string
+    keep_checkpoints(const SignalRequests &signals);
+
+    void
+    write_checkpoint();
+
+    /// Write to, or read from, an archive what is the same on all ranks.
+    template <typename Archive>
+    void
+    exchange(Archive &archive);
+
+    // Reporting: source/run/reporting.cc.
+
+    void
+    announce() const;
+
+    void
+    announce_mesh() const;
+
+    /// Name the frictional boundaries without friction points, each once.
+    void
+    announce_held_faces();
+
+    /// Name the linear solver if it is another one.
+    void
+    announce_solver();
+
+    /// Against the exact solution, or a reference at the ends of phases; not
+    /// a number where there is none. Writes such a reference where wanted.
+    SolutionErrors
+    measure_errors(const State<dim> &of);
+
+    /// Refuse missing references before the run.
+    void
+    check_references() const;
+
+    void
+    write_fields();
+
+    void
+    close();
+
+    const MPI_Comm                            communicator;
+    const Parameters                         &parameters;
+    Console                                  &console;
+    ConditionalOStream                        out; // the console on rank 0
+    Scene<dim>                                scene;
+    parallel::distributed::Triangulation<dim> triangulation;
+    const FESystem<dim>                       fe;
+    DoFHandler<dim>                           dof_handler;
+    StepControl                               control;
+    std::unique_ptr<ErrorBar<dim>>            error_bar; // null if not wanted
+
+    // Made anew on each mesh.
+    std::unique_ptr<Discretization<dim>> discretization;
+    std::unique_ptr<TimeStepper<dim>>    time_stepper;
+
+    /// The last state that will do.
+    EvaluatedState<dim> accepted;
+    ContactReport       initial_report;
+    /// The linear solver, and the frictional boundaries without friction
+    /// points, that the user has been told of.
+    std::string                  announced_solver;
+    std::set<types::boundary_id> announced_held_faces;
+    DirectoryLock                results_lock, checkpoint_lock; // on rank 0
+    std::optional<Output<dim>>   output; // absent without files
+    TimerOutput                  timer;  // wall time by phase
+    Recorder<dim>                recorder;
+    /// What compare_with() was given.
+    std::optional<RunSummary<dim>> coarser_summary;
+    /// When the last checkpoint was written, as the recorder's clock has it.
+    double last_checkpoint = 0.;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
+
+#include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/parameters/parameters.h>
+#include <viscoplastic_contact/scene/exact_solution.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  enum class BoundaryRole
+  {
+    clamped,
+    displacement,
+    traction,
+    free,
+    symmetry,
+    contact
+  };
+
+  enum class FrictionLaw
+  {
+    none,
+    tresca,  // bilateral, (5.22)
+    coulomb, // given normal stress, (5.6)
+    glued    // no slip whatever the force: rho = infinity
+  };
+
+
+  /// What happens on one boundary id, with its data as functions of x and t.
+  template <int dim>
+  struct BoundaryCondition
+  {
+    /**
+     * Parses all entries, also those that it does not use. Throws ExcMessage
+     * naming the entry. If there is a @p solution that makes the data, what
+     * follows from it must not be given.
+     */
+    BoundaryCondition(const types::boundary_id  id,
+                      const BoundaryParameters &parameters,
+                      const ExactSolution<dim> *solution = nullptr);
+
+    /// Complete the data with what follows from the solution and the normal.
+    void
+    derive_data();
+
+    types::boundary_id id;
+    BoundaryRole       role;
+    FrictionLaw        friction_law = FrictionLaw::none;
+
+    /// Role displacement: the given components; empty ones are free.
+    std::array<std::optional<Expression<dim>>, dim> displacement;
+    /// F, role traction.
+    std::optional<VectorExpression<dim>> traction;
+    /// d of bilateral contact; absent where identically zero.
+    std::optional<Expression<dim>> foundation_displacement;
+    /// w, whose tangential part slip is relative to; absent at rest.
+    std::optional<VectorExpression<dim>> foundation_motion;
+    /// g of the law tresca.
+    std::optional<Expression<dim>> friction_bound;
+    /// mu and S of the law coulomb.
+    std::optional<Expression<dim>> friction_coefficient, normal_stress;
+    /// What makes the data, or null.
+    const ExactSolution<dim> *solution;
+    /// Outward unit normal of a symmetry or contact piece, which is flat.
+    Tensor<1, dim> normal;
+
+    /// Whether u_nu is prescribed here.
+    bool
+    is_bilateral() const
+    {
+      return role == BoundaryRole::symmetry ||
+             (role == BoundaryRole::contact &&
+              friction_law != FrictionLaw::coulomb);
+    }
+
+    bool
+    has_friction() const
+    {
+      return friction_law == FrictionLaw::tresca ||
+             friction_law == FrictionLaw::coulomb;
+    }
+
+    /// Whether all of u is prescribed here: glued_displacement().
+    bool
+    is_glued() const
+    {
+      return friction_law == FrictionLaw::glued;
+    }
+
+    /// Whether there is F or S.
+    bool
+    carries_load() const
+    {
+      return traction || normal_stress || has_derived_traction();
+    }
+
+    bool
+    load_depends_on_time() const;
+
+    /// The force per area that is given at a point with this outward normal:
+    /// F, or S nu; zero in the directions in which u is prescribed.
+    Tensor<1, dim>
+    load(const Point<dim>     &x,
+         const Tensor<1, dim> &outward_normal,
+         const double          t) const;
+
+    /// The tangential part of w(x,t) - w(x,0); zero at rest.
+    Tensor<1, dim>
+    sliding(const Point<dim> &x, const double t) const;
+
+    /// d nu + sliding().
+    Tensor<1, dim>
+    glued_displacement(const Point<dim> &x, const double t) const;
+
+    /// Whether some displacement component is prescribed here.
+    bool
+    constrains() const
+    {
+      return role == BoundaryRole::clamped ||
+             role == BoundaryRole::displacement || is_bilateral();
+    }
+
+    /// Whether all components of u are prescribed here.
+    bool
+    prescribes_all() const
+    {
+      bool all = true;
+      for (const auto &component : displacement)
+        all = all && component.has_value();
+      return all || role == BoundaryRole::clamped || is_glued();
+    }
+
+    /// All of the data, those of the friction bound included.
+    std::vector<const Expression<dim> *>
+    data() const;
+
+    /// Names of the entries that are given in @p parameters (the ones that it
+    /// was made of), but mean nothing for this role and friction law.
+    std::vector<std::string>
+    unused_entries(const BoundaryParameters &parameters) const;
+
+    /**
+     * The friction bound rho(x,t): g, or mu |S|. Throws ExcMessage where it is
+     * negative.
+     */
+    double
+    bound(const Point<dim> &x, const double t) const;
+
+    /// Whether bound() depends on time.
+    bool
+    bound_depends_on_time() const;
+
+  private:
+    /// Whether F is sigma nu of the solution.
+    bool
+    has_derived_traction() const
+    {
+      return solution &&
+             (role == BoundaryRole::traction || role == BoundaryRole::free ||
+              (role == BoundaryRole::displacement && !prescribes_all()));
+    }
+  };
+} // namespace Viscoplastic

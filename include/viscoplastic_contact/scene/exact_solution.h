@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/parameters/parameters.h>
+#include <viscoplastic_contact/scene/material.h>
+
+#include <optional>
+
+namespace Viscoplastic
+{
+  /**
+   * A known solution (u, sigma) of a scene: for the errors of a run, and to
+   * make up a problem that it solves. Then the data follow from it,
+   *
+   *     b = -Div sigma,   F = sigma nu,   S = sigma_nu,   u0, sigma0,
+   *     s = sigma' - E eps(u') - G(t, sigma, eps(u)),
+   *
+   * with the source s added to G, which may depend on x and t. Friction bounds
+   * remain data of the scene, since they do not follow where the body sticks.
+   *
+   * Derivatives are differences of second order over 1e-4 of the size of the
+   * body and of the length of time: right up to some 1e-8.
+   */
+  template <int dim>
+  class ExactSolution
+  {
+  public:
+    /// Throws ExcMessage with a sentence for the user. @p end_time is T.
+    ExactSolution(const ExactSolutionParameters &parameters,
+                  const double                   end_time);
+
+    /// Whether the data of the problem follow from the solution.
+    const bool makes_data;
+
+    /// Whether `Stress' is given, and with it, for made-up data, a source.
+    bool
+    has_own_stress() const
+    {
+      return given_stress.has_value();
+    }
+
+    /// Of the body: its size is the scale of differences. @p elastic is its
+    /// material, if that is one without a law, and gives the stress
+    /// E eps(u) if there is no other.
+    void
+    set_body(const double size, const Material<dim> *elastic);
+
+    bool
+    has_stress() const
+    {
+      return has_own_stress() || material != nullptr;
+    }
+
+    Tensor<1, dim>
+    displacement(const Point<dim> &x, const double t) const;
+
+    /// grad u: derivatives of component i in row i.
+    Tensor<2, dim>
+    gradient(const Point<dim> &x, const double t) const;
+
+    SymmetricTensor<2, 3>
+    strain(const Point<dim> &x, const double t) const;
+
+    SymmetricTensor<2, 3>
+    stress(const Point<dim> &x, const double t) const;
+
+    /// sigma nu.
+    Tensor<1, dim>
+    traction(const Point<dim>     &x,
+             const Tensor<1, dim> &normal,
+             const double          t) const;
+
+    /// -Div sigma.
+    Tensor<1, dim>
+    body_force(const Point<dim> &x, const double t) const;
+
+    /// From which side of t a time derivative is taken: that of the step that
+    /// begins, or of the step that ends there.
+    enum class Side
+    {
+      after,
+      before
+    };
+
+    Tensor<1, dim>
+    velocity(const Point<dim> &x, const double t, const Side side) const;
+
+    SymmetricTensor<2, 3>
+    strain_rate(const Point<dim> &x, const double t, const Side side) const;
+
+    SymmetricTensor<2, 3>
+    stress_rate(const Point<dim> &x, const double t, const Side side) const;
+
+    /// Throws ExcMessage if the rates at x tend to infinity at time t.
+    void
+    check_rates(const Point<dim> &x, const double t) const;
+
+  private:
+    std::optional<VectorExpression<dim>> given_displacement, given_stress;
+    const Material<dim>                 *material = nullptr;
+    double                               space_step, time_step;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/study/study_runs.h>
+
+#include <array>
+
+namespace Viscoplastic
+{
+  // What the runs of a study say together.
+
+  using Records = std::vector<const RunRecord *>;
+
+  /// The error of a quantity of interest, relative to its size (of vectors: to
+  /// that of the vector) in the reference; not a number without one.
+  double
+  quantity_error(const RunRecord   &record,
+                 const std::string &quantity,
+                 const RunRecord   *reference);
+
+  /**
+   * The error of a run in a measure: a column of study.csv that holds errors
+   * or estimates, `<quantity>_error', or `quantities', the largest error of all
+   * quantities of interest. Not a number where it is not known.
+   */
+  double
+  error_of(const RunRecord   &record,
+           const std::string &measure,
+           const RunRecord   *reference);
+
+  /**
+   * The best measure that at least three of the runs have: the error in the
+   * energy norm, the estimate of it, the quantities of interest. Empty if none.
+   */
+  std::string
+  best_measure(const Records &records, const RunRecord *reference);
+
+  /// A measure in words.
+  std::string
+  measure_in_words(const std::string &measure);
+
+  /// Those of one way to compute.
+  Records
+  of_way(const Records &records, const RunKey &way);
+
+  /// Errors by h and k, for fit_error().
+  std::vector<Sample>
+  error_samples(const Records     &records,
+                const std::string &measure,
+                const RunRecord   *reference);
+
+  /// The fit of errors; that of estimates is by their parts.
+  TwoPowers
+  fit_measure(const Records     &records,
+              const std::string &measure,
+              const RunRecord   *reference);
+
+  CostModel
+  cost_of(const Records &records, const unsigned int dim);
+
+  /// Fits to runs of one way. There must be a run.
+  Market
+  make_market(const StudyRuns   &runs,
+              const Records     &records,
+              const std::string &measure,
+              const RunRecord   *reference);
+
+
+  /// Three values on meshes and with steps that halve each time.
+  struct Richardson
+  {
+    std::string           quantity;
+    std::array<double, 3> values;
+    double                order, extrapolated;
+    /// Of the last value, relative to the size of the quantity.
+    double error;
+    /// Whether the differences shrink with an order between 1/2 and 3, so that
+    /// the last value can serve as a reference.
+    bool is_trustworthy;
+  };
+
+  /// For every quantity of interest, of runs from coarse to fine.
+  std::vector<Richardson>
+  extrapolate(const std::array<const RunRecord *, 3> &runs);
+
+} // namespace Viscoplastic

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/study/study.h>
+
+namespace Viscoplastic
+{
+  /**
+   * study.csv: a row for each run and ladder; study.json: fits and prices;
+   * study.md: the same for people. Each is replaced at once. On one rank, and
+   * only if there is a finished run. Throws ExcMessage.
+   */
+  void
+  write_report(const Study &study, const bool is_finished);
+
+  /// The contents of study.md.
+  std::string
+  study_as_markdown(const Study &study, const bool is_finished);
+
+  /// The price lists as sentences, one a line.
+  std::string
+  prices_in_words(const Study &study);
+
+
+  /// What the finished runs of a way to compute say; without a known error
+  /// there is no market.
+  struct WayResult
+  {
+    RunKey                way;
+    Records               records;
+    std::string           measure;
+    std::optional<Market> market;
+    std::vector<Price>    prices;
+  };
+
+  std::vector<WayResult>
+  analyse(const Study &study);
+
+
+  /// Where and when numbers were made.
+  struct Origin
+  {
+    std::string  program, machine, date;
+    unsigned int n_ranks;
+  };
+
+  Origin
+  origin();
+} // namespace Viscoplastic

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/flow_laws.h>
+
+#include <functional>
+
+namespace Viscoplastic
+{
+  /// Whether all laws say that their tangents are symmetric. Collective.
+  template <int dim>
+  bool
+  have_symmetric_tangents(const FlowLaws<dim> &laws, const double t);
+
+
+  /// A place where Newton's method for a step is: u in frames, the same
+  /// Cartesian and with ghosts, z(eps(u)), and what friction does there.
+  template <int dim>
+  struct NewtonIterate
+  {
+    DistributedVector  u, ghosted_u;
+    IrreversibleStress z;
+    FrictionState      friction;
+  };
+
+
+  /**
+   * Newton's method for the bulk and friction together where the tangents C of
+   * backward Euler are not symmetric, and a symmetric matrix misses a part of
+   * them. The contact solver has found, with that matrix, who sticks and who
+   * slips; with these sets, the correction w solves
+   *
+   *     P (a_C(.,.) + springs) P w = P r,
+   *
+   * where r is the exact residual with the forces of friction, P holds the
+   * sticking points, and the springs are the turning stiffness of slipping
+   * ones (see make_truncation()). GMRES, preconditioned by the solver of the
+   * symmetric matrix; C itself is applied cell by cell and makes no matrix.
+   *
+   * A correction is taken as far as it decreases the exact residual in the
+   * dual norm of the matrix, with slips that would reverse stopped, or not at
+   * all. Keeps nothing from one call to the next.
+   */
+  template <int dim>
+  class NonsymmetricCorrection
+  {
+  public:
+    /// @p elastic_matrix is that of a(.,.), @p solver that of the tangent
+    /// matrix; null @p face: no friction. The others are those of the step,
+    /// @p load without z, @p old_u in frames.
+    NonsymmetricCorrection(const FlowLaws<dim>       &laws,
+                           const DistributedMatrix   &elastic_matrix,
+                           BulkSolver                &solver,
+                           const ContactFace<dim>    *face,
+                           const DistributedVector   &load,
+                           const DistributedVector   &old_u,
+                           const std::vector<double> &bounds,
+                           const Vector<double>      &foundation_step);
+
+    /// z for the strains of a ghosted displacement, from a guess. May throw
+    /// ExceptionBase on all ranks if there is none.
+    using StressForStrain =
+      std::function<IrreversibleStress(const DistributedVector &,
+                                       const IrreversibleStress &)>;
+
+    struct Result
+    {
+      /// The share of the correction that was taken; 0 if none is of use.
+      double share;
+      /// Linear iterations: of GMRES, or of the preconditioner's solves.
+      unsigned int iterations;
+    };
+
+    /// Correct @p iterate, which the contact solver has left in a step of size
+    /// k to time t; the linear system is solved to @p reduction. Collective.
+    Result
+    correct(const double           t,
+            const double           k,
+            const double           reduction,
+            const StressForStrain &z_for,
+            NewtonIterate<dim>    &iterate) const;
+
+  private:
+    struct Operator;
+    struct Preconditioner;
+
+    /// The residual, less the forces of multipliers that fit it best, which
+    /// @p iterate gets.
+    DistributedVector
+    residual(NewtonIterate<dim> &iterate) const;
+
+    /// The norm of a residual in the dual of the matrix's energy norm.
+    double
+    dual_norm(const DistributedVector &r) const;
+
+    /// @p from + share w, with slips that would reverse brought to rest; z is
+    /// left.
+    NewtonIterate<dim>
+    move(const NewtonIterate<dim> &from,
+         const DistributedVector  &w,
+         const double              share) const;
+
+    /// Add a face vector to the owned entries.
+    void
+    add_face(const double          factor,
+             const Vector<double> &on_face,
+             DistributedVector    &v) const;
+
+    /// Hold the sticking points.
+    void
+    project(const FaceTruncation &truncation, DistributedVector &v) const;
+
+    void
+    restrict_to_unknowns(DistributedVector &v) const;
+
+    FaceTruncation
+    truncation(const FrictionState &friction) const;
+
+    const FlowLaws<dim>        &laws;
+    const StressSampling<dim>  &sampling;
+    const AdmissibleSpace<dim> &space;
+    const DistributedMatrix    &elastic_matrix;
+    BulkSolver                 &solver;
+    const ContactFace<dim>     *face;
+    const DistributedVector    &load, &old_u;
+    const std::vector<double>  &bounds;
+    const Vector<double>       &foundation_step;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/parameters/parameters.h>
+#include <viscoplastic_contact/parameters/time_schedule.h>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// A step could not be made; a shorter one may succeed.
+  struct StepFailure : public std::runtime_error
+  {
+    /// Step @p n to time @p t, and why as a sentence.
+    StepFailure(const unsigned int n, const double t, const std::string &why);
+  };
+
+
+  /// Because it is beyond the stability limit of its scheme.
+  struct StepBeyondStability : public StepFailure
+  {
+    using StepFailure::StepFailure;
+  };
+
+
+  /**
+   * What a step that has been tried is judged by.
+   */
+  struct StepErrors
+  {
+    /// What the step adds to the error of the time integration, in the energy
+    /// norm.
+    double indicator = 0.;
+    /// What the solution moves in the step, and its size: in the same norm.
+    double change = 0., size = 0.;
+  };
+
+
+  /// What the step control has done, for the closing words.
+  struct StepCounts
+  {
+    unsigned int rejected = 0, events = 0, failed = 0;
+    /// Accepted at the smallest size although the error is too large.
+    unsigned int unresolved = 0;
+  };
+
+
+  /**
+   * Chooses the time steps: those of the phases; shorter ones where stability
+   * asks for it; or steps by their error. What it knows of the run is here, so
+   * that a step itself is a function of the accepted state, the time and the
+   * step size alone.
+   *
+   * With `Step control/Tolerance' = TOL, a step is accepted if its contribution
+   * d to the time error (ErrorLedger::time_indicator) satisfies
+   *
+   *     d <= TOL max(size k/T, change),
+   *
+   * with the largest energy norm of the run so far as size and the end time T.
+   * The sum over the run is then at most TOL times the size of the solution
+   * plus the length of its path. An absolute bound would not do: a solution
+   * that starts from zero has no size yet. The next step follows from the error
+   * ratios of the last two by a proportional-integral controller (Gustafsson;
+   * Hairer and Wanner II, IV.2), whose exponents are those of the order p in
+   * which that ratio depends on k.
+   */
+  class StepControl
+  {
+  public:
+    /// @p order of the scheme. @p output_interval: 0 for none. Throws
+    /// ExcMessage.
+    StepControl(const StepControlParameters &parameters,
+                const std::string           &stiffness_policy,
+                const TimeSchedule          &schedule,
+                const unsigned int           order,
+                const double                 output_interval);
+
+    /// Whether the time error of steps is estimated, which needs viscosity.
+    void
+    set_has_estimate(const bool value)
+    {
+      has_estimate = value;
+    }
+
+    /// Whether a step may be tried more than once.
+    bool
+    may_reject() const
+    {
+      return is_on || subdivides;
+    }
+
+    /// Whether the stability limit of explicit schemes decides on steps.
+    bool
+    needs_limit() const
+    {
+      return may_reject() && !passes_limit;
+    }
+
+    /// The step to try from time t, after n steps. @p limit is 2/r of an
+    /// explicit scheme. Throws ExcMessage if the limit would take millions of
+    /// steps.
+    TimeStep
+    propose(const unsigned int n, const double t, const double limit) const;
+
+    /// Whether a step will do; otherwise propose() gives a shorter one. @p
+    /// has_event: something happens in it whose time is wanted.
+    bool
+    accepts(const TimeStep   &step,
+            const StepErrors &errors,
+            const bool        has_event);
+
+    /// A step has failed: whether propose() gives a shorter one.
+    bool
+    retries(const TimeStep &step, const bool for_stability);
+
+    /// About how many steps the run will have, after n steps, the last of size
+    /// k to t.
+    double
+    expected_steps(const unsigned int n, const double t, const double k) const;
+
+    /// Whether events of a step from time t count: after a kink of the data
+    /// slip may end at once, which says nothing.
+    bool
+    is_kink(const double t) const;
+
+    const StepCounts &
+    counts() const
+    {
+      return n;
+    }
+
+    /// Write to, or read from, an archive.
+    template <typename Archive>
+    void
+    exchange(Archive &archive)
+    {
+      archive &wanted &last_ratio &size &was_rejected &event_before;
+      archive &n.rejected &n.events &n.failed &n.unresolved;
+    }
+
+    const bool is_on, subdivides;
+    /// Whether steps beyond the limit are taken by backward Euler.
+    const bool passes_limit;
+
+  private:
+    double
+    next_target(const double t) const;
+
+    double
+    smallest(const double t) const;
+
+    double
+    largest(const double t) const;
+
+    const StepControlParameters &parameters;
+    const TimeSchedule          &schedule;
+    const unsigned int           order;
+    const double                 output_interval;
+    std::vector<double>          landing_times; // ascending
+    bool                         has_estimate = true;
+
+    /// The step size that is tried next; 0 for that of the phase.
+    double wanted = 0.;
+    /// Error over allowed error of the last accepted step; 0 for none.
+    double last_ratio = 0.;
+    /// The largest energy norm so far.
+    double size         = 0.;
+    bool   was_rejected = false;
+    /// The end of a step that was rejected for an event, which has not been
+    /// met yet.
+    double     event_before = 0.;
+    StepCounts n;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/spelling.h>
+
+#include <cmath>
+#include <iostream>
+#include <regex>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Whether the identifier @p name stands in @p text.
+    bool
+    mentions(const std::string &text, const std::string &name)
+    {
+      return std::regex_search(text, std::regex("\\b" + name + "\\b"));
+    }
+
+
+
+    /// What muParser says in the lines that deal.II prints, `Message:  <...>'
+    /// and others; empty if there is no such line. (A regular expression would
+    /// need a stack as deep as the line is long.)
+    std::string
+    message_of_parser(const std::string &printed)
+    {
+      const std::size_t begin = printed.find("Message:");
+      const std::size_t open  = printed.find('<', begin);
+      const std::size_t close = printed.rfind('>', printed.find('\n', begin));
+      if (begin == std::string::npos || open == std::string::npos ||
+          close == std::string::npos || close < open)
+        return "";
+      return printed.substr(open + 1, close - open - 1);
+    }
+
+
+
+    /// muParser's words with the full stop that most of them lack.
+    std::string
+    as_sentence(const std::string &words)
+    {
+      return words.empty() || words.back() == '.' ? words : words + '.';
+    }
+
+
+
+    /// What muParser takes, but nobody means: the last of a list `0,5' as its
+    /// value, an assignment `x = 1' for a comparison; and random numbers, which
+    /// differ from run to run and from rank to rank.
+    void
+    refuse_slips(const std::string &text, const std::string &entry)
+    {
+      const auto refuse = [&](const std::string &why) {
+        AssertThrow(false,
+                    ExcMessage("The expression '" +
+                               excerpt(Utilities::trim(text)) + "' of '" +
+                               entry + "' " + why));
+      };
+      for (const char *function : {"rand", "rand_seed"})
+        if (mentions(text, function))
+          refuse("has random numbers ('" + std::string(function) +
+                 "'), with which no run can be repeated.");
+      int depth = 0;
+      for (std::size_t i = 0; i < text.size(); ++i)
+        {
+          const char c    = text[i];
+          const char last = i > 0 ? text[i - 1] : ' ';
+          const char next = i + 1 < text.size() ? text[i + 1] : ' ';
+          depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+          if (c == ',' && depth == 0)
+            refuse("has a comma outside of parentheses; numbers have a "
+                   "decimal point.");
+          if (c == ';')
+            refuse("has more than one component, but one is needed.");
+          if (c == '=' && next != '=' && last != '=' && last != '!' &&
+              last != '<' && last != '>')
+            refuse("has a single '='; comparisons are written '=='.");
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::unique_ptr<FunctionParser<dim>>
+  parse_expression(const std::string &text,
+                   const std::string &variables,
+                   const std::string &entry)
+  {
+    AssertThrow(!Utilities::trim(text).empty(),
+                ExcMessage("The expression of '" + entry + "' is empty."));
+    refuse_slips(text, entry);
+    auto parser = std::make_unique<FunctionParser<dim>>(1);
+    // deal.II prints what muParser says to std::cerr; the user gets it in our
+    // sentence instead.
+    std::ostringstream printed;
+    std::streambuf    *original = std::cerr.rdbuf(printed.rdbuf());
+    try
+      {
+        parser->initialize(variables,
+                           text,
+                           {{"pi", numbers::PI}, {"Pi", numbers::PI}},
+                           /* time_dependent = */ true);
+        parser->value(Point<dim>()); // deal.II parses at the first value
+        std::cerr.rdbuf(original);
+      }
+    catch (const std::exception &exception)
+      {
+        std::cerr.rdbuf(original);
+        const std::string why = message_of_parser(printed.str());
+        AssertThrow(false,
+                    ExcMessage(
+                      "The expression '" + excerpt(Utilities::trim(text)) +
+                      "' of '" + entry + "' cannot be parsed: " +
+                      as_sentence(
+                        excerpt(why.empty() ? reason(exception) : why, 200))));
+      }
+    return parser;
+  }
+
+
+
+  template <int dim>
+  Point<dim>
+  parse_point(const std::string &text, const std::string &entry)
+  {
+    std::vector<double> numbers;
+    try
+      {
+        numbers =
+          Utilities::string_to_double(Utilities::split_string_list(text, ','));
+      }
+    catch (const std::exception &)
+      {
+        numbers.clear(); // refused below
+      }
+    for (const double number : numbers)
+      if (!std::isfinite(number))
+        {
+          numbers.clear();
+          break;
+        }
+    AssertThrow(numbers.size() == dim,
+                ExcMessage("'" + entry + "' = " + excerpt(text) + " needs " +
+                           std::to_string(dim) + " finite numbers."));
+    Point<dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      result[d] = numbers[d];
+    return result;
+  }
+
+
+
+  template <int dim>
+  Expression<dim>::Expression(const std::string &text,
+                              const std::string &entry,
+                              const std::string &variables)
+    : text(Utilities::trim(text))
+    , entry(entry)
+    , variables(variables)
+    , time_dependent(mentions(text, "t"))
+    , position_dependent(false)
+    , constant(0.)
+    , parser(parse_expression<dim>(text, variables + ",t", entry))
+  {
+    for (const std::string &variable : Utilities::split_string_list(variables))
+      position_dependent = position_dependent || mentions(text, variable);
+    constant = parser->value(Point<dim>());
+    // Not everybody asks a constant for its value.
+    if (!time_dependent && !position_dependent)
+      value(Point<dim>(), 0.);
+  }
+
+
+
+  template <int dim>
+  Expression<dim>::Expression(const Function    &function,
+                              const std::string &entry)
+    : entry(entry)
+    , variables(FunctionParser<dim>::default_variable_names())
+    , time_dependent(true)
+    , position_dependent(true)
+    , constant(0.)
+    , function(function)
+  {}
+
+
+
+  template <int dim>
+  double
+  Expression<dim>::value(const Point<dim> &x, const double t) const
+  {
+    double result = constant;
+    if (!parser)
+      result = function(x, t);
+    else if (time_dependent || position_dependent)
+      {
+        parser->set_time(t);
+        result = parser->value(x);
+      }
+    if (!std::isfinite(result))
+      {
+        std::ostringstream message;
+        message << "The expression '" << (parser ? excerpt(text) : "derived")
+                << "' of '" << entry << "' has the value " << result << " at "
+                << (variables == FunctionParser<dim>::default_variable_names() ?
+                      "x" :
+                      variables)
+                << " = (" << x << "), t = " << t << "; it must be finite.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  Expression<dim>::may_jump() const
+  {
+    if (!parser || !time_dependent)
+      return false;
+    bool result = text.find_first_of("<>=!?") != std::string::npos;
+    for (const char *function : {"if", "int", "ceil", "floor", "rint", "sign"})
+      result = result || mentions(text, function);
+    return result;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  Expression<dim>::gradient(const Point<dim> &x, const double t) const
+  {
+    if (!position_dependent)
+      return {};
+    // The step balances truncation and rounding of a central difference.
+    Tensor<1, dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double h = 1e-5 * std::max(1e-3, std::abs(x[d]));
+        Point<dim>   left(x), right(x);
+        left[d] -= h;
+        right[d] += h;
+        result[d] = (value(right, t) - value(left, t)) / (right[d] - left[d]);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  VectorExpression<dim>::VectorExpression(const std::string &text,
+                                          const unsigned int n_components,
+                                          const std::string &entry)
+  {
+    const auto parts = Utilities::split_string_list(text, ';');
+    AssertThrow(parts.size() == n_components,
+                ExcMessage(
+                  "'" + entry + "' needs " + std::to_string(n_components) +
+                  " components separated by semicolons, but '" + excerpt(text) +
+                  "' has " + std::to_string(parts.size()) + "."));
+    for (const std::string &part : parts)
+      components.emplace_back(part, entry);
+  }
+
+
+
+  template <int dim>
+  VectorExpression<dim>::VectorExpression(
+    const std::vector<typename Expression<dim>::Function> &functions,
+    const std::string                                     &entry)
+  {
+    for (const auto &function : functions)
+      components.emplace_back(function, entry);
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  VectorExpression<dim>::vector(const Point<dim> &x, const double t) const
+  {
+    Tensor<1, dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      result[d] = value(x, t, d);
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  VectorExpression<dim>::depends_on_time() const
+  {
+    for (const auto &component : components)
+      if (component.depends_on_time())
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  VectorExpression<dim>::is_zero() const
+  {
+    for (const auto &component : components)
+      if (!component.is_zero())
+        return false;
+    return true;
+  }
+
+
+
+  template <int dim>
+  std::optional<VectorExpression<dim>>
+  optional_vector(const std::string &text,
+                  const unsigned int n_components,
+                  const std::string &entry)
+  {
+    if (Utilities::trim(text).empty())
+      return {};
+    VectorExpression<dim> expression(text, n_components, entry);
+    if (expression.is_zero())
+      return {};
+    return expression;
+  }
+
+
+
+  template std::unique_ptr<FunctionParser<2>>
+  parse_expression<2>(const std::string &,
+                      const std::string &,
+                      const std::string &);
+  template std::unique_ptr<FunctionParser<3>>
+  parse_expression<3>(const std::string &,
+                      const std::string &,
+                      const std::string &);
+  template Point<2>
+  parse_point<2>(const std::string &, const std::string &);
+  template Point<3>
+  parse_point<3>(const std::string &, const std::string &);
+  template class Expression<2>;
+  template class Expression<3>;
+  template class VectorExpression<2>;
+  template class VectorExpression<3>;
+  template std::optional<VectorExpression<2>>
+  optional_vector<2>(const std::string &,
+                     const unsigned int,
+                     const std::string &);
+  template std::optional<VectorExpression<3>>
+  optional_vector<3>(const std::string &,
+                     const unsigned int,
+                     const std::string &);
+} // namespace Viscoplastic

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/spelling.h>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    /// Throws unless @p success, with the reason of the last system call.
+    void
+    check_written(const bool success, const std::string &name)
+    {
+      AssertThrow(success,
+                  ExcMessage("'" + name + "' cannot be written: " +
+                             std::strerror(errno) + "."));
+    }
+
+
+
+    /// An open file whose every operation is checked. Errors name @p name,
+    /// which need not be the name under which it is opened.
+    class Descriptor
+    {
+    public:
+      Descriptor(const std::string &name,
+                 const std::string &path,
+                 const int          flags)
+        : name(name)
+        , descriptor(open(path.c_str(), flags | O_CLOEXEC, 0666))
+      {
+        check_written(descriptor >= 0, name);
+      }
+
+      ~Descriptor()
+      {
+        if (descriptor >= 0)
+          ::close(descriptor);
+      }
+
+      Descriptor(const Descriptor &) = delete;
+      Descriptor &
+      operator=(const Descriptor &) = delete;
+
+      void
+      write_all(const std::string &bytes) const
+      {
+        std::size_t written = 0;
+        while (written < bytes.size())
+          {
+            const ssize_t n =
+              write(descriptor, bytes.data() + written, bytes.size() - written);
+            check_written(n > 0 || errno == EINTR, name);
+            written += std::max<ssize_t>(n, 0);
+          }
+      }
+
+      void
+      synchronise() const
+      {
+        // Some file systems cannot do it for directories.
+        check_written(fsync(descriptor) == 0 || errno == EINVAL, name);
+      }
+
+      /// Network file systems tell only here that their disk is full.
+      void
+      close()
+      {
+        check_written(::close(std::exchange(descriptor, -1)) == 0 ||
+                        errno == EINTR,
+                      name);
+      }
+
+    private:
+      const std::string name;
+      int               descriptor;
+    };
+  } // namespace
+
+
+
+  std::optional<std::string>
+  read_file_if_any(const std::string &name)
+  {
+    errno = 0;
+    std::ifstream file(name, std::ios::binary);
+    if (!file && (errno == ENOENT || errno == ENOTDIR))
+      return {};
+    std::ostringstream bytes;
+    // To insert nothing would count as a failure.
+    if (file && file.peek() != std::ifstream::traits_type::eof())
+      bytes << file.rdbuf();
+    AssertThrow(file && bytes,
+                ExcMessage("'" + name +
+                           "' cannot be read: " + std::strerror(errno) + "."));
+    return bytes.str();
+  }
+
+
+
+  void
+  write_file(const std::string &name, const std::string &bytes)
+  {
+    Descriptor file(name, name, O_WRONLY | O_CREAT | O_TRUNC);
+    file.write_all(bytes);
+    file.synchronise();
+    file.close();
+  }
+
+
+
+  void
+  replace_file(const std::string &name,
+               const std::string &bytes,
+               const bool         to_disk)
+  {
+    std::error_code     none;
+    const fs::file_type type = fs::status(name, none).type();
+    if (type != fs::file_type::regular && type != fs::file_type::not_found &&
+        type != fs::file_type::none)
+      {
+        Descriptor file(name, name, O_WRONLY);
+        file.write_all(bytes);
+        file.close();
+        return;
+      }
+    const std::string part = name + ".part";
+    try
+      {
+        Descriptor file(name, part, O_WRONLY | O_CREAT | O_TRUNC);
+        file.write_all(bytes);
+        if (to_disk)
+          file.synchronise();
+        file.close();
+        check_written(std::rename(part.c_str(), name.c_str()) == 0, name);
+      }
+    catch (const std::exception &)
+      {
+        fs::remove(part, none); // make room
+        throw;
+      }
+  }
+
+
+
+  void
+  synchronise(const std::string &file)
+  {
+    Descriptor(file, file, O_RDONLY).synchronise();
+  }
+
+
+
+  void
+  synchronise_directory(const std::string &name)
+  {
+    Descriptor(name, name, O_RDONLY | O_DIRECTORY).synchronise();
+  }
+
+
+
+  DirectoryLock::~DirectoryLock()
+  {
+    if (descriptor < 0)
+      return;
+    // In this order: who opens the file in between sees that it has gone.
+    unlink(file.c_str());
+    close(descriptor);
+  }
+
+
+
+  void
+  DirectoryLock::acquire(const std::string &directory)
+  {
+    if (descriptor >= 0)
+      return;
+    file = directory + (directory.back() == '/' ? "" : "/") +
+           "viscoplastic_contact.lock";
+    // Who has had the lock removes the file: then it is made again.
+    for (unsigned int i = 0; i < 10; ++i)
+      {
+        const int opened =
+          open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (opened < 0)
+          return;
+        if (flock(opened, LOCK_EX | LOCK_NB) != 0)
+          {
+            const bool    is_taken = errno == EWOULDBLOCK;
+            char          buffer[200];
+            const ssize_t n = read(opened, buffer, sizeof(buffer));
+            close(opened);
+            if (!is_taken)
+              {
+                unlink(file.c_str()); // which locks nothing here
+                return;
+              }
+            const std::string holder =
+              excerpt(std::string(buffer, std::max<ssize_t>(n, 0)), 150);
+            AssertThrow(false,
+                        ExcMessage("Another run" +
+                                   (holder.empty() ? "" : " (" + holder + ")") +
+                                   " is writing into '" + directory +
+                                   "'; wait until it has ended, or choose "
+                                   "another 'Output/Directory' and "
+                                   "'Checkpoint/Directory'."));
+          }
+        struct stat mine, there;
+        if (fstat(opened, &mine) == 0 && stat(file.c_str(), &there) == 0 &&
+            mine.st_dev == there.st_dev && mine.st_ino == there.st_ino)
+          {
+            // For the message above, no more: it may fail.
+            const std::string holder = "process " + std::to_string(getpid()) +
+                                       " on " +
+                                       Utilities::System::get_hostname();
+            if (ftruncate(opened, 0) != 0 ||
+                write(opened, holder.data(), holder.size()) < 0)
+              errno = 0;
+            descriptor = opened;
+            return;
+          }
+        close(opened);
+      }
+  }
+} // namespace Viscoplastic

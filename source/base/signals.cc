@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/signals.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    // What a handler may touch.
+    volatile std::sig_atomic_t checkpoint_requested = 0;
+    volatile std::sig_atomic_t stop_signal          = 0;
+
+    extern "C" void
+    request_checkpoint(int)
+    {
+      checkpoint_requested = 1;
+    }
+
+    extern "C" void
+    request_stop(int signal)
+    {
+      stop_signal = signal;
+    }
+
+    using Actions = std::array<struct sigaction, 3>;
+    const std::array<int, 3> handled{{SIGUSR1, SIGTERM, SIGINT}};
+    Actions                  old_actions;
+  } // namespace
+
+
+
+  SignalRequests::SignalRequests()
+  {
+    checkpoint_requested = 0;
+    stop_signal          = 0;
+    for (unsigned int i = 0; i < handled.size(); ++i)
+      {
+        struct sigaction action
+        {};
+        action.sa_handler =
+          handled[i] == SIGUSR1 ? request_checkpoint : request_stop;
+        sigemptyset(&action.sa_mask);
+        // Reads and writes go on; the second stop meets the default action.
+        action.sa_flags = SA_RESTART;
+        if (handled[i] != SIGUSR1)
+          action.sa_flags |= SA_RESETHAND;
+        sigaction(handled[i], &action, &old_actions[i]);
+      }
+  }
+
+
+
+  SignalRequests::~SignalRequests()
+  {
+    for (unsigned int i = 0; i < handled.size(); ++i)
+      sigaction(handled[i], &old_actions[i], nullptr);
+  }
+
+
+
+  SignalRequests::Request
+  SignalRequests::agree(const MPI_Comm communicator,
+                        const bool     checkpoint) const
+  {
+    // A signal between these lines asks for the checkpoint that comes anyway.
+    const bool requested = checkpoint_requested != 0;
+    if (requested)
+      checkpoint_requested = 0;
+    const std::array<int, 2> mine{
+      {checkpoint || requested ? 1 : 0, static_cast<int>(stop_signal)}};
+    std::array<int, 2> all = mine;
+    dealii::Utilities::MPI::max(dealii::ArrayView<const int>(mine.data(),
+                                                             mine.size()),
+                                communicator,
+                                dealii::ArrayView<int>(all.data(), all.size()));
+    Request request;
+    request.checkpoint = all[0] != 0;
+    if (all[1] != 0)
+      request.stop = all[1] == SIGINT ? "SIGINT" : "SIGTERM";
+    return request;
+  }
+
+
+
+  void
+  ignore_file_size_signal()
+  {
+    std::signal(SIGXFSZ, SIG_IGN);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,550 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/checkpoint/checkpoint_store.h>
+
+#include <boost/crc.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <regex>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    const std::string manifest_name = "manifest.txt";
+    const std::string any_format    = "viscoplastic_contact checkpoint ";
+    const std::string first_line    = any_format + "1";
+    const std::string unfinished = ".unfinished", outdated = ".outdated";
+    // What an unfinished checkpoint has instead of a manifest.
+    const std::string list_name       = "unfinished.txt";
+    const std::string first_of_a_list = "viscoplastic_contact list of files 1";
+
+
+
+    std::uint32_t
+    checksum(const std::string &bytes)
+    {
+      boost::crc_32_type crc;
+      crc.process_bytes(bytes.data(), bytes.size());
+      return crc.checksum();
+    }
+
+
+
+    std::string
+    read_file(const std::string &name)
+    {
+      const std::optional<std::string> bytes = read_file_if_any(name);
+      AssertThrow(bytes, ExcMessage("'" + name + "' cannot be read."));
+      return *bytes;
+    }
+
+
+
+    std::string
+    read_checked(const std::string              &directory,
+                 const CheckpointManifest::File &file)
+    {
+      std::error_code error;
+      const auto      size = fs::file_size(directory + file.name, error);
+      AssertThrow(!error,
+                  ExcMessage("the file " + excerpt(file.name) + " is missing"));
+      AssertThrow(size == file.size,
+                  ExcMessage("the file " + excerpt(file.name) + " has " +
+                             std::to_string(size) + " bytes instead of " +
+                             std::to_string(file.size)));
+      std::string bytes = read_file(directory + file.name);
+      AssertThrow(bytes.size() == file.size && checksum(bytes) == file.checksum,
+                  ExcMessage("the file " + excerpt(file.name) +
+                             " does not have its checksum"));
+      return bytes;
+    }
+
+
+
+    /// What went wrong on the first rank where something did, on all ranks.
+    std::string
+    common_failure(const std::string &failure, const MPI_Comm communicator)
+    {
+      for (const std::string &text :
+           Utilities::MPI::all_gather(communicator, failure))
+        if (!text.empty())
+          return text;
+      return "";
+    }
+
+
+
+    /// Call @p action and return what went wrong.
+    template <typename Action>
+    std::string
+    attempt(const Action &action)
+    {
+      try
+        {
+          action();
+        }
+      catch (const std::exception &exception)
+        {
+          return reason(exception);
+        }
+      return "";
+    }
+
+
+
+    std::string
+    to_text(const CheckpointManifest &manifest)
+    {
+      std::ostringstream text;
+      text << first_line << "\nversion " << manifest.version << "\ndimension "
+           << manifest.dimension << "\nranks " << manifest.n_ranks << "\nstep "
+           << manifest.n << "\ntime " << std::setprecision(17) << manifest.t
+           << '\n';
+      for (const auto &file : manifest.files)
+        text << "file " << file.name << ' ' << file.size << ' ' << file.checksum
+             << '\n';
+      for (const auto &[path, value] : manifest.parameters)
+        text << "set " << path << " = " << value << '\n';
+      const std::uint32_t sum = checksum(text.str());
+      text << "checksum " << sum << '\n';
+      return text.str();
+    }
+
+
+
+    CheckpointManifest
+    from_text(const std::string &text)
+    {
+      const auto require = [](const bool condition) {
+        AssertThrow(condition, ExcMessage("the manifest is damaged"));
+      };
+      AssertThrow(text.compare(0, first_line.size() + 1, first_line + '\n') ==
+                    0,
+                  ExcMessage("its format is not that of this program"));
+      const std::size_t last = text.rfind("\nchecksum ");
+      require(last != std::string::npos &&
+              text.substr(last + 1) ==
+                "checksum " +
+                  std::to_string(checksum(text.substr(0, last + 1))) + '\n');
+
+      CheckpointManifest manifest;
+      std::istringstream lines(text.substr(0, last + 1));
+      std::string        line;
+      std::getline(lines, line);
+      while (std::getline(lines, line))
+        {
+          std::istringstream words(line);
+          std::string        key;
+          words >> key;
+          if (key == "set")
+            {
+              const std::size_t equals = line.find(" = ");
+              require(equals != std::string::npos && equals >= 4);
+              manifest.parameters[line.substr(4, equals - 4)] =
+                line.substr(equals + 3);
+              continue;
+            }
+          if (key == "version")
+            std::getline(words >> std::ws, manifest.version);
+          else if (key == "dimension")
+            words >> manifest.dimension;
+          else if (key == "ranks")
+            words >> manifest.n_ranks;
+          else if (key == "step")
+            words >> manifest.n;
+          else if (key == "time")
+            words >> manifest.t;
+          else if (key == "file")
+            {
+              CheckpointManifest::File file;
+              words >> file.name >> file.size >> file.checksum;
+              require(file.name.find('/') == std::string::npos);
+              manifest.files.push_back(file);
+            }
+          require(!words.fail());
+        }
+      return manifest;
+    }
+
+
+
+    std::string
+    list_of_files(const std::vector<std::string> &names)
+    {
+      std::string text = first_of_a_list + '\n';
+      for (const std::string &name : names)
+        text += "file " + name + '\n';
+      return text;
+    }
+
+
+
+    /**
+     * The files of a directory that are the program's, as its manifest or list
+     * there says, which come last: whatever ends the program while it removes
+     * them in this order, what remains is still known. Empty for a directory
+     * of somebody else.
+     */
+    std::vector<std::string>
+    own_files(const std::string &directory)
+    {
+      std::vector<std::string> names, lists;
+      for (const auto &[name, beginning] :
+           {std::make_pair(manifest_name, any_format),
+            std::make_pair(list_name, first_of_a_list + '\n')})
+        {
+          const auto text = read_file_if_any(directory + '/' + name);
+          if (!text)
+            continue;
+          const bool is_ours =
+            text->compare(0, beginning.size(), beginning) == 0;
+          // A list that is cut short is alone: the other files come after it.
+          const bool is_begun =
+            name == list_name &&
+            beginning.compare(0, text->size(), *text) == 0 &&
+            std::distance(fs::directory_iterator(directory), {}) == 1;
+          if (!is_ours && !is_begun)
+            continue;
+          lists.push_back(name);
+          std::istringstream lines(*text);
+          std::string        line, key, file;
+          while (std::getline(lines, line))
+            if (std::istringstream words(line);
+                words >> key >> file && key == "file")
+              names.push_back(file);
+        }
+      names.insert(names.end(), lists.begin(), lists.end());
+      return names;
+    }
+
+
+
+    /**
+     * Remove what the program has written in a directory, and the directory
+     * unless something else is in it. Returns whether it was a checkpoint; @p
+     * remarks takes a sentence if the directory stays.
+     */
+    bool
+    remove_own(const std::string &path, std::vector<std::string> &remarks)
+    {
+      const std::string note = "Note: '" + path + "' stays, since ";
+      if (!fs::is_directory(fs::symlink_status(path)))
+        {
+          remarks.push_back(note + "this program has made no such file.");
+          return false;
+        }
+      const std::vector<std::string> names = own_files(path);
+      for (const std::string &name : names)
+        {
+          const fs::path file = fs::path(path) / name;
+          if (name.find('/') == std::string::npos &&
+              fs::is_regular_file(fs::symlink_status(file)))
+            fs::remove(file);
+        }
+      std::vector<std::string> others;
+      for (const auto &entry : fs::directory_iterator(path))
+        others.push_back(excerpt(entry.path().filename().string()));
+      if (others.empty())
+        fs::remove(path);
+      else
+        {
+          std::sort(others.begin(), others.end());
+          remarks.push_back(note + "no manifest of this program names " +
+                            enumeration(others, 3) + " in it.");
+        }
+      return !names.empty();
+    }
+
+
+
+    /// @p path, or with a number after it, so that there is no such file.
+    std::string
+    unused(const std::string &path)
+    {
+      std::string result = path;
+      for (unsigned int i = 2; fs::exists(fs::symlink_status(result)); ++i)
+        result = path + '_' + std::to_string(i);
+      return result;
+    }
+  } // namespace
+
+
+
+  CheckpointStore::CheckpointStore(const std::string &directory,
+                                   const MPI_Comm     communicator)
+    : directory(directory.back() == '/' ? directory : directory + '/')
+    , communicator(communicator)
+    , rank(Utilities::MPI::this_mpi_process(communicator))
+    , n_ranks(Utilities::MPI::n_mpi_processes(communicator))
+  {}
+
+
+
+  std::string
+  CheckpointStore::path(const unsigned int n) const
+  {
+    return directory + "step_" + Utilities::int_to_string(n, 6);
+  }
+
+
+
+  std::vector<CheckpointStore::Entry>
+  CheckpointStore::entries() const
+  {
+    static const std::regex name("step_([0-9]{6,9})([.](" +
+                                 unfinished.substr(1) + '|' +
+                                 outdated.substr(1) + ")(_[0-9]+)?)?");
+    std::vector<Entry>      result;
+    std::error_code         error;
+    fs::directory_iterator  place(directory, error);
+    if (error == std::errc::no_such_file_or_directory)
+      return result;
+    for (; !error && place != fs::directory_iterator(); place.increment(error))
+      {
+        const std::string file = place->path().filename().string();
+        std::smatch       parts;
+        std::error_code   none;
+        if (!std::regex_match(file, parts, name) || !place->is_directory(none))
+          continue;
+        Entry entry;
+        entry.path        = directory + file;
+        entry.n           = std::stoul(parts[1]);
+        entry.is_complete = parts[2].length() == 0;
+        if (!entry.is_complete || entry.path == path(entry.n))
+          result.push_back(entry);
+      }
+    AssertThrow(!error,
+                ExcMessage("The directory '" + directory +
+                           "' for checkpoints cannot be read: " +
+                           error.message() + '.'));
+    std::sort(result.begin(), result.end(), [](const Entry &a, const Entry &b) {
+      return std::make_pair(a.n, a.path) < std::make_pair(b.n, b.path);
+    });
+    return result;
+  }
+
+
+
+  void
+  CheckpointStore::make_directory() const
+  {
+    const std::string failure =
+      common_failure(attempt([&]() {
+                       if (rank == 0)
+                         fs::create_directories(directory);
+                     }),
+                     communicator);
+    AssertThrow(failure.empty(),
+                ExcMessage("The directory '" + directory +
+                           "' for checkpoints cannot be written; change "
+                           "'Checkpoint/Directory' or its permissions."));
+  }
+
+
+
+  std::vector<std::string>
+  CheckpointStore::write(CheckpointManifest                        manifest,
+                         const std::map<std::string, std::string> &files,
+                         const unsigned int                        n_kept) const
+  {
+    const std::string        final_path = path(manifest.n);
+    std::string              temporary;
+    std::vector<std::string> remarks;
+    const auto               check = [&](const std::string &failure) {
+      const std::string text = common_failure(failure, communicator);
+      if (text.empty())
+        return;
+      // Make room; the checkpoints before are what counts.
+      if (rank == 0 && !temporary.empty())
+        attempt([&]() { remove_own(temporary, remarks); });
+      AssertThrow(false,
+                  ExcMessage("The checkpoint of step " +
+                             std::to_string(manifest.n) + " failed: " + text));
+    };
+
+    // Rank 0 says which files are to come before any of them is there.
+    std::vector<std::string> names;
+    for (const auto &file : files)
+      names.push_back(file.first);
+    const auto names_of_all = Utilities::MPI::gather(communicator, names);
+    check(attempt([&]() {
+      if (rank != 0)
+        return;
+      const std::string wanted = final_path + unfinished;
+      if (fs::exists(wanted))
+        remove_own(wanted, remarks);
+      temporary = unused(wanted) + '/';
+      fs::create_directories(temporary);
+      names.clear();
+      for (const auto &part : names_of_all)
+        names.insert(names.end(), part.begin(), part.end());
+      names.push_back(manifest_name);
+      write_file(temporary + list_name, list_of_files(names));
+    }));
+    temporary = Utilities::MPI::broadcast(communicator, temporary);
+
+    std::vector<CheckpointManifest::File> mine;
+    check(attempt([&]() {
+      for (const auto &[name, bytes] : files)
+        {
+          write_file(temporary + name, bytes);
+          mine.push_back({name, bytes.size(), checksum(bytes)});
+        }
+    }));
+
+    std::ostringstream description;
+    for (const auto &file : mine)
+      description << file.name << ' ' << file.size << ' ' << file.checksum
+                  << ' ';
+    const auto all = Utilities::MPI::gather(communicator, description.str());
+    check(attempt([&]() {
+      if (rank != 0)
+        return;
+      manifest.files.clear();
+      for (const std::string &part : all)
+        {
+          std::istringstream       words(part);
+          CheckpointManifest::File file;
+          while (words >> file.name >> file.size >> file.checksum)
+            manifest.files.push_back(file);
+        }
+      write_file(temporary + manifest_name, to_text(manifest));
+      fs::remove(temporary + list_name);
+      synchronise_directory(temporary);
+      // A directory cannot replace another one.
+      std::string aside;
+      if (fs::exists(fs::symlink_status(final_path)))
+        {
+          aside = unused(final_path + outdated);
+          fs::rename(final_path, aside);
+        }
+      fs::rename(temporary, final_path);
+      synchronise_directory(directory);
+
+      if (!aside.empty())
+        remove_own(aside, remarks);
+      std::vector<std::string> older;
+      for (const Entry &entry : entries())
+        if (entry.is_complete && entry.n < manifest.n &&
+            !own_files(entry.path).empty())
+          older.push_back(entry.path);
+      for (std::size_t i = 0; i + n_kept <= older.size(); ++i)
+        remove_own(older[i], remarks);
+    }));
+    return Utilities::MPI::broadcast(communicator, remarks);
+  }
+
+
+
+  std::optional<CheckpointManifest>
+  CheckpointStore::newest(std::vector<std::string> &remarks) const
+  {
+    std::vector<unsigned int> candidates;
+    fail_together(communicator, [&]() {
+      if (rank == 0)
+        for (const Entry &entry : entries())
+          if (entry.is_complete)
+            candidates.push_back(entry.n);
+    });
+    candidates = Utilities::MPI::broadcast(communicator, candidates);
+    std::reverse(candidates.begin(), candidates.end());
+    for (const unsigned int n : candidates)
+      {
+        // Rank 0 reads, so that all see the same.
+        std::string text, failure;
+        if (rank == 0)
+          failure =
+            attempt([&]() { text = read_file(path(n) + '/' + manifest_name); });
+        text = Utilities::MPI::broadcast(communicator, text);
+        CheckpointManifest manifest;
+        if (failure.empty())
+          failure = attempt([&]() {
+            manifest = from_text(text);
+            AssertThrow(manifest.n == n,
+                        ExcMessage("it is of step " +
+                                   std::to_string(manifest.n)));
+            for (std::size_t i = rank; i < manifest.files.size(); i += n_ranks)
+              read_checked(path(n) + '/', manifest.files[i]);
+          });
+        failure = common_failure(failure, communicator);
+        if (failure.empty())
+          return manifest;
+        if (failure.back() == '.')
+          failure.pop_back();
+        remarks.push_back("the checkpoint '" + path(n) +
+                          "' cannot be used: " + failure);
+      }
+    return {};
+  }
+
+
+
+  std::string
+  CheckpointStore::read(const CheckpointManifest &manifest,
+                        const std::string        &name) const
+  {
+    for (const auto &file : manifest.files)
+      if (file.name == name)
+        return read_checked(path(manifest.n) + '/', file);
+    AssertThrow(false, ExcMessage("The checkpoint has no file " + name + "."));
+    return "";
+  }
+
+
+
+  CheckpointStore::Removal
+  CheckpointStore::remove_if(const bool all, const unsigned int after) const
+  {
+    Removal            removal;
+    std::vector<Entry> found; // on rank 0
+    fail_together(communicator, [&]() {
+      if (rank == 0)
+        found = entries();
+    });
+    const std::string failure = attempt([&]() {
+      for (const Entry &entry : found)
+        if (all || entry.n > after || !entry.is_complete)
+          {
+            const bool was_ours = remove_own(entry.path, removal.remarks);
+            if (was_ours && entry.is_complete)
+              ++removal.n_checkpoints;
+          }
+    });
+    const std::string text = common_failure(failure, communicator);
+    AssertThrow(text.empty(),
+                ExcMessage("Old checkpoints in '" + directory +
+                           "' cannot be removed: " + text));
+    removal.n_checkpoints =
+      Utilities::MPI::broadcast(communicator, removal.n_checkpoints);
+    removal.remarks = Utilities::MPI::broadcast(communicator, removal.remarks);
+    return removal;
+  }
+
+
+
+  CheckpointStore::Removal
+  CheckpointStore::remove_after(const unsigned int n) const
+  {
+    return remove_if(false, n);
+  }
+
+
+
+  CheckpointStore::Removal
+  CheckpointStore::remove_all() const
+  {
+    return remove_if(true, 0);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/contact/contact_event.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  bool
+  has_contact_event(const std::vector<double> &bounds,
+                    const FrictionState       &old_state,
+                    const FrictionState       &state,
+                    const bool                 from_kink)
+  {
+    unsigned int n_points = 0, n_old = 0, n_new = 0;
+    for (unsigned int p = 0; p < bounds.size(); ++p)
+      if (bounds[p] > 0. && std::isfinite(bounds[p]))
+        {
+          const bool slipped = !old_state.sticks[p], slips = !state.sticks[p];
+          ++n_points;
+          n_old += slipped;
+          n_new += slips;
+          // Multipliers are along the slip. A direction that turns by less
+          // than a right angle in 3D does not turn back.
+          if (slipped && slips && !from_kink &&
+              old_state.multiplier[p] * state.multiplier[p] < 0.)
+            return true;
+        }
+    const bool begins = n_old == 0 && n_new > 0,
+               covers = n_old < n_points && n_new == n_points && n_points > 0,
+               ends   = n_old > 0 && n_new == 0;
+    return begins || covers || (ends && !from_kink);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,634 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/contact/contact_solver.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Of linear solves as long as the sets change, relative.
+    constexpr double loose_tolerance = 0.05;
+    /// A linear solve that shall bring the error below the tolerance aims at
+    /// this part of it.
+    constexpr double safety = 0.3;
+    /// A correction that stops at reversing slips is taken as it is if it goes
+    /// that far; otherwise something better is tried.
+    constexpr double least_limited_step = 0.5;
+    /// Of J in a correction, relative to the duality gap.
+    constexpr double least_descent = 0.1;
+
+
+
+    /// Gauss-Seidel; more sweeps when the corrections do not finish.
+    unsigned int
+    sweeps_of_iteration(const unsigned int iteration)
+    {
+      return iteration < 10 ? 1 : iteration < 30 ? 5 : 50;
+    }
+
+
+
+    double
+    square(const double a)
+    {
+      return a * a;
+    }
+
+
+
+    /// Update slips from the increment; a slipping point that does not move
+    /// sticks.
+    void
+    update_slips(const FrictionFace        &face,
+                 const std::vector<double> &bounds,
+                 const Vector<double>      &x,
+                 FrictionState             &state)
+    {
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        {
+          state.slip[p] = Tensor<1, 2>();
+          if (!state.sticks[p])
+            state.slip[p] =
+              slip(face.points[p], face.node_values(x, face.points[p].node));
+          if (bounds[p] > 0. && state.slip[p].norm() == 0.)
+            state.sticks[p] = true;
+        }
+    }
+
+
+
+    /// Bring points to rest whose slip is nothing but rounding, an error of the
+    /// size of @p rounding in the energy norm: its direction means nothing, but
+    /// would be that of a force of the size of the bound. @p change takes part.
+    void
+    stop_rounding(const FrictionFace              &face,
+                  const std::vector<double>       &bounds,
+                  const std::vector<Tensor<2, 3>> &diagonal,
+                  const double                     rounding,
+                  Vector<double>                  &x,
+                  Vector<double>                  &change,
+                  FrictionState                   &state)
+    {
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        {
+          const unsigned int p = face.first_point[node];
+          if (face.n_node_points(node) != 1 || state.sticks[p] ||
+              bounds[p] == 0.)
+            continue;
+          const Tensor<1, 3> here = face.node_values(x, node);
+          const Tensor<1, 3> part =
+            node_force(face.points[p], slip(face.points[p], here));
+          if (part * (diagonal[node] * part) > square(rounding))
+            continue;
+          face.set_node_values(here - part, node, x);
+          face.set_node_values(face.node_values(change, node) - part,
+                               node,
+                               change);
+          state.sticks[p] = true;
+        }
+    }
+
+
+
+    /// J(u + step w) - J(u) and its derivative to the right, without the bulk
+    /// terms: the sum over the points.
+    struct FrictionAlongLine
+    {
+      struct Term
+      {
+        double       bound;
+        Tensor<1, 2> slip, change;
+      };
+      std::vector<Term> terms;
+
+      double
+      value(const double step) const
+      {
+        double sum = 0.;
+        for (const Term &term : terms)
+          sum += term.bound *
+                 ((term.slip + step * term.change).norm() - term.slip.norm());
+        return sum;
+      }
+
+      double
+      derivative(const double step) const
+      {
+        double sum = 0.;
+        for (const Term &term : terms)
+          {
+            const Tensor<1, 2> s    = term.slip + step * term.change;
+            const double       size = s.norm();
+            sum += term.bound * (size > 1e-14 * term.change.norm() ?
+                                   (s * term.change) / size :
+                                   term.change.norm());
+          }
+        return sum;
+      }
+    };
+
+
+
+    FrictionAlongLine
+    friction_along(const FrictionFace        &face,
+                   const std::vector<double> &bounds,
+                   const FrictionState       &state,
+                   const Vector<double>      &direction)
+    {
+      FrictionAlongLine friction;
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        if (!state.sticks[p] && bounds[p] > 0.)
+          friction.terms.push_back(
+            {bounds[p],
+             state.slip[p],
+             slip(face.points[p],
+                  face.node_values(direction, face.points[p].node))});
+      return friction;
+    }
+
+
+
+    /// Whether a correction @p w makes the slip of a node change sides. At
+    /// corners, where points share a node, the line search alone decides.
+    bool
+    reverses(const FrictionFace        &face,
+             const std::vector<double> &bounds,
+             const FrictionState       &state,
+             const Vector<double>      &w,
+             const unsigned int         node)
+    {
+      const unsigned int p = face.first_point[node];
+      if (face.n_node_points(node) != 1 || state.sticks[p] || bounds[p] == 0.)
+        return false;
+      const Tensor<1, 2> end =
+        state.slip[p] + slip(face.points[p], face.node_values(w, node));
+      return state.slip[p] * end < 0.;
+    }
+
+
+
+    /// Shorten a correction @p w where a slip would change sides, so that it
+    /// ends at rest instead. Returns whether there is such a slip.
+    bool
+    stop_at_reversal(const FrictionFace        &face,
+                     const std::vector<double> &bounds,
+                     const FrictionState       &state,
+                     const Vector<double>      &x,
+                     Vector<double>            &w)
+    {
+      bool any = false;
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        if (reverses(face, bounds, state, w, node))
+          {
+            face.set_node_values(-1. * face.node_values(x, node), node, w);
+            any = true;
+          }
+      return any;
+    }
+
+
+
+    /// A step along a line, and what it does to J.
+    struct SearchResult
+    {
+      double step, energy_change;
+    };
+
+
+
+    /**
+     * The step in (0, 2] that minimises J along the correction; 1 if that is as
+     * good up to inexact linear solves, 0 if there is no descent.
+     */
+    SearchResult
+    line_search(const BulkSolver::SearchTerms &bulk,
+                const FrictionAlongLine       &friction)
+    {
+      const auto at = [&](const double step) {
+        return SearchResult{step,
+                            (0.5 * bulk.curvature * step - bulk.slope) * step +
+                              friction.value(step)};
+      };
+      const auto derivative = [&](const double step) {
+        return bulk.curvature * step - bulk.slope + friction.derivative(step);
+      };
+      const double initial = derivative(0.);
+      if (!(initial < 0.) || !(bulk.curvature > 0.))
+        return {0., 0.};
+      if (std::abs(derivative(1.)) <= 0.1 * std::abs(initial) &&
+          at(1.).energy_change <= 0.)
+        return at(1.);
+      double left = 0., right = 1.;
+      if (derivative(1.) < 0.)
+        {
+          left  = 1.;
+          right = 2.;
+          if (derivative(2.) < 0.)
+            return at(2.);
+        }
+      for (unsigned int bisection = 0; bisection < 60; ++bisection)
+        {
+          const double middle                      = 0.5 * (left + right);
+          (derivative(middle) < 0. ? left : right) = middle;
+        }
+      return at(left);
+    }
+
+
+
+    /// A correction that begins with stopping the slips that would reverse.
+    struct RestStep
+    {
+      Vector<double> correction;
+      SearchResult   search;
+      unsigned int   linear_iterations;
+    };
+
+    /**
+     * Bring the points whose slip the correction @p w reverses to rest, solve
+     * with them sticking, and search along that correction. If J is lower then,
+     * the stop is made (@p x and @p state change) and the step is returned, to
+     * be taken; otherwise everything is as before but the correction.
+     */
+    std::optional<RestStep>
+    step_from_rest(BulkSolver                      &bulk,
+                   const FrictionFace              &face,
+                   const std::vector<double>       &bounds,
+                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                   const Vector<double>            &residual,
+                   const Vector<double>            &w,
+                   Vector<double>                  &x,
+                   FrictionState                   &state)
+    {
+      const FrictionState  old_state = state;
+      const Vector<double> old_x     = x;
+      Vector<double>       stop(x.size());
+      double               energy_change = 0.;
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        {
+          const unsigned int p = face.first_point[node];
+          if (!reverses(face, bounds, state, w, node))
+            continue;
+          energy_change -= bounds[p] * state.slip[p].norm();
+          state.sticks[p] = true;
+          state.slip[p]   = Tensor<1, 2>();
+          face.set_node_values(-1. * face.node_values(x, node), node, stop);
+          face.set_node_values(Tensor<1, 3>(), node, x);
+        }
+      bulk.move_face(stop);
+      Vector<double> new_residual(x.size()), force(x.size());
+      bulk.face_residual(new_residual);
+      // J is quadratic but for friction: its mean slope makes the change.
+      energy_change -= 0.5 * (stop * residual + stop * new_residual);
+
+      fit_multipliers(face, bounds, new_residual, state, force);
+      bulk.set_truncation(
+        make_truncation(face, bounds, state, inverse_diagonal),
+        /* may_rebuild = */ false);
+      RestStep result;
+      result.correction.reinit(x.size());
+      result.linear_iterations =
+        bulk.correct(force, loose_tolerance, result.correction);
+      stop_at_reversal(face, bounds, state, x, result.correction);
+      result.search =
+        line_search(bulk.search_terms(result.correction),
+                    friction_along(face, bounds, state, result.correction));
+      if (energy_change + result.search.energy_change < 0.)
+        return result;
+
+      stop *= -1.;
+      bulk.move_face(stop);
+      x     = old_x;
+      state = old_state;
+      return {};
+    }
+  } // namespace
+
+
+
+  /// One solve: what it works on, and the phases of its iterations.
+  class ContactSolver::Iteration
+  {
+  public:
+    Iteration(BulkSolver                &bulk,
+              const FrictionFace        &face,
+              const std::vector<double> &bounds,
+              const double               tolerance,
+              Vector<double>            &x,
+              FrictionState             &state);
+
+    ContactReport
+    solve(const unsigned int max_iterations);
+
+  private:
+    /// (1) Nonlinear Gauss-Seidel over the face nodes.
+    void
+    relax(const unsigned int n_sweeps);
+
+    /// The Gauss-Seidel step at one node; adds it to @p change.
+    void
+    relax(const unsigned int node, Vector<double> &change);
+
+    /// Whether the error bound is within the tolerance; then the multipliers
+    /// are those that prove it.
+    bool
+    is_solved();
+
+    /// The bound on the error that a dual norm of the residual means, for the
+    /// report.
+    double
+    bound(const double dual_norm, const Certificate &certificate);
+
+    /// (2) The linear solve on the truncated space: a correction w.
+    void
+    correct();
+
+    /// (3) Go along w as far as J decreases, and no slip further than to rest.
+    /// Returns the change of J.
+    double
+    search();
+
+    /// (4) Let the bulk follow the face.
+    void
+    follow();
+
+    void
+    give_up(const unsigned int max_iterations) const;
+
+    BulkSolver                &bulk;
+    const FrictionFace        &face;
+    const std::vector<double> &bounds;
+    const double               tolerance;
+    /// The increment of the face, and what friction does there.
+    Vector<double> &x;
+    FrictionState  &state;
+
+    const FaceMatrix         &matrix;
+    std::vector<Tensor<2, 3>> diagonal, inverse_diagonal; // node by node
+
+    /// l - A u, the forces of the multipliers that fit it, and a correction, on
+    /// the face.
+    Vector<double> residual, force, w;
+    /// The present one, and whether the last correction was made with the same
+    /// sticking points.
+    FaceTruncation truncation;
+    bool           same_sets = false;
+    /// Bound on the error and size of the solution in the energy norm.
+    double error = 0., size = 0.;
+    double best_error = std::numeric_limits<double>::max();
+
+    ContactReport report;
+  };
+
+
+
+  ContactSolver::Iteration::Iteration(BulkSolver                &bulk,
+                                      const FrictionFace        &face,
+                                      const std::vector<double> &bounds,
+                                      const double               tolerance,
+                                      Vector<double>            &x,
+                                      FrictionState             &state)
+    : bulk(bulk)
+    , face(face)
+    , bounds(bounds)
+    , tolerance(tolerance)
+    , x(x)
+    , state(state)
+    , matrix(bulk.face_matrix())
+    , diagonal(face.n_nodes())
+    , inverse_diagonal(face.n_nodes())
+    , residual(face.n_dofs())
+    , force(face.n_dofs())
+    , w(face.n_dofs())
+  {
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        diagonal[node]         = matrix.diagonal_block(node);
+        inverse_diagonal[node] = invert(diagonal[node]);
+      }
+    report.tolerance = tolerance;
+  }
+
+
+
+  ContactReport
+  ContactSolver::Iteration::solve(const unsigned int max_iterations)
+  {
+    for (unsigned int iteration = 0;; ++iteration)
+      {
+        relax(sweeps_of_iteration(iteration));
+        if (is_solved())
+          break;
+        if (iteration == max_iterations)
+          give_up(max_iterations);
+        correct();
+        const double energy_change = search();
+        ++report.iterations;
+        // Gauss-Seidel with the bulk at rest and corrections that a kink of J
+        // stops may jam. Then the bulk follows the face: with (1) a descent
+        // over two blocks, which converges since only the face has kinks.
+        if (!(-energy_change > least_descent * report.duality_gap))
+          follow();
+      }
+    report.linear_iterations += bulk.finish();
+    return report;
+  }
+
+
+
+  void
+  ContactSolver::Iteration::relax(const unsigned int n_sweeps)
+  {
+    bulk.face_residual(residual);
+    AssertThrow(std::isfinite(residual.l2_norm()),
+                ExcMessage("The contact solver met a residual that is not "
+                           "finite."));
+    Vector<double> change(face.n_dofs());
+    for (unsigned int sweep = 0; sweep < n_sweeps; ++sweep)
+      {
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          relax(node, change);
+        for (unsigned int node = face.n_nodes(); node-- > 0;)
+          relax(node, change);
+      }
+    // rounding_error() is a hundred units of rounding.
+    stop_rounding(
+      face, bounds, diagonal, 0.01 * bulk.rounding_error(), x, change, state);
+    bulk.move_face(change);
+    bulk.face_residual(residual);
+    update_slips(face, bounds, x, state);
+  }
+
+
+
+  void
+  ContactSolver::Iteration::relax(const unsigned int node,
+                                  Vector<double>    &change)
+  {
+    const Tensor<1, 3> old  = face.node_values(x, node);
+    const Tensor<1, 3> r    = face.node_values(residual, node);
+    const Tensor<1, 3> now  = relax_node(face,
+                                        node,
+                                        inverse_diagonal[node],
+                                        r + diagonal[node] * old,
+                                        bounds,
+                                        state);
+    const Tensor<1, 3> step = now - old;
+    if (step.norm() == 0.)
+      return;
+    face.set_node_values(now, node, x);
+    face.set_node_values(face.node_values(change, node) + step, node, change);
+    matrix.subtract(node, step, residual);
+  }
+
+
+
+  double
+  ContactSolver::Iteration::bound(const double       dual_norm,
+                                  const Certificate &certificate)
+  {
+    report.duality_gap = 0.5 * square(dual_norm) + certificate.defect;
+    const double result =
+      0.5 *
+      (dual_norm + std::sqrt(square(dual_norm) + 4. * certificate.defect));
+    report.relative_error = size > 0. ? result / size : 0.;
+    return result;
+  }
+
+
+
+  bool
+  ContactSolver::Iteration::is_solved()
+  {
+    fit_multipliers(face, bounds, residual, state, force);
+    FaceTruncation last = std::move(truncation);
+    truncation = make_truncation(face, bounds, state, inverse_diagonal);
+    same_sets  = truncation == last;
+    bulk.set_truncation(truncation);
+    const Certificate certificate = certify(
+      face, bounds, residual, diagonal, state, force, bulk.rounding_error());
+    size  = std::max(bulk.energy_norm(), bulk.rounding_error() / tolerance);
+    error = bound(bulk.dual_norm(certificate.force), certificate);
+    if (error <= tolerance * size)
+      error = bound(bulk.confirmed_dual_norm(certificate.force,
+                                             report.linear_iterations),
+                    certificate);
+    AssertThrow(std::isfinite(error),
+                ExcMessage("The contact solver met a value that is not "
+                           "finite."));
+    best_error = std::min(best_error, report.relative_error);
+    if (error > tolerance * size)
+      return false;
+    report.error = error;
+    for (const auto &[point, multiplier] : certificate.replaced)
+      state.multiplier[point] = multiplier;
+    return true;
+  }
+
+
+
+  void
+  ContactSolver::Iteration::give_up(const unsigned int max_iterations) const
+  {
+    std::ostringstream message;
+    message << "The active set iteration did not converge in " << max_iterations
+            << " iterations: the relative error bound is " << best_error
+            << " at best, and the tolerance is " << tolerance
+            << " ('Solver/Contact tolerance'); raise 'Solver/Maximal contact "
+               "iterations' or the tolerance.";
+    AssertThrow(false, ExcMessage(message.str()));
+  }
+
+
+
+  void
+  ContactSolver::Iteration::correct()
+  {
+    // Loosely while the sets still change, and as far as needed once they do
+    // not.
+    report.linear_iterations +=
+      bulk.correct(force,
+                   same_sets ? std::min(loose_tolerance,
+                                        safety * tolerance * size / error) :
+                               loose_tolerance,
+                   w);
+  }
+
+
+
+  double
+  ContactSolver::Iteration::search()
+  {
+    const auto along = [&](const Vector<double> &direction) {
+      return line_search(bulk.search_terms(direction),
+                         friction_along(face, bounds, state, direction));
+    };
+    Vector<double> limited(w);
+    const bool any_reverses = stop_at_reversal(face, bounds, state, x, limited);
+    SearchResult result     = along(limited);
+    if (!any_reverses || result.step >= least_limited_step)
+      w = limited;
+    else if (const auto rest = step_from_rest(
+               bulk, face, bounds, inverse_diagonal, residual, w, x, state))
+      {
+        // When a whole zone reverses, the rest of the body must adapt to its
+        // stop before J descends far.
+        w      = rest->correction;
+        result = rest->search;
+        report.linear_iterations += rest->linear_iterations;
+      }
+    else
+      {
+        // The correction as it is descends, because it solves a positive
+        // definite system with the gradient of J.
+        bulk.set_truncation(truncation);
+        report.linear_iterations += bulk.correct(force, loose_tolerance, w);
+        result = along(w);
+      }
+    bulk.take_step(result.step);
+    x.add(result.step, w);
+    return result.energy_change;
+  }
+
+
+
+  void
+  ContactSolver::Iteration::follow()
+  {
+    FaceTruncation held;
+    held.projector.resize(face.n_nodes());
+    held.spring.resize(face.n_nodes());
+    bulk.set_truncation(held, /* may_rebuild = */ false);
+    report.linear_iterations += bulk.correct(force, loose_tolerance, w);
+    const BulkSolver::SearchTerms terms = bulk.search_terms(w);
+    if (terms.curvature > 0.)
+      bulk.take_step(terms.slope / terms.curvature);
+  }
+
+
+
+  ContactSolver::ContactSolver(const unsigned int max_iterations)
+    : max_iterations(max_iterations)
+  {}
+
+
+
+  ContactReport
+  ContactSolver::solve(BulkSolver                &bulk,
+                       const FrictionFace        &face,
+                       const std::vector<double> &bounds,
+                       const double               tolerance,
+                       Vector<double>            &x,
+                       FrictionState             &state) const
+  {
+    AssertDimension(bounds.size(), face.points.size());
+    AssertDimension(x.size(), face.n_dofs());
+    AssertDimension(state.sticks.size(), face.points.size());
+    return Iteration(bulk, face, bounds, tolerance, x, state)
+      .solve(max_iterations);
+  }
+} // namespace Viscoplastic

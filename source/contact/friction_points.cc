@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/contact/friction_points.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    double
+    square(const double a)
+    {
+      return a * a;
+    }
+
+
+
+    /// Solve (C + shift I) x = q for the leading n x n block, n = 1 or 2.
+    Tensor<1, 2>
+    solve_block(const Tensor<2, 2> &C,
+                const double        shift,
+                const Tensor<1, 2> &q,
+                const unsigned int  n)
+    {
+      Tensor<1, 2> x;
+      if (n == 1)
+        x[0] = q[0] / (C[0][0] + shift);
+      else
+        {
+          const double a = C[0][0] + shift, b = C[0][1], d = C[1][1] + shift;
+          const double determinant = a * d - b * b;
+          x[0]                     = (d * q[0] - b * q[1]) / determinant;
+          x[1]                     = (a * q[1] - b * q[0]) / determinant;
+        }
+      return x;
+    }
+
+
+
+    /// The force of slipping points at the current slip: rho s/|s|.
+    Tensor<1, 2>
+    slipping_multiplier(const double bound, const Tensor<1, 2> &s)
+    {
+      return bound == 0. ? Tensor<1, 2>() : s * (bound / s.norm());
+    }
+
+
+
+    Tensor<1, 2>
+    clip(const Tensor<1, 2> &multiplier, const double bound)
+    {
+      const double size = stable_norm(multiplier);
+      return size <= bound ? multiplier : multiplier * (bound / size);
+    }
+
+
+
+    /// Least-norm multipliers of the sticking points of a node with several
+    /// points whose forces make up for @p missing, as far as the balls allow.
+    void
+    fit_node(const FrictionFace        &face,
+             const unsigned int         begin,
+             const unsigned int         end,
+             const std::vector<double> &bounds,
+             Tensor<1, 3>              &missing,
+             FrictionState             &state)
+    {
+      // lambda = B (B^T B)^+ missing.
+      SymmetricTensor<2, 3> gram;
+      for (unsigned int p = begin; p < end; ++p)
+        if (state.sticks[p])
+          for (unsigned int i = 0; i < face.points[p].n_tangents; ++i)
+            gram += symmetrize(
+              outer_product(face.points[p].map[i], face.points[p].map[i]));
+      const auto   pairs = eigenvectors(gram);
+      Tensor<1, 3> solution;
+      for (const auto &[value, vector] : pairs)
+        if (value > 1e-12 * pairs[0].first)
+          solution += (vector * missing) / value * vector;
+      bool                      inside = true;
+      std::vector<Tensor<1, 2>> lambda(end - begin), z, old;
+      for (unsigned int p = begin; p < end; ++p)
+        if (state.sticks[p])
+          {
+            const Tensor<1, 2> free = slip(face.points[p], solution);
+            lambda[p - begin]       = clip(free, bounds[p]);
+            inside &= free.norm() <= bounds[p];
+          }
+      // Where that leaves a ball: accelerated projected gradients.
+      if (!inside)
+        {
+          const double L        = pairs[0].first;
+          double       momentum = 1.;
+          z                     = lambda;
+          for (unsigned int step = 0; step < 3000; ++step)
+            {
+              old                 = lambda;
+              Tensor<1, 3> remain = missing;
+              for (unsigned int p = begin; p < end; ++p)
+                remain -= node_force(face.points[p], z[p - begin]);
+              double change = 0., size = 0., uphill = 0.;
+              for (unsigned int p = begin; p < end; ++p)
+                if (state.sticks[p])
+                  {
+                    auto &l = lambda[p - begin];
+                    l = clip(z[p - begin] + slip(face.points[p], remain) / L,
+                             bounds[p]);
+                    uphill += (z[p - begin] - l) * (l - old[p - begin]);
+                    change += (z[p - begin] - l).norm();
+                    size += l.norm();
+                  }
+              if (change <= 1e-15 * size)
+                break;
+              const double next =
+                uphill > 0. ?
+                  1. :
+                  0.5 * (1. + std::sqrt(1. + 4. * momentum * momentum));
+              const double beta = uphill > 0. ? 0. : (momentum - 1.) / next;
+              momentum          = next;
+              for (unsigned int p = 0; p < lambda.size(); ++p)
+                z[p] = lambda[p] + beta * (lambda[p] - old[p]);
+            }
+        }
+      for (unsigned int p = begin; p < end; ++p)
+        if (state.sticks[p])
+          {
+            state.multiplier[p] = lambda[p - begin];
+            missing -= node_force(face.points[p], state.multiplier[p]);
+          }
+    }
+  } // namespace
+
+
+
+  PointSolution
+  solve_friction_point(const Tensor<2, 2> &flexibility,
+                       const Tensor<1, 2> &free_slip,
+                       const unsigned int  n_tangents,
+                       const double        bound)
+  {
+    const Tensor<1, 2> stick =
+      solve_block(flexibility, 0., free_slip, n_tangents);
+    const double stick_size = stable_norm(stick);
+    // A zero bound is no friction: the point moves, even if by nothing.
+    if (bound == 0.)
+      return {Tensor<1, 2>(), false};
+    if (!(stick_size > bound * (1. + 1e-14)))
+      return {stick, true};
+    if (n_tangents == 1)
+      {
+        Tensor<1, 2> multiplier;
+        multiplier[0] = std::copysign(bound, free_slip[0]);
+        return {multiplier, false};
+      }
+
+    // A force so small has no influence on the slip, but its squares would
+    // leave the range of numbers below.
+    if (bound < 1e-100 * stick_size)
+      return {free_slip * (bound / stable_norm(free_slip)), false};
+
+    // |(C + m I)^{-1} q| = rho for m = |s|/rho > 0: Newton's method on the
+    // reciprocal of the norm is monotone from m = 0 (More, Sorensen).
+    double       m          = 0.;
+    Tensor<1, 2> multiplier = stick;
+    for (unsigned int iteration = 0; iteration < 100; ++iteration)
+      {
+        const double size = multiplier.norm();
+        if (std::abs(size - bound) <= 1e-15 * bound)
+          break;
+        const double slope =
+          multiplier * solve_block(flexibility, m, multiplier, n_tangents);
+        const double change = (size / bound - 1.) * square(size) / slope;
+        if (!(m + change > m))
+          break;
+        m += change;
+        multiplier = solve_block(flexibility, m, free_slip, n_tangents);
+      }
+    return {multiplier * (bound / multiplier.norm()), false};
+  }
+
+
+
+  Tensor<1, 3>
+  relax_node(const FrictionFace        &face,
+             const unsigned int         node,
+             const Tensor<2, 3>        &inverse_diagonal,
+             const Tensor<1, 3>        &force, // residual + D x
+             const std::vector<double> &bounds,
+             FrictionState             &state)
+  {
+    const unsigned int     begin      = face.first_point[node];
+    const unsigned int     end        = face.first_point[node + 1];
+    constexpr unsigned int max_sweeps = 1000;
+
+    Tensor<1, 3> remaining = force;
+    for (unsigned int p = begin; p < end; ++p)
+      remaining -= node_force(face.points[p], state.multiplier[p]);
+    for (unsigned int sweep = 0; sweep < max_sweeps; ++sweep)
+      {
+        double change = 0., size = 0.;
+        for (unsigned int p = begin; p < end; ++p)
+          {
+            const FrictionFace::Point &point = face.points[p];
+            remaining += node_force(point, state.multiplier[p]);
+            Tensor<2, 2> flexibility;
+            for (unsigned int i = 0; i < point.n_tangents; ++i)
+              for (unsigned int j = 0; j < point.n_tangents; ++j)
+                flexibility[i][j] =
+                  point.map[i] * (inverse_diagonal * point.map[j]);
+            const PointSolution solution =
+              solve_friction_point(flexibility,
+                                   slip(point, inverse_diagonal * remaining),
+                                   point.n_tangents,
+                                   bounds[p]);
+            change += (solution.multiplier - state.multiplier[p]).norm();
+            size += solution.multiplier.norm();
+            state.multiplier[p] = solution.multiplier;
+            state.sticks[p]     = solution.sticks;
+            remaining -= node_force(point, solution.multiplier);
+          }
+        if (end - begin == 1 || change <= 1e-14 * size)
+          break;
+      }
+
+    // A node whose only point holds all its components does not move at all,
+    // not even by rounding.
+    if (end - begin == 1 && state.sticks[begin] &&
+        face.points[begin].n_tangents == face.n_node_dofs(node))
+      return Tensor<1, 3>();
+    return inverse_diagonal * remaining;
+  }
+
+
+
+  void
+  fit_multipliers(const FrictionFace        &face,
+                  const std::vector<double> &bounds,
+                  const Vector<double>      &residual,
+                  FrictionState             &state,
+                  Vector<double>            &force)
+  {
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        const unsigned int begin   = face.first_point[node];
+        const unsigned int end     = face.first_point[node + 1];
+        unsigned int       n_stick = 0;
+        Tensor<1, 3>       missing = face.node_values(residual, node);
+        for (unsigned int p = begin; p < end; ++p)
+          {
+            if (state.sticks[p])
+              {
+                state.multiplier[p] = Tensor<1, 2>();
+                ++n_stick;
+              }
+            else
+              state.multiplier[p] =
+                slipping_multiplier(bounds[p], state.slip[p]);
+            missing -= node_force(face.points[p], state.multiplier[p]);
+          }
+        // One point of orthonormal rows: the residual, clipped.
+        if (n_stick == 1 && end - begin == 1)
+          {
+            state.multiplier[begin] =
+              clip(slip(face.points[begin], missing), bounds[begin]);
+            missing -= node_force(face.points[begin], state.multiplier[begin]);
+          }
+        if (n_stick > 0 && end - begin > 1)
+          fit_node(face, begin, end, bounds, missing, state);
+        face.set_node_values(face.node_values(residual, node) - missing,
+                             node,
+                             force);
+      }
+  }
+
+
+
+  Certificate
+  certify(const FrictionFace              &face,
+          const std::vector<double>       &bounds,
+          const Vector<double>            &residual,
+          const std::vector<Tensor<2, 3>> &diagonal,
+          const FrictionState             &state,
+          const Vector<double>            &force,
+          const double                     rounding)
+  {
+    Certificate result;
+    result.force = force;
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        const unsigned int         p     = face.first_point[node];
+        const FrictionFace::Point &point = face.points[p];
+        if (face.n_node_points(node) != 1 || point.n_tangents != 2 ||
+            state.sticks[p] || bounds[p] == 0.)
+          continue;
+        const Tensor<1, 2> here = slip(point, face.node_values(residual, node));
+        const double       misses    = (here - state.multiplier[p]).norm();
+        const double       stiffness = diagonal[node].norm();
+        const double       size      = state.slip[p].norm();
+        const double       blur      = rounding / (std::sqrt(stiffness) * size);
+        if (misses > std::max(1e-5, blur) * bounds[p] ||
+            misses <= stiffness * size)
+          continue;
+        const Tensor<1, 2> multiplier = clip(here, bounds[p]);
+        result.defect += std::max(0.,
+                                  bounds[p] * state.slip[p].norm() -
+                                    multiplier * state.slip[p]);
+        result.replaced.emplace_back(p, multiplier);
+        face.set_node_values(node_force(point, multiplier), node, result.force);
+      }
+    return result;
+  }
+
+
+
+  FaceTruncation
+  make_truncation(const FrictionFace              &face,
+                  const std::vector<double>       &bounds,
+                  const FrictionState             &state,
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal)
+  {
+    FaceTruncation truncation;
+    truncation.projector.resize(face.n_nodes());
+    truncation.spring.resize(face.n_nodes());
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        Tensor<2, 3> &projector = truncation.projector[node];
+        for (unsigned int d = 0; d < 3; ++d)
+          projector[d][d] = 1.;
+        for (unsigned int p = face.first_point[node];
+             p < face.first_point[node + 1];
+             ++p)
+          {
+            const FrictionFace::Point &point = face.points[p];
+            if (state.sticks[p])
+              for (unsigned int i = 0; i < point.n_tangents; ++i)
+                {
+                  // Remove what is left of this direction.
+                  Tensor<1, 3> q = projector * point.map[i];
+                  if (q.norm() > 1e-8 * point.map[i].norm())
+                    {
+                      q /= q.norm();
+                      projector -= outer_product(q, q);
+                    }
+                }
+            else if (point.n_tangents == 2 && bounds[p] > 0.)
+              {
+                // kappa P_e with kappa = rho/|s|, which tends to infinity as
+                // a point comes to rest; 1e10 times the diagonal is stick.
+                const double kappa =
+                  std::min(bounds[p] / state.slip[p].norm(),
+                           1e10 / inverse_diagonal[node].norm());
+                const Tensor<1, 2> e = state.slip[p] / state.slip[p].norm();
+                const Tensor<1, 3> across =
+                  -e[1] * point.map[0] + e[0] * point.map[1];
+                truncation.spring[node] +=
+                  kappa * outer_product(across, across);
+              }
+          }
+        // Remove rounding, so that equal sets compare equal.
+        for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int j = 0; j < 3; ++j)
+            if (std::abs(projector[i][j]) < 1e-14)
+              projector[i][j] = 0.;
+      }
+    return truncation;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,520 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/lapack_full_matrix.h>
+
+#include <viscoplastic_contact/discretization/admissible_space.h>
+
+#include <iomanip>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  AdmissibleSpace<dim>::AdmissibleSpace(const DoFHandler<dim> &dof_handler,
+                                        const Scene<dim>      &scene)
+    : dof_handler(dof_handler)
+    , scene(scene)
+    , communicator(dof_handler.get_communicator())
+    , owned(dof_handler.locally_owned_dofs())
+    , relevant(DoFTools::extract_locally_relevant_dofs(dof_handler))
+    , first_owned(owned.n_elements() > 0 ?
+                    relevant.index_within_set(owned.nth_index_in_set(0)) :
+                    0)
+    , node_position(owned.n_elements() / dim)
+  {
+    AssertThrow(Utilities::MPI::max(dof_handler.n_dofs(), communicator) <
+                  static_cast<types::global_dof_index>(
+                    std::numeric_limits<int>::max()),
+                ExcMessage("The mesh has more than 2^31 degrees of freedom, "
+                           "which this build of Trilinos cannot index."));
+    hanging_cartesian.reinit(relevant);
+    DoFTools::make_hanging_node_constraints(dof_handler, hanging_cartesian);
+    hanging_cartesian.close();
+    any_hanging =
+      Utilities::MPI::max(hanging_cartesian.n_constraints(), communicator) > 0;
+
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            const auto dof = cell->vertex_dof_index(v, 0);
+            Assert(cell->vertex_dof_index(v, dim - 1) == dof + dim - 1,
+                   ExcMessage("The components of a node must be consecutive."));
+            if (owned.is_element(dof))
+              node_position[owned.index_within_set(dof) / dim] =
+                cell->vertex(v);
+          }
+    make_frames();
+    make_hanging_nodes_in_frames();
+    check_rigid_motions();
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::make_frames()
+  {
+    // A node's frame is a function of the boundary ids that meet there, and
+    // each id has one normal. Owners know all ids at their nodes, since every
+    // neighbour of an owned cell is at least a ghost; as a bit mask in a vector
+    // the ids travel to the other ranks.
+    std::vector<const BoundaryCondition<dim> *> listed;
+    for (const auto &pair : scene.boundary)
+      if (pair.second.constrains() || pair.second.has_friction())
+        listed.push_back(&pair.second);
+    AssertThrow(listed.size() <= 52,
+                ExcMessage("At most 52 boundary ids may carry displacement or "
+                           "contact conditions."));
+
+    std::vector<std::uint64_t> mask(owned.n_elements() / dim, 0);
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            for (unsigned int i = 0; i < listed.size(); ++i)
+              if (listed[i]->id == cell->face(f)->boundary_id())
+                for (const unsigned int v : cell->face(f)->vertex_indices())
+                  {
+                    const auto dof = cell->face(f)->vertex_dof_index(v, 0);
+                    if (owned.is_element(dof) &&
+                        !hanging_cartesian.is_constrained(dof))
+                      mask[owned.index_within_set(dof) / dim] |=
+                        std::uint64_t(1) << i;
+                  }
+
+    DistributedVector masks = owned_vector(), ghosted_masks = ghosted_vector();
+    for (std::size_t n = 0; n < mask.size(); ++n)
+      masks.begin()[n * dim] = static_cast<double>(mask[n]);
+    ghosted_masks = masks;
+
+    frames.assign(1, make_nodal_frame<dim>({}));
+    std::map<std::uint64_t, unsigned int> frame_of_mask{{0, 0}};
+    frame_of_node.assign(relevant.n_elements() / dim, 0);
+    for (std::size_t n = 0; n < frame_of_node.size(); ++n)
+      {
+        const auto bits =
+          static_cast<std::uint64_t>(ghosted_masks.begin()[n * dim]);
+        if (frame_of_mask.count(bits) == 0)
+          {
+            std::vector<const BoundaryCondition<dim> *> here;
+            for (unsigned int i = 0; i < listed.size(); ++i)
+              if (bits & (std::uint64_t(1) << i))
+                here.push_back(listed[i]);
+            frame_of_mask[bits] = frames.size();
+            frames.push_back(make_nodal_frame<dim>(here));
+          }
+        frame_of_node[n] = frame_of_mask[bits];
+        if (!frames[frame_of_node[n]].is_cartesian)
+          rotated_nodes.push_back(n * dim);
+      }
+
+    is_excluded.assign(owned.n_elements(), false);
+    for (std::size_t n = 0; n < mask.size(); ++n)
+      {
+        const auto first_dof = owned.nth_index_in_set(n * dim);
+        if (mask[n] != 0)
+          {
+            nodes.push_back(
+              {first_dof, node_position[n], frame_of_mask[mask[n]]});
+            const NodalFrame<dim> &frame = frames[nodes.back().frame];
+            for (unsigned int i = 0; i < frame.n_fixed; ++i)
+              is_excluded[n * dim + frame.fixed[i]] = true;
+          }
+        if (hanging_cartesian.is_constrained(first_dof))
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              is_excluded[n * dim + d] = true;
+              hanging_entries.push_back(n * dim + d);
+            }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::make_hanging_nodes_in_frames()
+  {
+    // u_h,i = sum_m w_m sum_j directions_m[i][j] u_m,j
+    hanging_in_frames.reinit(relevant);
+    for (const auto &line : hanging_cartesian.get_lines())
+      {
+        hanging_in_frames.add_line(line.index);
+        const unsigned int i = line.index % dim;
+        for (const auto &[master, weight] : line.entries)
+          {
+            Assert(master % dim == i, ExcInternalError());
+            const NodalFrame<dim> &frame =
+              frames[frame_of_node[relevant.index_within_set(master) / dim]];
+            if (frame.is_cartesian)
+              hanging_in_frames.add_entry(line.index, master, weight);
+            else
+              for (unsigned int j = 0; j < dim; ++j)
+                hanging_in_frames.add_entry(line.index,
+                                            master - i + j,
+                                            weight * frame.directions[i][j]);
+          }
+      }
+    hanging_in_frames.close();
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::check_rigid_motions() const
+  {
+    const std::vector<DistributedVector> modes = rigid_body_modes();
+    const unsigned int                   n     = modes.size();
+    // Gram matrix of the modes on the prescribed components; its null space
+    // are the rigid motions that nothing prevents.
+    FullMatrix<double> gram(n, n);
+    Point<dim>         centre;
+    double             count = node_position.size();
+    for (const auto &x : node_position)
+      centre += x;
+    centre =
+      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(centre), communicator) /
+                 Utilities::MPI::sum(count, communicator));
+    double radius = 0.;
+    for (const auto &x : node_position)
+      radius = std::max(radius, x.distance(centre));
+    radius = Utilities::MPI::max(radius, communicator);
+
+    for (const BoundaryNode &node : nodes)
+      for (unsigned int i = 0; i < frames[node.frame].n_fixed; ++i)
+        {
+          const Tensor<1, dim> direction =
+            column(frames[node.frame].directions, frames[node.frame].fixed[i]);
+          const Tensor<1, dim> x = (node.position - centre) / radius;
+          std::vector<double>  value(n);
+          for (unsigned int d = 0; d < dim; ++d)
+            value[d] = direction[d];
+          if constexpr (dim == 2)
+            value[2] = -x[1] * direction[0] + x[0] * direction[1];
+          else
+            {
+              const Tensor<1, dim> moment = cross_product_3d(x, direction);
+              for (unsigned int d = 0; d < dim; ++d)
+                value[dim + d] = moment[d];
+            }
+          for (unsigned int a = 0; a < n; ++a)
+            for (unsigned int b = 0; b < n; ++b)
+              gram(a, b) += value[a] * value[b];
+        }
+    Utilities::MPI::sum(gram, communicator, gram);
+
+    LAPACKFullMatrix<double> matrix(n, n);
+    matrix = gram;
+    Vector<double>     eigenvalues(n);
+    FullMatrix<double> eigenvectors(n, n);
+    matrix.compute_eigenvalues_symmetric(
+      -1., 1e300, 0., eigenvalues, eigenvectors);
+    const auto is_free = [&](const unsigned int e) {
+      return eigenvalues[e] <=
+             1e-12 * std::max(eigenvalues.linfty_norm(), 1e-300);
+    };
+    const auto is_translation = [&](const unsigned int e) {
+      for (unsigned int a = dim; a < n; ++a)
+        if (std::abs(eigenvectors(a, e)) > 1e-8)
+          return false;
+      return true;
+    };
+    unsigned int n_translations = 0;
+    for (unsigned int e = 0; e < eigenvalues.size(); ++e)
+      n_translations += is_free(e) && is_translation(e);
+    std::string free_motions;
+    for (unsigned int e = 0; e < eigenvalues.size(); ++e)
+      if (is_free(e))
+        {
+          // Name the mode by its largest part.
+          unsigned int largest = 0;
+          for (unsigned int a = 1; a < n; ++a)
+            if (std::abs(eigenvectors(a, e)) >
+                std::abs(eigenvectors(largest, e)) + 1e-8)
+              largest = a;
+          const std::string xyz = "xyz";
+          free_motions += free_motions.empty() ? "" : " and ";
+          // A single translation may have any direction; of several, the
+          // axes are a basis.
+          if (n_translations == 1 && is_translation(e) &&
+              std::abs(eigenvectors(largest, e)) < 1. - 1e-8)
+            {
+              std::ostringstream direction;
+              direction << std::setprecision(3) << "translation along (";
+              const double sign = eigenvectors(largest, e) > 0. ? 1. : -1.;
+              for (unsigned int a = 0; a < dim; ++a)
+                direction << (a == 0 ? "" : ", ") << sign * eigenvectors(a, e);
+              free_motions += direction.str() + ')';
+            }
+          else if (largest < dim)
+            free_motions += std::string("translation along ") + xyz[largest];
+          else
+            free_motions += std::string("rotation about ") +
+                            (dim == 2 ? 'z' : xyz[largest - dim]);
+        }
+    AssertThrow(free_motions.empty(),
+                ExcMessage(
+                  "The boundary conditions leave a rigid motion free: " +
+                  free_motions +
+                  ". Prescribe displacements that prevent it "
+                  "(clamped, displacement, symmetry, bilateral or "
+                  "glued contact; friction does not count)."));
+  }
+
+
+
+  template <int dim>
+  std::vector<DistributedVector>
+  AdmissibleSpace<dim>::rigid_body_modes() const
+  {
+    const unsigned int             n_modes = dim == 2 ? 3 : 6;
+    std::vector<DistributedVector> modes(n_modes, owned_vector());
+
+    Point<dim>   centre;
+    const double count = node_position.size();
+    for (const auto &x : node_position)
+      centre += x;
+    centre =
+      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(centre), communicator) /
+                 Utilities::MPI::sum(count, communicator));
+
+    for (std::size_t n = 0; n < node_position.size(); ++n)
+      {
+        const NodalFrame<dim> &frame =
+          frames[frame_of_node[(first_owned / dim) + n]];
+        const Tensor<1, dim> x = node_position[n] - centre;
+        for (unsigned int m = 0; m < n_modes; ++m)
+          {
+            Tensor<1, dim> u;
+            if (m < dim)
+              u[m] = 1.;
+            else if constexpr (dim == 2)
+              {
+                u[0] = -x[1];
+                u[1] = x[0];
+              }
+            else
+              {
+                Tensor<1, dim> axis;
+                axis[m - dim] = 1.;
+                u             = cross_product_3d(axis, x);
+              }
+            if (!frame.is_cartesian)
+              u = transpose(frame.directions) * u;
+            for (unsigned int d = 0; d < dim; ++d)
+              if (!is_excluded[n * dim + d])
+                modes[m].begin()[n * dim + d] = u[d];
+          }
+      }
+    return modes;
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  AdmissibleSpace<dim>::owned_vector() const
+  {
+    return DistributedVector(owned, communicator);
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  AdmissibleSpace<dim>::ghosted_vector() const
+  {
+    return DistributedVector(owned, relevant, communicator);
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::add_cartesian_load(std::vector<double> &cartesian,
+                                           DistributedVector   &load) const
+  {
+    AssertDimension(cartesian.size(), relevant.n_elements());
+    if (any_hanging)
+      for (const auto &line : hanging_cartesian.get_lines())
+        {
+          double &share = cartesian[relevant.index_within_set(line.index)];
+          if (share != 0.)
+            for (const auto &[master, weight] : line.entries)
+              cartesian[relevant.index_within_set(master)] += weight * share;
+          share = 0.;
+        }
+    for (const std::size_t n : rotated_nodes)
+      {
+        const NodalFrame<dim> &frame = frames[frame_of_node[n / dim]];
+        Tensor<1, dim>         f;
+        for (unsigned int d = 0; d < dim; ++d)
+          f[d] = cartesian[n + d];
+        f = transpose(frame.directions) * f;
+        for (unsigned int d = 0; d < dim; ++d)
+          cartesian[n + d] = f[d];
+      }
+
+    const std::size_t n_owned = owned.n_elements();
+    for (std::size_t i = 0; i < n_owned; ++i)
+      load.begin()[i] += cartesian[first_owned + i];
+    if (Utilities::MPI::n_mpi_processes(communicator) > 1)
+      {
+        std::vector<types::global_dof_index> indices;
+        std::vector<double>                  values;
+        for (std::size_t i = 0; i < cartesian.size(); ++i)
+          if ((i < first_owned || i >= first_owned + n_owned) &&
+              cartesian[i] != 0.)
+            {
+              indices.push_back(relevant.nth_index_in_set(i));
+              values.push_back(cartesian[i]);
+            }
+        load.add(indices, values);
+        load.compress(VectorOperation::add);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::to_cartesian(const DistributedVector &in_frames,
+                                     DistributedVector       &ghosted) const
+  {
+    DistributedVector cartesian(in_frames);
+    for (const std::size_t n : rotated_nodes)
+      if (n >= first_owned && n < first_owned + owned.n_elements())
+        {
+          double        *entry = cartesian.begin() + (n - first_owned);
+          Tensor<1, dim> u;
+          for (unsigned int d = 0; d < dim; ++d)
+            u[d] = entry[d];
+          u = frames[frame_of_node[n / dim]].directions * u;
+          for (unsigned int d = 0; d < dim; ++d)
+            entry[d] = u[d];
+        }
+    distribute_hanging_nodes(cartesian);
+    ghosted = cartesian;
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::distribute_hanging_nodes(
+    DistributedVector &cartesian) const
+  {
+    if (any_hanging)
+      hanging_cartesian.distribute(cartesian);
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::to_frames(const DistributedVector &ghosted,
+                                  DistributedVector       &in_frames) const
+  {
+    const double *u = ghosted.begin();
+    for (std::size_t i = 0; i < owned.n_elements(); ++i)
+      in_frames.begin()[i] = u[first_owned + i];
+    for (const std::size_t n : rotated_nodes)
+      if (n >= first_owned && n < first_owned + owned.n_elements())
+        {
+          Tensor<1, dim> v;
+          for (unsigned int d = 0; d < dim; ++d)
+            v[d] = u[n + d];
+          v = transpose(frames[frame_of_node[n / dim]].directions) * v;
+          for (unsigned int d = 0; d < dim; ++d)
+            in_frames.begin()[n - first_owned + d] = v[d];
+        }
+    for (const std::size_t i : hanging_entries)
+      in_frames.begin()[i] = 0.;
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::rotate(const std::vector<types::global_dof_index> &dofs,
+                               FullMatrix<double> &cell_matrix) const
+  {
+    if (rotated_nodes.empty())
+      return;
+    const unsigned int n = dofs.size();
+    // Cell degrees of freedom come node by node for FE_Q(1).
+    for (unsigned int a = 0; a < n; a += dim)
+      {
+        if (hanging_cartesian.is_constrained(dofs[a]))
+          continue;
+        const NodalFrame<dim> &frame =
+          frames[frame_of_node[relevant.index_within_set(dofs[a]) / dim]];
+        if (frame.is_cartesian)
+          continue;
+        const Tensor<2, dim> &R = frame.directions;
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            Tensor<1, dim> block;
+            for (unsigned int d = 0; d < dim; ++d)
+              block[d] = cell_matrix(a + d, j);
+            block = transpose(R) * block;
+            for (unsigned int d = 0; d < dim; ++d)
+              cell_matrix(a + d, j) = block[d];
+          }
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            Tensor<1, dim> block;
+            for (unsigned int d = 0; d < dim; ++d)
+              block[d] = cell_matrix(i, a + d);
+            block = block * R;
+            for (unsigned int d = 0; d < dim; ++d)
+              cell_matrix(i, a + d) = block[d];
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::set_prescribed(const double       t,
+                                       DistributedVector &in_frames) const
+  {
+    const auto first = owned.n_elements() > 0 ? owned.nth_index_in_set(0) : 0;
+    for (const BoundaryNode &node : nodes)
+      {
+        const NodalFrame<dim> &frame = frames[node.frame];
+        const unsigned int     m     = frame.n_fixed;
+        if (m == 0)
+          continue;
+        Tensor<1, dim> datum;
+        for (unsigned int i = 0; i < m; ++i)
+          {
+            const auto &condition =
+              scene.boundary.at(frame.condition_boundary[i]);
+            if (condition.role == BoundaryRole::displacement)
+              datum[i] =
+                condition.displacement[frame.condition_component[i]]->value(
+                  node.position, t);
+            else if (condition.is_glued())
+              datum[i] =
+                condition.glued_displacement(node.position,
+                                             t)[frame.condition_component[i]];
+            else if (condition.foundation_displacement)
+              datum[i] =
+                condition.foundation_displacement->value(node.position, t);
+          }
+        const Tensor<1, dim> value = invert(condition_matrix(frame)) * datum;
+        for (unsigned int j = 0; j < m; ++j)
+          in_frames.begin()[node.first_dof - first + frame.fixed[j]] = value[j];
+      }
+  }
+
+
+
+  template class AdmissibleSpace<2>;
+  template class AdmissibleSpace<3>;
+} // namespace Viscoplastic

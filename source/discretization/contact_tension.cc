@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/discretization/contact_tension.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  ContactTension<dim>::ContactTension(const StressSampling<dim> &sampling)
+    : sampling(sampling)
+    , total_area(0.)
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    std::size_t                 index = 0;
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary())
+              {
+                const auto &condition =
+                  space.scene.boundary.at(cell->face(f)->boundary_id());
+                // Glue is meant to pull.
+                if (condition.role != BoundaryRole::contact ||
+                    !condition.is_bilateral() || condition.is_glued())
+                  continue;
+                faces.push_back(
+                  {index, condition.normal, cell->face(f)->measure()});
+                total_area += faces.back().area;
+              }
+          ++index;
+        }
+    total_area = Utilities::MPI::sum(total_area, space.communicator);
+  }
+
+
+
+  template <int dim>
+  double
+  ContactTension<dim>::tension_area(const State<dim> &state) const
+  {
+    const unsigned int                 n = sampling.n_samples;
+    std::vector<SymmetricTensor<2, 3>> strain(n);
+    std::vector<double>                normal_stress;
+    double                             largest = 0.;
+    for (const Face &face : faces)
+      {
+        sampling.strains(face.cell, state.u.begin(), strain.data());
+        SymmetricTensor<2, 3> stress = sampling.moduli(face.cell).stress(
+          sampling.mean(face.cell, strain.data()));
+        if (!state.z.empty())
+          stress += sampling.mean(face.cell, &state.z[face.cell * n]);
+        double value = 0.;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            value += stress[i][j] * face.normal[i] * face.normal[j];
+        normal_stress.push_back(value);
+        // Of the whole stress: in pure shear the normal stress is rounding.
+        largest = std::max(largest, stress.norm());
+      }
+    const MPI_Comm comm = sampling.space.communicator;
+    largest             = Utilities::MPI::max(largest, comm);
+    double area         = 0.;
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      if (normal_stress[i] > 1e-3 * largest)
+        area += faces[i].area;
+    return Utilities::MPI::sum(area, comm);
+  }
+
+
+
+  template class ContactTension<2>;
+  template class ContactTension<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <viscoplastic_contact/discretization/elasticity.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  ElasticModuli<dim>::ElasticModuli(const AdmissibleSpace<dim> &space)
+    : is_uniform(space.scene.materials.size() == 1 &&
+                 space.scene.materials[0]->is_uniform())
+    , max_nu(-1.)
+  {
+    const Scene<dim> &scene = space.scene;
+    if (is_uniform)
+      moduli.push_back(scene.materials[0]->stiffness(Point<dim>()));
+    else
+      for (const auto &cell : space.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          moduli.push_back(
+            scene.material(cell->material_id()).stiffness(cell->center()));
+    for (const Stiffness &stiffness : moduli)
+      max_nu = std::max(max_nu, stiffness.poissons_ratio());
+    max_nu = Utilities::MPI::max(max_nu, space.communicator);
+  }
+
+
+
+  template <int dim>
+  ElasticModuli<dim>::ElasticModuli(const Stiffness &stiffness)
+    : moduli(1, stiffness)
+    , is_uniform(true)
+    , max_nu(stiffness.poissons_ratio())
+  {}
+
+
+
+  template <int dim>
+  void
+  elastic_cell_matrix(const FEValues<dim> &fe_values,
+                      const Stiffness     &stiffness,
+                      const bool           mean_dilatation,
+                      FullMatrix<double>  &cell_matrix)
+  {
+    const unsigned int n      = fe_values.dofs_per_cell;
+    double             volume = 0.;
+    for (const unsigned int q : fe_values.quadrature_point_indices())
+      volume += fe_values.JxW(q);
+
+    // Mean divergence of each shape function.
+    std::vector<double> mean(n, 0.);
+    if (mean_dilatation)
+      for (const unsigned int q : fe_values.quadrature_point_indices())
+        for (unsigned int i = 0; i < n; ++i)
+          mean[i] +=
+            fe_values.shape_grad(i, q)[i % dim] * fe_values.JxW(q) / volume;
+
+    std::vector<SymmetricTensor<2, 3>> strain(n), stress(n);
+    cell_matrix = 0.;
+    for (const unsigned int q : fe_values.quadrature_point_indices())
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const unsigned int   c = i % dim;
+            const Tensor<1, dim> g = fe_values.shape_grad(i, q);
+            strain[i]              = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              strain[i][c][d] = (c == d ? 1. : 0.5) * g[d];
+            if (mean_dilatation)
+              for (unsigned int d = 0; d < 3; ++d)
+                strain[i][d][d] += (mean[i] - g[c]) / 3.;
+            stress[i] = stiffness.stress(strain[i]) * fe_values.JxW(q);
+          }
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j <= i; ++j)
+            cell_matrix(i, j) += strain[i] * stress[j];
+      }
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = i + 1; j < n; ++j)
+        cell_matrix(i, j) = cell_matrix(j, i);
+  }
+
+
+
+  template <int dim>
+  void
+  assemble_elastic_matrix(const AdmissibleSpace<dim> &space,
+                          const ElasticModuli<dim>   &moduli,
+                          const bool                  mean_dilatation,
+                          DistributedMatrix          &matrix)
+  {
+    TrilinosWrappers::SparsityPattern pattern(space.owned,
+                                              space.owned,
+                                              space.relevant,
+                                              space.communicator);
+    DoFTools::make_sparsity_pattern(space.dof_handler,
+                                    pattern,
+                                    space.hanging_nodes(),
+                                    /* keep_constrained_dofs = */ false,
+                                    Utilities::MPI::this_mpi_process(
+                                      space.communicator));
+    pattern.compress();
+    matrix.reinit(pattern);
+
+    const FiniteElement<dim> &fe = space.dof_handler.get_fe();
+    FEValues<dim>             fe_values(fe,
+                            QGauss<dim>(2),
+                            update_gradients | update_JxW_values);
+    FullMatrix<double> cell_matrix(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
+    std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+    std::size_t                          index = 0;
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          fe_values.reinit(cell);
+          elastic_cell_matrix(fe_values,
+                              moduli(index++),
+                              mean_dilatation,
+                              cell_matrix);
+          cell->get_dof_indices(dofs);
+          space.rotate(dofs, cell_matrix);
+          space.hanging_nodes().distribute_local_to_global(cell_matrix,
+                                                           dofs,
+                                                           matrix);
+        }
+    matrix.compress(VectorOperation::add);
+  }
+
+
+
+  template class ElasticModuli<2>;
+  template class ElasticModuli<3>;
+  template void
+  elastic_cell_matrix<2>(const FEValues<2> &,
+                         const Stiffness &,
+                         const bool,
+                         FullMatrix<double> &);
+  template void
+  elastic_cell_matrix<3>(const FEValues<3> &,
+                         const Stiffness &,
+                         const bool,
+                         FullMatrix<double> &);
+  template void
+  assemble_elastic_matrix<2>(const AdmissibleSpace<2> &,
+                             const ElasticModuli<2> &,
+                             const bool,
+                             DistributedMatrix &);
+  template void
+  assemble_elastic_matrix<3>(const AdmissibleSpace<3> &,
+                             const ElasticModuli<3> &,
+                             const bool,
+                             DistributedMatrix &);
+} // namespace Viscoplastic

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/discretization/energy.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    double
+    square(const SymmetricTensor<2, 3> &tensor)
+    {
+      return tensor * tensor;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  StressSummary
+  summarise_stress(const FlowLaws<dim> &laws,
+                   const State<dim>    &old_state,
+                   const State<dim>    &state)
+  {
+    const StressSampling<dim>         &sampling = laws.sampling;
+    const unsigned int                 n        = sampling.n_samples;
+    const auto                         now      = laws.at(state.t);
+    std::vector<SymmetricTensor<2, 3>> strain(n), old_strain(n);
+    const bool                         has_z = !state.z.empty();
+    StressSummary                      result;
+    double                             volume = 0.;
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      {
+        const Stiffness       &stiffness = sampling.moduli(c);
+        const ViscoplasticLaw *law       = now.law(c);
+        sampling.strains(c, state.u.begin(), strain.data());
+        const SymmetricTensor<2, 3> mean_strain =
+          sampling.mean(c, strain.data());
+        SymmetricTensor<2, 3> mean = stiffness.stress(mean_strain);
+        if (has_z)
+          {
+            mean += sampling.mean(c, &state.z[c * n]);
+            // A source flows also where there is no law.
+            const bool flows = law || laws.source_solution;
+            if (flows)
+              sampling.strains(c, old_state.u.begin(), old_strain.data());
+            for (unsigned int s = 0; s < n; ++s)
+              {
+                const auto  &z      = state.z[c * n + s];
+                const double weight = sampling.weight(c, s);
+                result.irreversible_energy +=
+                  0.5 * weight * (stiffness.strain(z) * z);
+                if (!flows)
+                  continue;
+                const auto &old_z  = old_state.z[c * n + s];
+                const auto  stress = stiffness.stress(strain[s]) + z;
+                const auto  mean_stress =
+                  0.5 * (stiffness.stress(old_strain[s]) + old_z + stress);
+                SymmetricTensor<2, 3> driving_strain;
+                // Parameters may be expressions: only for laws that use them.
+                if (law && law->has_own_energy())
+                  {
+                    const LawPoint point = now.point(c, s);
+                    driving_strain =
+                      law->driving_strain(mean_stress,
+                                          0.5 * (old_strain[s] + strain[s]),
+                                          stiffness,
+                                          point);
+                    result.irreversible_energy +=
+                      weight *
+                      (law->stored_energy(stress, strain[s], stiffness, point) -
+                       0.5 * (stiffness.strain(stress) * stress));
+                  }
+                else
+                  driving_strain = stiffness.strain(mean_stress);
+                result.viscous_dissipation -=
+                  weight * ((z - old_z) * driving_strain);
+              }
+          }
+        const double mises   = std::sqrt(1.5) * stable_norm(deviator(mean));
+        result.max_von_mises = std::max(result.max_von_mises, mises);
+        result.max_strain    = std::max(result.max_strain, mean_strain.norm());
+        result.mean_von_mises += mises * sampling.volume(c);
+        result.stress_norm += (mean * mean) * sampling.volume(c);
+        volume += sampling.volume(c);
+      }
+
+    const MPI_Comm      comm = sampling.space.communicator;
+    std::vector<double> sums{result.mean_von_mises,
+                             result.stress_norm,
+                             result.irreversible_energy,
+                             result.viscous_dissipation,
+                             volume};
+    Utilities::MPI::sum(sums, comm, sums);
+    std::vector<double> largest{result.max_von_mises, result.max_strain};
+    Utilities::MPI::max(largest, comm, largest);
+    result.max_von_mises       = largest[0];
+    result.max_strain          = largest[1];
+    result.mean_von_mises      = sums[0] / sums[4];
+    result.stress_norm         = std::sqrt(sums[1]);
+    result.irreversible_energy = sums[2];
+    result.viscous_dissipation = sums[3];
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  relative_stress_fluctuation(const StressSampling<dim> &sampling,
+                              const State<dim>          &state)
+  {
+    // The strain within cells, which a sampling of cell means does not keep.
+    const StressSampling<dim>          points(sampling.space,
+                                     sampling.moduli,
+                                     /* at_quadrature_points = */ true,
+                                     sampling.mean_dilatation);
+    std::vector<SymmetricTensor<2, 3>> stress(points.n_samples);
+    std::vector<double>                sums(2, 0.);
+    for (std::size_t c = 0; c < points.n_cells(); ++c)
+      {
+        points.strains(c, state.u.begin(), stress.data());
+        for (unsigned int s = 0; s < points.n_samples; ++s)
+          {
+            stress[s] = sampling.moduli(c).stress(stress[s]);
+            if (!state.z.empty())
+              stress[s] += state.z[c * sampling.n_samples +
+                                   (sampling.n_samples == 1 ? 0 : s)];
+          }
+        const SymmetricTensor<2, 3> mean = points.mean(c, stress.data());
+        for (unsigned int s = 0; s < points.n_samples; ++s)
+          {
+            sums[0] += square(stress[s] - mean) * points.weight(c, s);
+            sums[1] += square(stress[s]) * points.weight(c, s);
+          }
+      }
+    Utilities::MPI::sum(sums, sampling.space.communicator, sums);
+    return sums[1] > 0. ? std::sqrt(sums[0] / sums[1]) : 0.;
+  }
+
+
+
+  template StressSummary
+  summarise_stress<2>(const FlowLaws<2> &, const State<2> &, const State<2> &);
+  template StressSummary
+  summarise_stress<3>(const FlowLaws<3> &, const State<3> &, const State<3> &);
+  template double
+  relative_stress_fluctuation<2>(const StressSampling<2> &, const State<2> &);
+  template double
+  relative_stress_fluctuation<3>(const StressSampling<3> &, const State<3> &);
+} // namespace Viscoplastic

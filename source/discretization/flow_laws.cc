@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/discretization/flow_laws.h>
+
+#include <algorithm>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The position of a sample; in 2D, z = 0.
+    template <int dim>
+    Point<3>
+    position(const StressSampling<dim> &sampling,
+             const std::size_t          cell,
+             const unsigned int         s)
+    {
+      Point<3> x;
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = sampling.position(cell, s)[d];
+      return x;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  FlowLaws<dim>::FlowLaws(const StressSampling<dim> &sampling)
+    : sampling(sampling)
+    , any(false)
+    , any_cap(false)
+    , any_own_energy(false)
+    , source_solution(sampling.space.scene.has_source() ?
+                        sampling.space.scene.exact_solution.get() :
+                        nullptr)
+  {
+    const Scene<dim> &scene         = sampling.space.scene;
+    bool              any_to_sample = false;
+    for (const auto &material : scene.materials)
+      {
+        const ViscoplasticLaw *law = material->law.get();
+        materials.push_back({law,
+                             law && law->depends_on_position(),
+                             law && law->depends_on_time()});
+        any |= law != nullptr;
+        any_cap |= law && law->has_cap();
+        any_own_energy |= law && law->has_own_energy();
+        any_to_sample |=
+          materials.back().varies_in_space && !materials.back().varies_in_time;
+      }
+    if (!any)
+      return;
+
+    if (materials.size() > 1)
+      {
+        std::map<const Material<dim> *, unsigned int> index;
+        for (const auto &material : scene.materials)
+          index.emplace(material.get(), index.size());
+        for (const auto &cell :
+             sampling.space.dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            material_of_cell.push_back(
+              index.at(&scene.material(cell->material_id())));
+      }
+
+    const AtTime start = at(0.);
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      for (unsigned int s = 0; s < sampling.n_samples; ++s)
+        {
+          const ViscoplasticLaw *law = start.law(c);
+          if (any_to_sample)
+            parameters.push_back(
+              law ? law->point(position(sampling, c, s), 0.).parameters :
+                    std::array<double, 6>());
+          if (law && (s == 0 || law->depends_on_position()))
+            law->check(sampling.moduli(c), start.point(c, s));
+        }
+  }
+
+
+
+  template <int dim>
+  bool
+  FlowLaws<dim>::have_constant_tangents() const
+  {
+    return std::all_of(
+      materials.begin(), materials.end(), [](const Entry &entry) {
+        return !entry.law ||
+               (entry.law->has_constant_tangents() && !entry.varies_in_time);
+      });
+  }
+
+
+
+  template <int dim>
+  void
+  FlowLaws<dim>::check(const double t) const
+  {
+    if (std::none_of(materials.begin(),
+                     materials.end(),
+                     [](const Entry &entry) { return entry.varies_in_time; }))
+      return;
+    const AtTime now(*this, t); // evaluates what depends on t alone
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      {
+        const ViscoplasticLaw *law = now.law(c);
+        if (law && law->depends_on_time() && law->depends_on_position())
+          for (unsigned int s = 0; s < sampling.n_samples; ++s)
+            law->point(position(sampling, c, s), t);
+      }
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, 3>
+  FlowLaws<dim>::source(const AtTime                           &now,
+                        const std::size_t                       cell,
+                        const unsigned int                      s,
+                        const typename ExactSolution<dim>::Side side) const
+  {
+    SymmetricTensor<2, 3> result;
+    if (source_solution == nullptr)
+      return result;
+    const Point<dim> &x         = sampling.position(cell, s);
+    const Stiffness  &stiffness = sampling.moduli(cell);
+    result                      = source_solution->stress_rate(x, now.t, side) -
+             stiffness.stress(source_solution->strain_rate(x, now.t, side));
+    if (const ViscoplasticLaw *law = now.law(cell))
+      result -= law->rate(source_solution->stress(x, now.t),
+                          source_solution->strain(x, now.t),
+                          stiffness,
+                          now.point(cell, s));
+    return result;
+  }
+
+
+
+  template <int dim>
+  FlowLaws<dim>::AtTime::AtTime(const FlowLaws &laws, const double t)
+    : laws(laws)
+    , t(t)
+  {
+    for (const Entry &entry : laws.materials)
+      uniform.push_back(entry.law && !entry.varies_in_space ?
+                          entry.law->point(Point<3>(), t) :
+                          LawPoint());
+  }
+
+
+
+  template <int dim>
+  LawPoint
+  FlowLaws<dim>::AtTime::point(const std::size_t  cell,
+                               const unsigned int s) const
+  {
+    const unsigned int m =
+      laws.material_of_cell.empty() ? 0 : laws.material_of_cell[cell];
+    const Entry   &entry = laws.materials[m];
+    const Point<3> x     = position(laws.sampling, cell, s);
+    if (entry.varies_in_space && entry.varies_in_time)
+      return entry.law->point(x, t);
+    LawPoint point = uniform[m];
+    if (entry.varies_in_space)
+      point.parameters = laws.parameters[cell * laws.sampling.n_samples + s];
+    point.x = x;
+    point.t = t;
+    return point;
+  }
+
+
+
+  namespace
+  {
+    /**
+     * The largest relaxation rate and where it is: of samples whose rates are
+     * equal up to solver tolerances, the one with the least coordinates, so
+     * that it does not depend on the number of ranks.
+     */
+    struct CriticalSample
+    {
+      double   largest = 0., critical = 0.;
+      Point<3> position;
+
+      void
+      add(const double r, const Point<3> &x)
+      {
+        const bool is_larger = r > critical * (1. + 1e-6),
+                   is_equal  = r > 0. && r >= critical * (1. - 1e-6);
+        largest              = std::max(largest, r);
+        if (is_larger ||
+            (is_equal && std::lexicographical_compare(x.begin_raw(),
+                                                      x.end_raw(),
+                                                      position.begin_raw(),
+                                                      position.end_raw())))
+          {
+            critical = r;
+            position = x;
+          }
+      }
+
+      void
+      reduce(const MPI_Comm comm)
+      {
+        const std::array<double, 5> own{
+          {largest, critical, position[0], position[1], position[2]}};
+        *this = CriticalSample();
+        for (const auto &other : Utilities::MPI::all_gather(comm, own))
+          {
+            add(other[1], Point<3>(other[2], other[3], other[4]));
+            largest = std::max(largest, other[0]);
+          }
+      }
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  FlowRate
+  evaluate_flow(const FlowLaws<dim>                    &laws,
+                const DistributedVector                &ghosted_u,
+                const IrreversibleStress               &z,
+                const double                            t,
+                const typename ExactSolution<dim>::Side side)
+  {
+    const StressSampling<dim> &sampling = laws.sampling;
+    const MPI_Comm             comm     = sampling.space.communicator;
+    const auto                 now      = laws.at(t);
+    FlowRate                   result{IrreversibleStress(z.size()), 0., 0.};
+    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    CriticalSample                     worst;
+    // An expression without a value there, on some rank.
+    fail_together(comm, [&] {
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        {
+          if (laws.source_solution)
+            for (unsigned int s = 0; s < sampling.n_samples; ++s)
+              result.rate[c * sampling.n_samples + s] =
+                laws.source(now, c, s, side);
+          const ViscoplasticLaw *law = now.law(c);
+          if (law == nullptr)
+            continue;
+          const Stiffness &stiffness = sampling.moduli(c);
+          sampling.strains(c, ghosted_u.begin(), strain.data());
+          for (unsigned int s = 0; s < sampling.n_samples; ++s)
+            {
+              const std::size_t           i     = c * sampling.n_samples + s;
+              const LawPoint              point = now.point(c, s);
+              const SymmetricTensor<2, 3> stress =
+                stiffness.stress(strain[s]) + z[i];
+              result.rate[i] += law->rate(stress, strain[s], stiffness, point);
+              const double r =
+                law->relaxation_rate(stress, strain[s], stiffness, point);
+              worst.add(r, position(sampling, c, s));
+              if (law->is_beyond_cap(stress, point))
+                result.capped_volume += sampling.weight(c, s);
+            }
+        }
+    });
+    worst.reduce(comm);
+    result.relaxation_rate   = worst.largest;
+    result.critical_position = worst.position;
+    if (laws.any_cap)
+      result.capped_volume = Utilities::MPI::sum(result.capped_volume, comm);
+    return result;
+  }
+
+
+
+  template class FlowLaws<2>;
+  template class FlowLaws<3>;
+  template FlowRate
+  evaluate_flow<2>(const FlowLaws<2> &,
+                   const DistributedVector &,
+                   const IrreversibleStress &,
+                   const double,
+                   const ExactSolution<2>::Side);
+  template FlowRate
+  evaluate_flow<3>(const FlowLaws<3> &,
+                   const DistributedVector &,
+                   const IrreversibleStress &,
+                   const double,
+                   const ExactSolution<3>::Side);
+} // namespace Viscoplastic

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/discretization/force_balance.h>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Call visit(frame, first component's local position) for each owned node
+    /// with prescribed components.
+    template <int dim, typename Visitor>
+    void
+    for_each_prescribed(const AdmissibleSpace<dim> &space, const Visitor &visit)
+    {
+      for (const auto &node : space.boundary_nodes())
+        {
+          const NodalFrame<dim> &frame = space.frame(node.frame);
+          if (frame.n_fixed > 0)
+            visit(frame, space.owned.index_within_set(node.first_dof));
+        }
+    }
+
+
+
+    /// What the constraints add in the prescribed components of the node whose
+    /// first component is at local position @p first; padded by zeros.
+    template <int dim>
+    Tensor<1, dim>
+    constraint_force(const Forces<dim>     &forces,
+                     const NodalFrame<dim> &frame,
+                     const std::size_t      first)
+    {
+      Tensor<1, dim> force;
+      for (unsigned int i = 0; i < frame.n_fixed; ++i)
+        {
+          const std::size_t dof = first + frame.fixed[i];
+          force[i] =
+            forces.internal.begin()[dof] - forces.load.values.begin()[dof];
+        }
+      return force;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Forces<dim>
+  evaluate_forces(const StressSampling<dim> &sampling,
+                  const DistributedMatrix   &matrix,
+                  Load<dim>                  load,
+                  const State<dim>          &state)
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    Forces<dim>                 forces{
+      space.owned_vector(), std::move(load), space.owned_vector(), {}, 0., 0.};
+    space.to_frames(state.u, forces.u);
+    matrix.vmult(forces.elastic, forces.u);
+    forces.internal      = forces.elastic;
+    forces.strain_energy = 0.5 * (forces.u * forces.elastic);
+    if (space.scene.has_irreversible_stress()) // collective
+      {
+        DistributedVector irreversible = space.owned_vector();
+        add_irreversible_load(sampling, state.z, irreversible);
+        forces.irreversible_work = -(forces.u * irreversible);
+        forces.internal -= irreversible;
+      }
+    return forces;
+  }
+
+
+
+  template <int dim>
+  std::map<types::boundary_id, Tensor<1, dim>>
+  reactions(const AdmissibleSpace<dim> &space, const Forces<dim> &forces)
+  {
+    std::map<types::boundary_id, Tensor<1, dim>> result;
+    for (const auto &pair : space.scene.boundary)
+      if (pair.second.constrains())
+        result[pair.first]; // the same entries on all ranks
+    // A constraint pushes along the direction that it prescribes. These may be
+    // oblique to each other, and so parts, not projections.
+    for_each_prescribed(
+      space, [&](const NodalFrame<dim> &frame, const std::size_t first) {
+        const Tensor<1, dim> part = transpose(invert(condition_matrix(frame))) *
+                                    constraint_force(forces, frame, first);
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          result[frame.condition_boundary[i]] +=
+            part[i] * frame.condition_direction[i];
+      });
+    for (auto &pair : result)
+      pair.second = Utilities::MPI::sum(pair.second, space.communicator);
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  external_work(const AdmissibleSpace<dim> &space,
+                const Forces<dim>          &old_forces,
+                const Forces<dim>          &forces)
+  {
+    DistributedVector change = forces.u;
+    change -= old_forces.u;
+    // Loads everywhere; at prescribed components the reaction adds what is
+    // missing to the internal force.
+    double work =
+      0.5 * (change * old_forces.load.values + change * forces.load.values);
+    double reaction_work = 0.;
+    for_each_prescribed(
+      space, [&](const NodalFrame<dim> &frame, const std::size_t first) {
+        const Tensor<1, dim> mean =
+          0.5 * (constraint_force(old_forces, frame, first) +
+                 constraint_force(forces, frame, first));
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          reaction_work += mean[i] * change.begin()[first + frame.fixed[i]];
+      });
+    return work + Utilities::MPI::sum(reaction_work, space.communicator);
+  }
+
+
+
+  template <int dim>
+  FrictionIdentities
+  check_friction(const ContactFace<dim>    &face,
+                 const FrictionState       &old_state,
+                 const FrictionState       &state,
+                 const std::vector<double> &bounds,
+                 const DistributedVector   &change,
+                 const Vector<double>      &foundation_step,
+                 const double               max_displacement)
+  {
+    FrictionIdentities              result;
+    const std::vector<Tensor<1, 2>> slips = face.slips(change, foundation_step);
+    if (foundation_step.size() > 0)
+      {
+        const std::vector<Tensor<1, 2>> carried = face.slips(foundation_step);
+        for (unsigned int p = 0; p < carried.size(); ++p)
+          result.foundation_work -=
+            0.5 * (old_state.multiplier[p] + state.multiplier[p]) * carried[p];
+      }
+    for (unsigned int p = 0; p < slips.size(); ++p)
+      {
+        const double size   = stable_norm(slips[p]);
+        const double weight = face.weights()[p];
+        const double force  = stable_norm(state.multiplier[p]);
+        if (bounds[p] > 0.)
+          result.max_utilisation =
+            std::max(result.max_utilisation, force / bounds[p]);
+        if (state.sticks[p])
+          {
+            result.stick_area += weight;
+            result.max_stick_slip = std::max(result.max_stick_slip, size);
+          }
+        else
+          {
+            result.slip_area += weight;
+            // Below this, the direction is rounding.
+            if (bounds[p] > 0. && size > 1e-7 * max_displacement)
+              result.slip_misalignment =
+                std::max(result.slip_misalignment,
+                         stable_norm(state.multiplier[p] -
+                                     slips[p] * (bounds[p] / size)) /
+                           bounds[p]);
+            result.dissipation += state.multiplier[p] * slips[p];
+          }
+      }
+    return result;
+  }
+
+
+
+#define INSTANTIATE(dim)                                                       \
+  template Forces<dim> evaluate_forces<dim>(const StressSampling<dim> &,       \
+                                            const DistributedMatrix &,         \
+                                            Load<dim>,                         \
+                                            const State<dim> &);               \
+  template std::map<types::boundary_id, Tensor<1, dim>> reactions<dim>(        \
+    const AdmissibleSpace<dim> &, const Forces<dim> &);                        \
+  template double             external_work<dim>(const AdmissibleSpace<dim> &, \
+                                     const Forces<dim> &,          \
+                                     const Forces<dim> &);         \
+  template FrictionIdentities check_friction<dim>(const ContactFace<dim> &,    \
+                                                  const FrictionState &,       \
+                                                  const FrictionState &,       \
+                                                  const std::vector<double> &, \
+                                                  const DistributedVector &,   \
+                                                  const Vector<double> &,      \
+                                                  const double);
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+} // namespace Viscoplastic

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/discretization/implicit_flow.h>
+#include <viscoplastic_contact/laws/backward_euler.h>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Newton's step for a law with constant tangents, which is exact; keeps
+    /// the inverse of the last sample, of which most have the same.
+    class LinearEquation
+    {
+    public:
+      SymmetricTensor<2, 3>
+      solve(const BackwardEulerEquation &equation,
+            const SymmetricTensor<2, 3> &start)
+      {
+        if (law != &equation.law || stiffness != &equation.stiffness ||
+            k != equation.k || parameters != equation.point.parameters)
+          {
+            law        = &equation.law;
+            stiffness  = &equation.stiffness;
+            k          = equation.k;
+            parameters = equation.point.parameters;
+            inverse    = invert(
+              identity_tensor<3>() -
+              k * law->tangents({}, {}, *stiffness, equation.point).stress);
+          }
+        return start - inverse * equation.residual(start);
+      }
+
+    private:
+      const ViscoplasticLaw *law       = nullptr;
+      const Stiffness       *stiffness = nullptr;
+      double                 k         = 0.;
+      std::array<double, 6>  parameters{};
+      SymmetricTensor<4, 3>  inverse;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  IrreversibleStress
+  implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,
+                               const StressSampling<dim>            &sampling,
+                               const DistributedVector              &ghosted_u,
+                               const IrreversibleStress             &old_z,
+                               const double                          k,
+                               const IrreversibleStress             &start)
+  {
+    IrreversibleStress                 z(old_z);
+    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    LinearEquation                     linear_equation;
+    const auto                         solve_cell = [&](const std::size_t c) {
+      const ViscoplasticLaw &law       = *laws.law(c);
+      const Stiffness       &stiffness = sampling.moduli(c);
+      sampling.strains(c, ghosted_u.begin(), strain.data());
+      for (unsigned int s = 0; s < sampling.n_samples; ++s)
+        {
+          const std::size_t i = c * sampling.n_samples + s;
+          const LawPoint    point = laws.point(c, s);
+          z[i] =
+            law.has_constant_tangents() ?
+                                      linear_equation.solve(
+                {law, strain[s], old_z[i], k, stiffness, point}, start[i]) :
+                                      implicit_irreversible_stress(
+                law, strain[s], old_z[i], k, stiffness, point, start[i]);
+        }
+    };
+
+    // A sample without a solution fails the step.
+    fail_together(sampling.space.communicator, [&] {
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        if (laws.law(c) != nullptr)
+          solve_cell(c);
+    });
+    return z;
+  }
+
+
+
+  template IrreversibleStress
+  implicit_irreversible_stress<2>(const FlowLaws<2>::AtTime &,
+                                  const StressSampling<2> &,
+                                  const DistributedVector &,
+                                  const IrreversibleStress &,
+                                  const double,
+                                  const IrreversibleStress &);
+  template IrreversibleStress
+  implicit_irreversible_stress<3>(const FlowLaws<3>::AtTime &,
+                                  const StressSampling<3> &,
+                                  const DistributedVector &,
+                                  const IrreversibleStress &,
+                                  const double,
+                                  const IrreversibleStress &);
+} // namespace Viscoplastic

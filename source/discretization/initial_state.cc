@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/discretization/bulk_system.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    template <int dim>
+    SymmetricTensor<2, 3>
+    initial_stress(const Scene<dim> &scene, const Point<dim> &x)
+    {
+      SymmetricTensor<2, 3> result;
+      const auto            components = stress_components<dim>();
+      for (unsigned int c = 0; c < components.size(); ++c)
+        result[components[c].first][components[c].second] =
+          scene.initial_stress->value(x, 0., c);
+      return result;
+    }
+
+
+
+    /// Call visit(cell, fe_values) for each owned cell.
+    template <int dim, typename Visitor>
+    void
+    for_each_cell(const AdmissibleSpace<dim> &space,
+                  const unsigned int          n_points,
+                  const Visitor              &visit)
+    {
+      FEValues<dim> fe_values(space.dof_handler.get_fe(),
+                              QGauss<dim>(n_points),
+                              update_gradients | update_JxW_values |
+                                update_quadrature_points);
+      for (const auto &cell : space.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            fe_values.reinit(cell);
+            visit(cell, fe_values);
+          }
+    }
+
+
+
+    /// int tau(x) : eps(v) as a load vector in frames.
+    template <int dim, typename Stress>
+    DistributedVector
+    virtual_work(const AdmissibleSpace<dim> &space,
+                 const unsigned int          n_points,
+                 const Stress               &stress)
+    {
+      std::vector<double> cartesian(space.relevant.n_elements());
+      for_each_cell(space, n_points, [&](const auto &cell, const auto &values) {
+        for (const unsigned int q : values.quadrature_point_indices())
+          {
+            const SymmetricTensor<2, 3> tau =
+              stress(values.quadrature_point(q)) * values.JxW(q);
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                const auto node =
+                  space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
+                const Tensor<1, dim> gradient = values.shape_grad(v * dim, q);
+                for (unsigned int i = 0; i < dim; ++i)
+                  for (unsigned int j = 0; j < dim; ++j)
+                    cartesian[node + i] += tau[i][j] * gradient[j];
+              }
+          }
+      });
+      DistributedVector result = space.owned_vector();
+      space.add_cartesian_load(cartesian, result);
+      return result;
+    }
+
+
+
+    template <int dim>
+    SymmetricTensor<2, 3>
+    initial_strain(const Scene<dim> &scene, const Point<dim> &x)
+    {
+      SymmetricTensor<2, 3> strain;
+      for (unsigned int i = 0; i < dim; ++i)
+        {
+          const Tensor<1, dim> gradient =
+            (*scene.initial_displacement)[i].gradient(x, 0.);
+          for (unsigned int j = 0; j < dim; ++j)
+            strain[i][j] += (i == j ? 1. : 0.5) * gradient[j];
+        }
+      return strain;
+    }
+
+
+
+    /// u0 at the nodes, in frames: compared with what is prescribed there.
+    template <int dim>
+    DistributedVector
+    interpolate_initial_displacement(const AdmissibleSpace<dim> &space)
+    {
+      DistributedVector values    = space.owned_vector(),
+                        ghosted   = space.ghosted_vector(),
+                        in_frames = space.owned_vector();
+      if (space.scene.initial_displacement)
+        {
+          for (const auto &cell : space.dof_handler.active_cell_iterators())
+            if (cell->is_locally_owned())
+              for (const unsigned int v : cell->vertex_indices())
+                {
+                  const auto dof = cell->vertex_dof_index(v, 0);
+                  if (!space.owned.is_element(dof))
+                    continue;
+                  const Tensor<1, dim> u =
+                    space.scene.initial_displacement->vector(cell->vertex(v),
+                                                             0.);
+                  for (unsigned int d = 0; d < dim; ++d)
+                    values.begin()[space.owned.index_within_set(dof) + d] =
+                      u[d];
+                }
+          ghosted = values;
+          space.to_frames(ghosted, in_frames);
+        }
+      return in_frames;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  State<dim>
+  make_initial_state(const StressSampling<dim> &sampling,
+                     const bool                 equilibrate)
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    const Scene<dim>           &scene = space.scene;
+
+    // Do u0 and the prescribed displacements agree at t = 0?
+    DistributedVector u          = interpolate_initial_displacement(space);
+    DistributedVector prescribed = u;
+    space.set_prescribed(0., prescribed);
+    DistributedVector difference = prescribed;
+    difference -= u;
+    const double contradiction = difference.linfty_norm();
+    const double size          = std::max(u.linfty_norm(), 1e-300);
+    if (!equilibrate && contradiction > 1e-8 * size)
+      {
+        std::ostringstream message;
+        message << "The initial displacement contradicts the displacements "
+                   "prescribed at t = 0 by "
+                << contradiction
+                << "; let them agree, or set 'Initial state/Equilibrate'.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+
+    State<dim> state;
+    state.u        = space.ghosted_vector();
+    state.velocity = space.ghosted_vector();
+    if (scene.initial_displacement)
+      {
+        // E = identity: Young's modulus 1, Poisson's ratio 0.
+        const ElasticModuli<dim> identity(Stiffness::isotropic(1., 0.));
+        DistributedMatrix        matrix;
+        assemble_elastic_matrix(space, identity, false, matrix);
+        const DistributedVector load =
+          virtual_work(space, 3, [&](const Point<dim> &x) {
+            return initial_strain(scene, x);
+          });
+        const FrictionFace                         no_face;
+        const std::vector<types::global_dof_index> no_dofs;
+        make_bulk_solver(make_bulk_system(space, matrix, no_face, no_dofs), {})
+          ->solve(load, prescribed, 1e-10);
+        space.to_cartesian(prescribed, state.u);
+        state.initial_u = state.u;
+      }
+
+    if (scene.has_irreversible_stress())
+      {
+        std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+        state.z.resize(sampling.n_cells() * sampling.n_samples);
+        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+          {
+            sampling.strains(c, state.u.begin(), strain.data());
+            for (unsigned int s = 0; s < sampling.n_samples; ++s)
+              state.z[c * sampling.n_samples + s] =
+                -1. * sampling.moduli(c).stress(strain[s]);
+          }
+        if (scene.initial_stress)
+          {
+            std::size_t c = 0;
+            for_each_cell(space, 2, [&](const auto &, const auto &values) {
+              for (const unsigned int q : values.quadrature_point_indices())
+                {
+                  const SymmetricTensor<2, 3> stress =
+                    initial_stress(scene, values.quadrature_point(q));
+                  if (sampling.n_samples == 1)
+                    state.z[c] += stress * (values.JxW(q) / sampling.volume(c));
+                  else
+                    state.z[c * sampling.n_samples + q] += stress;
+                }
+              ++c;
+            });
+          }
+      }
+    return state;
+  }
+
+
+
+  template <int dim>
+  double
+  initial_data_error(const StressSampling<dim> &sampling,
+                     const State<dim>          &state)
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    const Scene<dim>           &scene = space.scene;
+    if (!scene.initial_displacement && !scene.initial_stress)
+      return 0.;
+    std::vector<double>                sums(2, 0.);
+    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    std::size_t                        c = 0;
+    for_each_cell(space, 3, [&](const auto &cell, const auto &values) {
+      const Stiffness &stiffness = sampling.moduli(c);
+      sampling.strains(c, state.u.begin(), strain.data());
+      SymmetricTensor<2, 3> sigma =
+        stiffness.stress(sampling.mean(c, strain.data()));
+      sigma += sampling.mean(c, &state.z[c * sampling.n_samples]);
+      for (const unsigned int q : values.quadrature_point_indices())
+        {
+          SymmetricTensor<2, 3> error;
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = 0; j < dim; ++j)
+                error[i][j] -= (i == j ? 1. : 0.5) *
+                               state.u.begin()[space.relevant.index_within_set(
+                                                 cell->vertex_dof_index(v, 0)) +
+                                               i] *
+                               values.shape_grad(v * dim, q)[j];
+          if (scene.initial_displacement)
+            error += initial_strain(scene, values.quadrature_point(q));
+          sums[0] += (stiffness.stress(error) * error) * values.JxW(q);
+          error = -1. * sigma;
+          if (scene.initial_stress)
+            error += initial_stress(scene, values.quadrature_point(q));
+          sums[1] += (stiffness.strain(error) * error) * values.JxW(q);
+        }
+      ++c;
+    });
+    Utilities::MPI::sum(sums, space.communicator, sums);
+    return std::sqrt(sums[0]) + std::sqrt(sums[1]);
+  }
+
+
+
+  template <int dim>
+  double
+  compatibility_violation(const AdmissibleSpace<dim> &space,
+                          const Load<dim>            &load,
+                          const ContactFace<dim>     *face,
+                          FrictionState              &friction)
+  {
+    DistributedVector residual = load.values;
+    const auto restrict        = [&space](DistributedVector &v) {
+      for (std::size_t i = 0; i < space.excluded().size(); ++i)
+        if (space.excluded()[i])
+          v.begin()[i] = 0.;
+    };
+    restrict(residual);
+    double size = residual.l2_norm(), largest = 0.;
+    if (space.scene.initial_stress)
+      {
+        // More points than elsewhere: what remains is quadrature error.
+        DistributedVector internal =
+          virtual_work(space, 4, [&](const Point<dim> &x) {
+            return initial_stress(space.scene, x);
+          });
+        largest = internal.l2_norm();
+        restrict(internal);
+        size = std::max(size, internal.l2_norm());
+        residual -= internal;
+      }
+
+    if (face != nullptr)
+      {
+        const Vector<double> on_face = face->face_vector(residual);
+        Vector<double>       force(on_face.size());
+        friction = FrictionState(face->layout().points.size());
+        fit_multipliers(
+          face->layout(), face->bounds(0.), on_face, friction, force);
+        for (unsigned int k = 0; k < force.size(); ++k)
+          if (space.owned.is_element(face->dofs()[k]))
+            residual.begin()[space.owned.index_within_set(face->dofs()[k])] -=
+              force[k];
+      }
+    // Where reactions balance the initial stress, nothing but rounding is left
+    // of it.
+    return size > 1e-12 * largest ? residual.l2_norm() / size : 0.;
+  }
+
+
+
+  template State<2>
+  make_initial_state<2>(const StressSampling<2> &, const bool);
+  template State<3>
+  make_initial_state<3>(const StressSampling<3> &, const bool);
+  template double
+  initial_data_error<2>(const StressSampling<2> &, const State<2> &);
+  template double
+  initial_data_error<3>(const StressSampling<3> &, const State<3> &);
+  template double
+  compatibility_violation<2>(const AdmissibleSpace<2> &,
+                             const Load<2> &,
+                             const ContactFace<2> *,
+                             FrictionState &);
+  template double
+  compatibility_violation<3>(const AdmissibleSpace<3> &,
+                             const Load<3> &,
+                             const ContactFace<3> *,
+                             FrictionState &);
+} // namespace Viscoplastic

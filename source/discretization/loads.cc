@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/discretization/loads.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  Loads<dim>::Loads(const AdmissibleSpace<dim> &space)
+    : space(space)
+    , constant{space.owned_vector(), Tensor<1, dim>()}
+  {
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            {
+              const auto &condition =
+                space.scene.boundary.at(cell->face(f)->boundary_id());
+              if (condition.carries_load())
+                faces.push_back({cell, f, &condition});
+            }
+    add(0., false, constant);
+  }
+
+
+
+  template <int dim>
+  void
+  Loads<dim>::add(const double t,
+                  const bool   time_dependent,
+                  Load<dim>   &load) const
+  {
+    std::vector<double> cartesian(space.relevant.n_elements());
+    Tensor<1, dim>      resultant;
+    bool                any = false;
+
+    const auto add_at_point = [&](const auto           &fe_values,
+                                  const unsigned int    q,
+                                  const Cell           &cell,
+                                  const Tensor<1, dim> &force) {
+      resultant += force;
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          const auto node =
+            space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
+          const double shape = fe_values.shape_value(v * dim, q);
+          for (unsigned int d = 0; d < dim; ++d)
+            cartesian[node + d] += shape * force[d];
+        }
+    };
+
+    const FiniteElement<dim> &fe = space.dof_handler.get_fe();
+    const auto               &b  = space.scene.body_force;
+    if (b && b->depends_on_time() == time_dependent)
+      {
+        any = true;
+        FEValues<dim> fe_values(fe,
+                                QGauss<dim>(2),
+                                update_values | update_JxW_values |
+                                  update_quadrature_points);
+        for (const auto &cell : space.dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              fe_values.reinit(cell);
+              for (const unsigned int q : fe_values.quadrature_point_indices())
+                add_at_point(fe_values,
+                             q,
+                             cell,
+                             b->vector(fe_values.quadrature_point(q), t) *
+                               fe_values.JxW(q));
+            }
+      }
+
+    FEFaceValues<dim> face_values(fe,
+                                  QGauss<dim - 1>(2),
+                                  update_values | update_JxW_values |
+                                    update_quadrature_points |
+                                    update_normal_vectors);
+    for (const auto &pair : space.scene.boundary)
+      any |= pair.second.carries_load() &&
+             pair.second.load_depends_on_time() == time_dependent;
+    for (const Face &face : faces)
+      if (face.condition->load_depends_on_time() == time_dependent)
+        {
+          face_values.reinit(face.cell, face.face);
+          for (const unsigned int q : face_values.quadrature_point_indices())
+            {
+              const Tensor<1, dim> force =
+                face.condition->load(face_values.quadrature_point(q),
+                                     face_values.normal_vector(q),
+                                     t);
+              add_at_point(face_values,
+                           q,
+                           face.cell,
+                           force * face_values.JxW(q));
+            }
+        }
+
+    if (any) // the same on all ranks
+      {
+        space.add_cartesian_load(cartesian, load.values);
+        load.resultant += Utilities::MPI::sum(resultant, space.communicator);
+      }
+  }
+
+
+
+  template <int dim>
+  Load<dim>
+  Loads<dim>::assemble(const double t) const
+  {
+    Load<dim> load = constant;
+    add(t, true, load);
+    return load;
+  }
+
+
+
+  template class Loads<2>;
+  template class Loads<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/discretization/nodal_frame.h>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Directions closer than this (sine of the angle) count as one.
+    constexpr double parallel_tolerance = 1e-6;
+
+    template <int dim>
+    Tensor<1, dim>
+    axis(const unsigned int d)
+    {
+      Tensor<1, dim> e;
+      e[d] = 1.;
+      return e;
+    }
+
+
+
+    /// An orthonormal set of directions that grows.
+    template <int dim>
+    struct Basis
+    {
+      std::vector<Tensor<1, dim>> directions;
+
+      /// Orthonormalise and add @p v; false if it depends on the others.
+      bool
+      add(Tensor<1, dim> v)
+      {
+        for (unsigned int pass = 0; pass < 2; ++pass) // twice is enough
+          for (const auto &q : directions)
+            v -= (v * q) * q;
+        if (v.norm() < parallel_tolerance)
+          return false;
+        directions.push_back(v / v.norm());
+        return true;
+      }
+    };
+
+
+
+    template <int dim>
+    bool
+    is_axis(const Tensor<1, dim> &v)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (std::abs(v[d]) == 1.)
+          return true;
+      return false;
+    }
+
+
+
+    /**
+     * The friction point of a piece with normal @p nu at a node with the given
+     * frame; without tangents if the other conditions leave no slip.
+     */
+    template <int dim>
+    FrictionPlane<dim>
+    make_plane(const NodalFrame<dim>   &frame,
+               const Tensor<1, dim>    &nu,
+               const types::boundary_id id,
+               SymmetricTensor<2, dim> &form)
+    {
+      // abs(slip)^2 as a quadratic form of the free frame components.
+      form = 0.;
+      std::array<bool, dim> is_free;
+      is_free.fill(true);
+      for (unsigned int i = 0; i < frame.n_fixed; ++i)
+        is_free[frame.fixed[i]] = false;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = i; j < dim; ++j)
+          if (is_free[i] && is_free[j])
+            {
+              const auto a = column(frame.directions, i);
+              const auto b = column(frame.directions, j);
+              form[i][j]   = a * b - (a * nu) * (b * nu);
+              if (std::abs(form[i][j]) < 1e-14)
+                form[i][j] = 0.;
+            }
+
+      FrictionPlane<dim> plane;
+      plane.n_tangents   = 0;
+      plane.boundary_ids = {id};
+      bool is_diagonal   = true;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = i + 1; j < dim; ++j)
+          is_diagonal &= form[i][j] == 0.;
+      const auto add_row = [&plane](const Tensor<1, dim> &row) {
+        AssertIndexRange(plane.n_tangents, dim - 1);
+        plane.map[plane.n_tangents++] = row;
+      };
+      if (is_diagonal)
+        {
+          for (unsigned int i = 0; i < dim; ++i)
+            if (form[i][i] > parallel_tolerance)
+              add_row(std::sqrt(form[i][i]) * axis<dim>(i));
+        }
+      else
+        {
+          for (const auto &[value, vector] : eigenvectors(form))
+            if (value > parallel_tolerance)
+              add_row(std::sqrt(value) * vector);
+        }
+      return plane;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  NodalFrame<dim>
+  make_nodal_frame(
+    const std::vector<const BoundaryCondition<dim> *> &conditions)
+  {
+    NodalFrame<dim> frame;
+    Basis<dim>      basis;
+    const auto      require = [&](const Tensor<1, dim>    &direction,
+                             const types::boundary_id id,
+                             const unsigned int       component) {
+      if (!basis.add(direction))
+        return;
+      frame.condition_direction[frame.n_fixed] = direction;
+      frame.condition_boundary[frame.n_fixed]  = id;
+      frame.condition_component[frame.n_fixed] = component;
+      ++frame.n_fixed;
+    };
+    // Where conditions compete, what fixes more comes first.
+    for (const auto *condition : conditions)
+      if (condition->role == BoundaryRole::clamped)
+        for (unsigned int d = 0; d < dim; ++d)
+          require(axis<dim>(d), condition->id, d);
+    for (const auto *condition : conditions)
+      if (condition->role == BoundaryRole::displacement)
+        for (unsigned int d = 0; d < dim; ++d)
+          if (condition->displacement[d])
+            require(axis<dim>(d), condition->id, d);
+    for (const auto *condition : conditions)
+      if (condition->is_glued())
+        for (unsigned int d = 0; d < dim; ++d)
+          require(axis<dim>(d), condition->id, d);
+    for (const BoundaryRole role :
+         {BoundaryRole::symmetry, BoundaryRole::contact})
+      for (const auto *condition : conditions)
+        if (condition->role == role && condition->is_bilateral())
+          require(condition->normal,
+                  condition->id,
+                  numbers::invalid_unsigned_int);
+
+    // The normals of pieces with given normal stress come next, so that the
+    // slip of a single piece is made of single components.
+    bool all_axes = true;
+    for (unsigned int i = 0; i < frame.n_fixed; ++i)
+      all_axes &= is_axis(frame.condition_direction[i]);
+    for (const auto *condition : conditions)
+      if (condition->has_friction())
+        {
+          all_axes &= is_axis(condition->normal);
+          basis.add(condition->normal);
+        }
+
+    if (all_axes || frame.n_fixed == dim)
+      {
+        frame.is_cartesian = true;
+        frame.directions   = unit_symmetric_tensor<dim>();
+        // Where all components are fixed, conditions may be oblique.
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          {
+            frame.fixed[i] = i;
+            for (unsigned int d = 0; frame.n_fixed < dim && d < dim; ++d)
+              if (std::abs(frame.condition_direction[i][d]) == 1.)
+                frame.fixed[i] = d;
+          }
+      }
+    else
+      {
+        frame.is_cartesian = false;
+        // Complete by the axes that are least represented.
+        while (basis.directions.size() < dim)
+          {
+            unsigned int best   = 0;
+            double       length = -1.;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                Tensor<1, dim> v = axis<dim>(d);
+                for (const auto &q : basis.directions)
+                  v -= (v * q) * q;
+                if (v.norm() > length)
+                  {
+                    length = v.norm();
+                    best   = d;
+                  }
+              }
+            basis.add(axis<dim>(best));
+          }
+        for (unsigned int j = 0; j < dim; ++j)
+          for (unsigned int i = 0; i < dim; ++i)
+            frame.directions[i][j] = basis.directions[j][i];
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          frame.fixed[i] = i;
+      }
+
+    std::vector<SymmetricTensor<2, dim>> forms;
+    for (const auto *condition : conditions)
+      if (condition->has_friction())
+        {
+          SymmetricTensor<2, dim>  form;
+          const FrictionPlane<dim> plane =
+            make_plane(frame, condition->normal, condition->id, form);
+          if (plane.n_tangents == 0)
+            continue;
+          // Pieces with the same slip share one point.
+          unsigned int p = 0;
+          while (p < forms.size() && (forms[p] - form).norm() > 1e-10)
+            ++p;
+          if (p < forms.size())
+            frame.planes[p].boundary_ids.push_back(condition->id);
+          else
+            {
+              forms.push_back(form);
+              frame.planes.push_back(plane);
+            }
+        }
+    return frame;
+  }
+
+
+
+  template <int dim>
+  Tensor<2, dim>
+  condition_matrix(const NodalFrame<dim> &frame)
+  {
+    Tensor<2, dim> matrix = unit_symmetric_tensor<dim>();
+    for (unsigned int i = 0; i < frame.n_fixed; ++i)
+      for (unsigned int j = 0; j < frame.n_fixed; ++j)
+        matrix[i][j] = frame.condition_direction[i] *
+                       column(frame.directions, frame.fixed[j]);
+    return matrix;
+  }
+
+
+
+  template NodalFrame<2>
+  make_nodal_frame<2>(const std::vector<const BoundaryCondition<2> *> &);
+  template NodalFrame<3>
+  make_nodal_frame<3>(const std::vector<const BoundaryCondition<3> *> &);
+  template Tensor<2, 2>
+  condition_matrix<2>(const NodalFrame<2> &);
+  template Tensor<2, 3>
+  condition_matrix<3>(const NodalFrame<3> &);
+} // namespace Viscoplastic

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/discretization/stress_history.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  StressSampling<dim>::StressSampling(const AdmissibleSpace<dim> &space,
+                                      const ElasticModuli<dim>   &moduli,
+                                      const bool at_quadrature_points,
+                                      const bool mean_dilatation)
+    : space(space)
+    , moduli(moduli)
+    , mean_dilatation(mean_dilatation)
+    , n_samples(at_quadrature_points ? Utilities::pow(2, dim) : 1)
+  {
+    const QGauss<dim> quadrature(2);
+    FEValues<dim>     fe_values(space.dof_handler.get_fe(),
+                            quadrature,
+                            update_gradients | update_JxW_values |
+                              update_quadrature_points);
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          fe_values.reinit(cell);
+          double volume = 0.;
+          for (const unsigned int q : fe_values.quadrature_point_indices())
+            volume += fe_values.JxW(q);
+          volumes.push_back(volume);
+          for (const unsigned int v : cell->vertex_indices())
+            nodes.push_back(
+              space.relevant.index_within_set(cell->vertex_dof_index(v, 0)));
+          if (at_quadrature_points)
+            for (const unsigned int q : fe_values.quadrature_point_indices())
+              {
+                weights.push_back(fe_values.JxW(q));
+                positions.push_back(fe_values.quadrature_point(q));
+                for (const unsigned int v : cell->vertex_indices())
+                  gradients.push_back(fe_values.shape_grad(v * dim, q));
+              }
+          else
+            {
+              weights.push_back(volume);
+              positions.push_back(cell->center());
+              for (const unsigned int v : cell->vertex_indices())
+                {
+                  Tensor<1, dim> mean;
+                  for (const unsigned int q :
+                       fe_values.quadrature_point_indices())
+                    mean += fe_values.shape_grad(v * dim, q) * fe_values.JxW(q);
+                  gradients.push_back(mean / volume);
+                }
+            }
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  StressSampling<dim>::strains(const std::size_t      cell,
+                               const double          *u,
+                               SymmetricTensor<2, 3> *strain) const
+  {
+    const unsigned int *node = &nodes[cell * n_vertices];
+    double              mean = 0.;
+    for (unsigned int s = 0; s < n_samples; ++s)
+      {
+        const Tensor<1, dim> *g =
+          &gradients[(cell * n_samples + s) * n_vertices];
+        Tensor<2, dim> gradient;
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int j = 0; j < dim; ++j)
+              gradient[i][j] += u[node[v] + i] * g[v][j];
+        strain[s] = 0.;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = i; j < dim; ++j)
+            strain[s][i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
+        mean += trace(strain[s]) * weight(cell, s);
+      }
+    if (mean_dilatation && n_samples > 1)
+      {
+        mean /= volumes[cell];
+        for (unsigned int s = 0; s < n_samples; ++s)
+          {
+            const double change = (mean - trace(strain[s])) / 3.;
+            for (unsigned int d = 0; d < 3; ++d)
+              strain[s][d][d] += change;
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  StressSampling<dim>::add_virtual_work(const std::size_t            cell,
+                                        const SymmetricTensor<2, 3> *stress,
+                                        const double                 factor,
+                                        double                      *load) const
+  {
+    const unsigned int *node          = &nodes[cell * n_vertices];
+    const bool          mean_pressure = mean_dilatation && n_samples > 1;
+    double              pressure      = 0.;
+    if (mean_pressure)
+      {
+        for (unsigned int s = 0; s < n_samples; ++s)
+          pressure += trace(stress[s]) / 3. * weight(cell, s);
+        pressure /= volumes[cell];
+      }
+    for (unsigned int s = 0; s < n_samples; ++s)
+      {
+        const Tensor<1, dim> *g =
+          &gradients[(cell * n_samples + s) * n_vertices];
+        SymmetricTensor<2, 3> acting = stress[s];
+        if (mean_pressure)
+          for (unsigned int d = 0; d < 3; ++d)
+            acting[d][d] += pressure - trace(stress[s]) / 3.;
+        acting *= factor * weight(cell, s);
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          for (unsigned int i = 0; i < dim; ++i)
+            {
+              double force = 0.;
+              for (unsigned int j = 0; j < dim; ++j)
+                force += acting[i][j] * g[v][j];
+              load[node[v] + i] += force;
+            }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  StressSampling<dim>::add_stiffness(const std::size_t            cell,
+                                     const SymmetricTensor<4, 3> *tangent,
+                                     FullMatrix<double> &cell_matrix) const
+  {
+    constexpr unsigned int n             = n_vertices * dim;
+    const bool             mean_pressure = mean_dilatation && n_samples > 1;
+    std::array<double, n>  mean{}; // divergence of each shape function
+    const Tensor<1, dim>  *g = &gradients[cell * n_samples * n_vertices];
+    if (mean_pressure)
+      for (unsigned int s = 0; s < n_samples; ++s)
+        for (unsigned int i = 0; i < n; ++i)
+          mean[i] += g[s * n_vertices + i / dim][i % dim] * weight(cell, s) /
+                     volumes[cell];
+
+    std::array<SymmetricTensor<2, 3>, n> strain;
+    for (unsigned int s = 0; s < n_samples; ++s, g += n_vertices)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const unsigned int c = i % dim;
+            strain[i]            = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              strain[i][c][d] = (c == d ? 1. : 0.5) * g[i / dim][d];
+            if (mean_pressure)
+              for (unsigned int d = 0; d < 3; ++d)
+                strain[i][d][d] += (mean[i] - g[i / dim][c]) / 3.;
+          }
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const SymmetricTensor<2, 3> stress =
+              tangent[s] * strain[j] * weight(cell, s);
+            for (unsigned int i = 0; i < j; ++i)
+              {
+                const double entry = strain[i] * stress;
+                cell_matrix(i, j) += entry;
+                cell_matrix(j, i) += entry;
+              }
+            cell_matrix(j, j) += strain[j] * stress;
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, 3>
+  StressSampling<dim>::mean(const std::size_t            cell,
+                            const SymmetricTensor<2, 3> *samples) const
+  {
+    if (n_samples == 1)
+      return samples[0];
+    SymmetricTensor<2, 3> result;
+    for (unsigned int s = 0; s < n_samples; ++s)
+      result += samples[s] * (weight(cell, s) / volumes[cell]);
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<SymmetricTensor<2, 3>>
+  StressSampling<dim>::mean_stress(const DistributedVector  &ghosted_u,
+                                   const IrreversibleStress &z) const
+  {
+    std::vector<SymmetricTensor<2, 3>> result(n_cells());
+    std::vector<SymmetricTensor<2, 3>> strain(n_samples);
+    for (std::size_t c = 0; c < n_cells(); ++c)
+      {
+        strains(c, ghosted_u.begin(), strain.data());
+        result[c] = moduli(c).stress(mean(c, strain.data()));
+        if (!z.empty())
+          result[c] += mean(c, &z[c * n_samples]);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  add_irreversible_load(const StressSampling<dim> &sampling,
+                        const IrreversibleStress  &z,
+                        DistributedVector         &load)
+  {
+    std::vector<double> cartesian(sampling.space.relevant.n_elements());
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      sampling.add_virtual_work(c,
+                                &z[c * sampling.n_samples],
+                                -1.,
+                                cartesian.data());
+    sampling.space.add_cartesian_load(cartesian, load);
+  }
+
+
+
+  template class StressSampling<2>;
+  template class StressSampling<3>;
+
+  template void
+  add_irreversible_load<2>(const StressSampling<2> &,
+                           const IrreversibleStress &,
+                           DistributedVector &);
+  template void
+  add_irreversible_load<3>(const StressSampling<3> &,
+                           const IrreversibleStress &,
+                           DistributedVector &);
+} // namespace Viscoplastic

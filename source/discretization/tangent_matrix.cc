@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/discretization/tangent_matrix.h>
+#include <viscoplastic_contact/laws/backward_euler.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The step size up to rounding of the times it is a difference of, so that
+    /// the steps of a phase have the same matrix.
+    double
+    without_rounding(const double k)
+    {
+      int          exponent;
+      const double mantissa = std::frexp(k, &exponent);
+      return std::ldexp(std::round(std::ldexp(mantissa, 34)), exponent - 34);
+    }
+
+
+
+    /// Of the product of two tensors, as a map.
+    double
+    trace(const SymmetricTensor<4, 3> &a, const SymmetricTensor<4, 3> &b)
+    {
+      double sum = 0.;
+      for (unsigned int i = 0; i < 6; ++i)
+        for (unsigned int j = 0; j < 6; ++j)
+          sum += (i < 3 ? 1. : 2.) * (j < 3 ? 1. : 2.) *
+                 a.access_raw_entry(6 * i + j) * b.access_raw_entry(6 * j + i);
+      return sum;
+    }
+
+
+
+    /// Of the isotropic tensor next to this one.
+    double
+    poissons_ratio(const SymmetricTensor<4, 3> &tangent)
+    {
+      double I_C_I = 0., full_trace = 0.;
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = 0; j < 3; ++j)
+          {
+            I_C_I += tangent[i][i][j][j];
+            full_trace += tangent[i][j][i][j];
+          }
+      const double bulk = I_C_I / 9., mu = (full_trace - I_C_I / 3.) / 10.;
+      return (3. * bulk - 2. * mu) / (6. * bulk + 2. * mu);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  TangentMatrix<dim>::TangentMatrix(const FlowLaws<dim>     &laws,
+                                    const DistributedMatrix &elastic)
+    : is_constant(laws.have_constant_tangents())
+    , laws(laws)
+    , elastic_matrix(elastic)
+  {}
+
+
+
+  template <int dim>
+  bool
+  TangentMatrix<dim>::linearise(const DistributedVector  &ghosted_u,
+                                const IrreversibleStress &z,
+                                const double              t,
+                                const double              k_exact)
+  {
+    const double k = is_constant ? without_rounding(k_exact) : k_exact;
+    if (is_constant && k == step_size)
+      return false;
+
+    const StressSampling<dim>         &sampling = laws.sampling;
+    const unsigned int                 n        = sampling.n_samples;
+    const auto                         now      = laws.at(t);
+    std::vector<SymmetricTensor<4, 3>> new_tangents;
+    new_tangents.reserve(sampling.n_cells() * n);
+    std::vector<SymmetricTensor<2, 3>> strain(n);
+    const MPI_Comm                     comm = sampling.space.communicator;
+    // A law without derivatives at a sample fails the step.
+    fail_together(comm, [&] {
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        {
+          const ViscoplasticLaw *law       = now.law(c);
+          const Stiffness       &stiffness = sampling.moduli(c);
+          sampling.strains(c, ghosted_u.begin(), strain.data());
+          for (unsigned int s = 0; s < n; ++s)
+            new_tangents.push_back(
+              law ?
+                definite_tangent(algorithmic_tangent(
+                                   *law,
+                                   stiffness.stress(strain[s]) + z[c * n + s],
+                                   strain[s],
+                                   k,
+                                   stiffness,
+                                   now.point(c, s)),
+                                 stiffness) :
+                stiffness.tensor());
+        }
+    });
+    step_size = k;
+    // Never the same before the first time, also on ranks without cells.
+    const bool is_same =
+      Utilities::MPI::min(max_nu > -1. && new_tangents == tangents ? 1 : 0,
+                          comm);
+    if (is_same)
+      return false;
+
+    tangents = std::move(new_tangents);
+    compliances.clear();
+    max_nu                        = -1.;
+    double                largest = 1.;
+    const Stiffness      *last    = nullptr;
+    SymmetricTensor<4, 3> E;
+    for (std::size_t i = 0; i < tangents.size(); ++i)
+      {
+        compliances.push_back(invert(tangents[i]));
+        max_nu = std::max(max_nu, poissons_ratio(tangents[i]));
+        // The largest eigenvalue of C^-1 E: with a potential, all others are at
+        // least 1.
+        const Stiffness &stiffness = sampling.moduli(i / n);
+        if (&stiffness != last)
+          E = stiffness.tensor();
+        last    = &stiffness;
+        largest = std::max(largest, trace(compliances[i], E) - 5.);
+      }
+    max_nu = Utilities::MPI::max(max_nu, comm);
+    ratio  = std::sqrt(Utilities::MPI::max(largest, comm));
+    assemble();
+    return true;
+  }
+
+
+
+  template <int dim>
+  void
+  TangentMatrix<dim>::assemble()
+  {
+    const StressSampling<dim>  &sampling = laws.sampling;
+    const AdmissibleSpace<dim> &space    = sampling.space;
+    const unsigned int          n        = sampling.n_samples;
+    tangent_matrix.copy_from(elastic_matrix);
+
+    const unsigned int n_dofs = space.dof_handler.get_fe().n_dofs_per_cell();
+    FullMatrix<double> cell_matrix(n_dofs, n_dofs);
+    std::vector<types::global_dof_index> dofs(n_dofs);
+    std::vector<SymmetricTensor<4, 3>>   change(n);
+    std::size_t                          index = 0;
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const std::size_t           c     = index++;
+          const SymmetricTensor<4, 3> E     = sampling.moduli(c).tensor();
+          bool                        flows = false;
+          for (unsigned int s = 0; s < n; ++s)
+            {
+              change[s] = tangents[c * n + s] - E;
+              flows |= change[s].norm() > 0.;
+            }
+          if (!flows)
+            continue;
+          cell_matrix = 0.;
+          sampling.add_stiffness(c, change.data(), cell_matrix);
+          cell->get_dof_indices(dofs);
+          space.rotate(dofs, cell_matrix);
+          space.hanging_nodes().distribute_local_to_global(cell_matrix,
+                                                           dofs,
+                                                           tangent_matrix);
+        }
+    tangent_matrix.compress(VectorOperation::add);
+  }
+
+
+
+  template <int dim>
+  IrreversibleStress
+  TangentMatrix<dim>::extrapolate(const IrreversibleStress &z,
+                                  const DistributedVector  &ghosted_from,
+                                  const DistributedVector  &ghosted_to) const
+  {
+    const StressSampling<dim>         &sampling = laws.sampling;
+    const unsigned int                 n        = sampling.n_samples;
+    IrreversibleStress                 result(z);
+    std::vector<SymmetricTensor<2, 3>> from(n), to(n);
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      {
+        const Stiffness &stiffness = sampling.moduli(c);
+        sampling.strains(c, ghosted_from.begin(), from.data());
+        sampling.strains(c, ghosted_to.begin(), to.data());
+        for (unsigned int s = 0; s < n; ++s)
+          {
+            const SymmetricTensor<2, 3> change = to[s] - from[s];
+            result[c * n + s] +=
+              tangents[c * n + s] * change - stiffness.stress(change);
+          }
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  TangentMatrix<dim>::norm(const IrreversibleStress &stress) const
+  {
+    const StressSampling<dim> &sampling = laws.sampling;
+    const unsigned int         n        = sampling.n_samples;
+    double                     sum      = 0.;
+    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      for (unsigned int s = 0; s < n; ++s)
+        {
+          const SymmetricTensor<2, 3> &tau = stress[c * n + s];
+          sum += sampling.weight(c, s) * (tau * (compliances[c * n + s] * tau));
+        }
+    return std::sqrt(Utilities::MPI::sum(sum, sampling.space.communicator));
+  }
+
+
+
+  template class TangentMatrix<2>;
+  template class TangentMatrix<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_dgq.h>
+
+#include <viscoplastic_contact/error/mesh_adaptation.h>
+#include <viscoplastic_contact/mesh/marking_threshold.h>
+
+#include <cmath>
+#include <limits>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Number of owned parents all of whose children are to be removed. Ranks
+    /// own siblings together.
+    template <int dim>
+    unsigned int
+    n_coarsened_parents(
+      const parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      unsigned int n = 0;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned() && cell->coarsen_flag_set() &&
+            cell->parent()->child(0) == cell)
+          {
+            bool all = true;
+            for (const auto &sibling : cell->parent()->child_iterators())
+              all &= sibling->is_active() && sibling->coarsen_flag_set();
+            n += all;
+          }
+      return n;
+    }
+
+
+
+    /**
+     * Flag the cells with the largest estimates that make up a fraction of
+     * their sum for refinement, and those with the smallest for coarsening.
+     */
+    template <int dim>
+    void
+    flag_fractions(parallel::distributed::Triangulation<dim> &triangulation,
+                   const Vector<double>                      &squared_estimate,
+                   const RefinementParameters                &parameters)
+    {
+      const MPI_Comm comm = triangulation.get_communicator();
+      std::vector<std::pair<double, double>> estimates;
+      double                                 total = 0.;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const double value = squared_estimate[cell->active_cell_index()];
+            estimates.emplace_back(value, value);
+            total += value;
+          }
+      total = Utilities::MPI::sum(total, comm);
+
+      // A sum that hits the fraction exactly, as of equal cells, has reached
+      // it, whatever rounding says.
+      const double slack        = 1e-3;
+      const double refined      = parameters.refinement_fraction;
+      const double coarsened    = parameters.coarsening_fraction;
+      const double infinity     = std::numeric_limits<double>::infinity();
+      double       refine_above = refined >= 1. ? -1. : infinity;
+      if (total > 0. && refined > 0. && refined < 1.)
+        refine_above = marking_threshold(estimates,
+                                         (1. - slack) * refined * total,
+                                         ThresholdSide::below,
+                                         comm);
+      double coarsen_below = coarsened >= 1. ? infinity : 0.;
+      if (total > 0. && coarsened > 0. && coarsened < 1.)
+        coarsen_below =
+          marking_threshold(estimates,
+                            (1. - (1. + slack) * coarsened) * total,
+                            ThresholdSide::below,
+                            comm);
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const double value = squared_estimate[cell->active_cell_index()];
+            if (value > refine_above)
+              cell->set_refine_flag();
+            else if (value < coarsen_below)
+              cell->set_coarsen_flag();
+          }
+    }
+
+
+
+    /**
+     * Withdraw the smallest of the marked cells until at most @p n_allowed of
+     * all ranks are left.
+     */
+    template <int dim>
+    void
+    limit_refinement(parallel::distributed::Triangulation<dim> &triangulation,
+                     const Vector<double> &squared_estimate,
+                     const double          n_allowed)
+    {
+      std::vector<std::pair<double, double>> marked;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned() && cell->refine_flag_set())
+          marked.emplace_back(squared_estimate[cell->active_cell_index()], 1.);
+      const double threshold =
+        marking_threshold(marked,
+                          std::floor(n_allowed) + 1.,
+                          ThresholdSide::above,
+                          triangulation.get_communicator());
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned() &&
+            squared_estimate[cell->active_cell_index()] <= threshold)
+          cell->clear_refine_flag();
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  bool
+  mark_cells(parallel::distributed::Triangulation<dim> &triangulation,
+             const Vector<double>                      &squared_estimate,
+             const RefinementParameters                &parameters)
+  {
+    AssertDimension(squared_estimate.size(), triangulation.n_active_cells());
+    const MPI_Comm comm = triangulation.get_communicator();
+
+    flag_fractions(triangulation, squared_estimate, parameters);
+
+    unsigned int n_refined = 0;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const auto level = static_cast<unsigned int>(cell->level());
+          if (level >= parameters.maximal_level)
+            cell->clear_refine_flag();
+          if (level <= parameters.minimal_level)
+            cell->clear_coarsen_flag();
+          n_refined += cell->refine_flag_set();
+        }
+
+    // A refined cell adds, and a coarsened family removes, 2^dim - 1 cells.
+    const double new_cells = Utilities::pow(2, dim) - 1;
+    const double allowed =
+      std::max(0.,
+               (static_cast<double>(parameters.cell_budget) -
+                triangulation.n_global_active_cells()) /
+                   new_cells +
+                 Utilities::MPI::sum(n_coarsened_parents(triangulation), comm));
+    if (Utilities::MPI::sum(static_cast<double>(n_refined), comm) > allowed)
+      limit_refinement(triangulation, squared_estimate, allowed);
+
+    triangulation.prepare_coarsening_and_refinement();
+    bool changes = false;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      changes |= cell->is_locally_owned() &&
+                 (cell->refine_flag_set() || cell->coarsen_flag_set());
+    return Utilities::MPI::max(changes ? 1 : 0, comm) == 1;
+  }
+
+
+
+  template <int dim>
+  StateTransfer<dim>::StateTransfer(
+    parallel::distributed::Triangulation<dim> &triangulation,
+    const StressSampling<dim>                 &old_sampling,
+    const State<dim>                          &state,
+    const DistributedVector                   *multiplier_density)
+    : triangulation(triangulation)
+    , n_samples(old_sampling.n_samples)
+    , old_fields{{state.u,
+                  state.velocity,
+                  state.initial_u,
+                  multiplier_density ? *multiplier_density :
+                                       DistributedVector()}}
+    , field_transfer(old_sampling.space.dof_handler)
+    , handle(numbers::invalid_unsigned_int)
+    , n(state.n)
+    , t(state.t)
+    , k(state.k)
+  {
+    std::vector<const DistributedVector *> present;
+    for (const DistributedVector &field : old_fields)
+      if (field.size() > 0)
+        present.push_back(&field);
+    field_transfer.prepare_for_coarsening_and_refinement(present);
+
+    // A rank without cells has empty fields in every scene.
+    const auto sampled = sample_fields(state);
+    for (unsigned int f = 0; f < sampled.size(); ++f)
+      if (Utilities::MPI::max(sampled[f]->empty() ? 0 : 1,
+                              old_sampling.space.communicator) == 1)
+        {
+          AssertDimension(sampled[f]->size(),
+                          old_sampling.n_cells() * n_samples);
+          carried.push_back(f);
+          old_samples.push_back(*sampled[f]);
+        }
+    if (carried.empty())
+      return;
+    old_cell.resize(triangulation.n_active_cells());
+    unsigned int index = 0;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          for (unsigned int s = 0; s < n_samples; ++s)
+            old_weights.push_back(old_sampling.weight(index, s));
+          old_cell[cell->active_cell_index()] = index++;
+        }
+
+    // The samples are nodes of a polynomial on the reference cell: constant, or
+    // (bi-, tri-)linear through the Gauss points.
+    const QGauss<1>                 points(n_samples == 1 ? 1 : 2);
+    const QGauss<dim>               quadrature(points.size());
+    const FE_DGQArbitraryNodes<dim> nodal(points);
+    prolongation.assign(GeometryInfo<dim>::max_children_per_cell,
+                        FullMatrix<double>(n_samples, n_samples));
+    for (unsigned int child = 0; child < prolongation.size(); ++child)
+      for (unsigned int s = 0; s < n_samples; ++s)
+        for (unsigned int r = 0; r < n_samples; ++r)
+          prolongation[child](s, r) =
+            nodal.shape_value(r,
+                              GeometryInfo<dim>::child_to_cell_coordinates(
+                                quadrature.point(s), child));
+
+    handle = triangulation.register_data_attach(
+      [this](const CellIterator &cell, const CellStatus status) {
+        return pack(cell, status);
+      },
+      /* returns_variable_size_data = */ false);
+  }
+
+
+
+  template <int dim>
+  std::vector<char>
+  StateTransfer<dim>::pack(const CellIterator &cell,
+                           const CellStatus    status) const
+  {
+    // The samples and their integral. For a cell to be coarsened, instead of
+    // the samples r of the parent to be, which divides by its own weights W_r:
+    //
+    //   W_r z_r = sum over samples s of all children: w_s P_sr z_s.
+    //
+    // Since sum_r P_sr = 1, sum_r W_r z_r is the integral over the children on
+    // curved cells, too. On straight ones this is the L2 projection, as the
+    // Gauss rule integrates the parent's mass matrix (in 3D: on affine cells)
+    // exactly, diagonal as it is.
+    IrreversibleStress values(carried.size() * (n_samples + 1));
+    for (unsigned int f = 0; f < carried.size(); ++f)
+      {
+        SymmetricTensor<2, 3>    *packed = &values[f * (n_samples + 1)];
+        const IrreversibleStress &old    = old_samples[f];
+        if (status == Triangulation<dim>::CELL_COARSEN)
+          {
+            for (unsigned int child = 0; child < cell->n_children(); ++child)
+              {
+                const std::size_t first =
+                  std::size_t(n_samples) *
+                  old_cell[cell->child(child)->active_cell_index()];
+                for (unsigned int s = 0; s < n_samples; ++s)
+                  for (unsigned int r = 0; r < n_samples; ++r)
+                    packed[r] += old_weights[first + s] *
+                                 prolongation[child](s, r) * old[first + s];
+              }
+          }
+        else
+          {
+            const std::size_t first =
+              std::size_t(n_samples) * old_cell[cell->active_cell_index()];
+            for (unsigned int s = 0; s < n_samples; ++s)
+              {
+                packed[s] = old[first + s];
+                packed[n_samples] += old_weights[first + s] * old[first + s];
+              }
+          }
+      }
+    return Utilities::pack(values, /* allow_compression = */ false);
+  }
+
+
+
+  template <int dim>
+  typename StateTransfer<dim>::Result
+  StateTransfer<dim>::unpack(const StressSampling<dim> &new_sampling)
+  {
+    AssertDimension(new_sampling.n_samples, n_samples);
+    const AdmissibleSpace<dim> &space = new_sampling.space;
+
+    Result result;
+    result.state.n = n;
+    result.state.t = t;
+    result.state.k = k;
+
+    const std::array<DistributedVector *, 4> targets{
+      {&result.state.u,
+       &result.state.velocity,
+       &result.state.initial_u,
+       &result.multiplier_density}};
+    std::vector<DistributedVector>   fields;
+    std::vector<DistributedVector *> field_pointers;
+    for (const DistributedVector &field : old_fields)
+      if (field.size() > 0)
+        fields.push_back(space.owned_vector());
+    for (DistributedVector &field : fields)
+      field_pointers.push_back(&field);
+    field_transfer.interpolate(field_pointers);
+    for (unsigned int i = 0, next = 0; i < targets.size(); ++i)
+      if (old_fields[i].size() > 0)
+        {
+          space.distribute_hanging_nodes(fields[next]);
+          *targets[i] = space.ghosted_vector();
+          *targets[i] = fields[next++];
+        }
+
+    if (carried.empty())
+      return result;
+    const auto sampled = sample_fields(result.state);
+    for (const unsigned int f : carried)
+      sampled[f]->resize(new_sampling.n_cells() * n_samples);
+    std::vector<unsigned int> new_cell(triangulation.n_active_cells());
+    unsigned int              index = 0;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        new_cell[cell->active_cell_index()] = index++;
+    AssertDimension(index, new_sampling.n_cells());
+
+    const auto unpack_field = [&](const CellIterator          &cell,
+                                  const CellStatus             status,
+                                  const SymmetricTensor<2, 3> *values,
+                                  IrreversibleStress          &z) {
+      if (status == Triangulation<dim>::CELL_REFINE)
+        {
+          // On curved cells the children do not fill the parent; a shift
+          // makes up for it.
+          SymmetricTensor<2, 3> missing = values[n_samples];
+          double                volume  = 0.;
+          for (unsigned int child = 0; child < cell->n_children(); ++child)
+            {
+              const std::size_t c =
+                new_cell[cell->child(child)->active_cell_index()];
+              volume += new_sampling.volume(c);
+              for (unsigned int s = 0; s < n_samples; ++s)
+                {
+                  SymmetricTensor<2, 3> &sample = z[c * n_samples + s];
+                  for (unsigned int r = 0; r < n_samples; ++r)
+                    sample += prolongation[child](s, r) * values[r];
+                  missing -= new_sampling.weight(c, s) * sample;
+                }
+            }
+          for (const auto &child : cell->child_iterators())
+            for (unsigned int s = 0; s < n_samples; ++s)
+              z[std::size_t(n_samples) * new_cell[child->active_cell_index()] +
+                s] += missing / volume;
+        }
+      else
+        {
+          const std::size_t c = new_cell[cell->active_cell_index()];
+          for (unsigned int s = 0; s < n_samples; ++s)
+            z[c * n_samples + s] = status == Triangulation<dim>::CELL_COARSEN ?
+                                     values[s] / new_sampling.weight(c, s) :
+                                     values[s];
+        }
+    };
+
+    triangulation.notify_ready_to_unpack(
+      handle,
+      [&](
+        const CellIterator                                             &cell,
+        const CellStatus                                                status,
+        const boost::iterator_range<std::vector<char>::const_iterator> &data) {
+        const auto values =
+          Utilities::unpack<IrreversibleStress>(data.begin(),
+                                                data.end(),
+                                                /* allow_compression = */
+                                                false);
+        for (unsigned int f = 0; f < carried.size(); ++f)
+          unpack_field(cell,
+                       status,
+                       &values[f * (n_samples + 1)],
+                       *sampled[carried[f]]);
+      });
+    return result;
+  }
+
+
+
+  template bool
+  mark_cells<2>(parallel::distributed::Triangulation<2> &,
+                const Vector<double> &,
+                const RefinementParameters &);
+  template bool
+  mark_cells<3>(parallel::distributed::Triangulation<3> &,
+                const Vector<double> &,
+                const RefinementParameters &);
+  template class StateTransfer<2>;
+  template class StateTransfer<3>;
+} // namespace Viscoplastic

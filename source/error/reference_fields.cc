@@ -1,0 +1,493 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi_remote_point_evaluation.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_q1.h>
+
+#include <viscoplastic_contact/base/binary_archive.h>
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/error/reference_fields.h>
+#include <viscoplastic_contact/laws/strain.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    const FEValuesExtractors::Vector displacement(0);
+
+    /// Begins a file of samples, and says of which dimension and version.
+    template <int dim>
+    constexpr double magic_number = 7.25e9 + dim;
+
+
+
+    template <int dim, typename Sample>
+    Point<dim>
+    position(const Sample &sample)
+    {
+      Point<dim> x;
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = sample[d];
+      return x;
+    }
+
+
+
+    /**
+     * Bring each sample to the owned cell it lies in:
+     * visit(cell, samples in it, their points on the unit cell). Returns
+     * after all ranks have.
+     */
+    template <int dim, typename Sample, typename Visitor>
+    void
+    visit_cells_of(const std::vector<Sample> &samples,
+                   const DoFHandler<dim>     &dof_handler,
+                   const Visitor             &visit)
+    {
+      std::vector<Point<dim>> points;
+      for (const Sample &sample : samples)
+        points.push_back(position<dim>(sample));
+      Utilities::MPI::RemotePointEvaluation<dim> remote(
+        1e-6, /* enforce_unique_mapping = */ true);
+      const MappingQ1<dim> mapping;
+      remote.reinit(points, dof_handler.get_triangulation(), mapping);
+      std::vector<Sample> buffer;
+      using CellData =
+        typename Utilities::MPI::RemotePointEvaluation<dim>::CellData;
+      remote.template process_and_evaluate<Sample>(
+        samples,
+        buffer,
+        [&](const ArrayView<const Sample> &values, const CellData &data) {
+          for (unsigned int i = 0; i < data.cells.size(); ++i)
+            {
+              const typename DoFHandler<dim>::active_cell_iterator cell(
+                &dof_handler.get_triangulation(),
+                data.cells[i].first,
+                data.cells[i].second,
+                &dof_handler);
+              const unsigned int begin = data.reference_point_ptrs[i],
+                                 end   = data.reference_point_ptrs[i + 1];
+              const ArrayView<const Sample> here(&values[begin], end - begin);
+              visit(cell,
+                    here,
+                    std::vector<Point<dim>>(
+                      data.reference_point_values.begin() + begin,
+                      data.reference_point_values.begin() + end));
+            }
+        });
+    }
+
+
+
+    /// Sums of squares in the order of SolutionNorms.
+    using Squares = std::array<double, 4>;
+
+    SolutionNorms
+    roots(const Squares &squares, const MPI_Comm communicator)
+    {
+      std::vector<double> sums(squares.begin(), squares.end());
+      Utilities::MPI::sum(sums, communicator, sums);
+      return {std::sqrt(sums[0]),
+              std::sqrt(sums[1]),
+              std::sqrt(sums[2]),
+              std::sqrt(sums[3])};
+    }
+
+
+
+    template <int dim>
+    void
+    add_cells(const FieldSamples<dim>   &reference,
+              const StressSampling<dim> &sampling,
+              const State<dim>          &state,
+              Squares                   &error,
+              Squares                   &norm)
+    {
+      using Samples                         = FieldSamples<dim>;
+      const auto               &dof_handler = sampling.space.dof_handler;
+      const auto                stress = sampling.mean_stress(state.u, state.z);
+      std::vector<unsigned int> owned_index(
+        dof_handler.get_triangulation().n_active_cells());
+      unsigned int n_owned = 0;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          owned_index[cell->active_cell_index()] = n_owned++;
+
+      FEValues<dim>               whole(dof_handler.get_fe(),
+                          QGauss<dim>(2),
+                          update_gradients | update_JxW_values);
+      std::vector<Tensor<2, dim>> gradients(whole.n_quadrature_points);
+      const MappingQ1<dim>        mapping;
+      visit_cells_of(
+        reference.cells,
+        dof_handler,
+        [&](const auto &cell, const auto &samples, const auto &points) {
+          const unsigned int i         = owned_index[cell->active_cell_index()];
+          const Stiffness   &stiffness = sampling.moduli(i);
+          double             dilatation = 0.;
+          if (sampling.mean_dilatation)
+            {
+              whole.reinit(cell);
+              gradients.resize(whole.n_quadrature_points);
+              whole[displacement].get_function_gradients(state.u, gradients);
+              dilatation = mean_divergence(whole.get_JxW_values(), gradients);
+            }
+          FEValues<dim> here(mapping,
+                             dof_handler.get_fe(),
+                             Quadrature<dim>(points),
+                             update_values | update_gradients);
+          here.reinit(cell);
+          std::vector<Tensor<1, dim>> values(points.size());
+          gradients.resize(points.size());
+          here[displacement].get_function_values(state.u, values);
+          here[displacement].get_function_gradients(state.u, gradients);
+          for (unsigned int q = 0; q < points.size(); ++q)
+            {
+              const auto    &sample = samples[q];
+              const double   w      = sample[dim];
+              Tensor<1, dim> u;
+              Tensor<2, dim> g;
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  u[d] = sample[Samples::u_index + d];
+                  for (unsigned int e = 0; e < dim; ++e)
+                    g[d][e] = sample[Samples::gradient_index + d * dim + e];
+                }
+              const auto exact =
+                reduced_strain(g,
+                               sampling.mean_dilatation,
+                               sample[Samples::dilatation_index]);
+              const auto defect =
+                exact - reduced_strain(gradients[q],
+                                       sampling.mean_dilatation,
+                                       dilatation);
+              error[0] += w * (stiffness.stress(defect) * defect);
+              norm[0] += w * (stiffness.stress(exact) * exact);
+              error[1] += w * ((u - values[q]).norm_square() +
+                               (g - gradients[q]).norm_square());
+              norm[1] += w * (u.norm_square() + g.norm_square());
+
+              SymmetricTensor<2, 3> sigma;
+              const auto            components = stress_components<dim>();
+              for (unsigned int c = 0; c < components.size(); ++c)
+                sigma[components[c].first][components[c].second] =
+                  sample[Samples::stress_index + c];
+              const auto difference = sigma - stress[i];
+              error[2] += w * (difference * difference);
+              norm[2] += w * (sigma * sigma);
+            }
+        });
+    }
+
+
+
+    template <int dim>
+    void
+    add_faces(const FieldSamples<dim>    &reference,
+              const AdmissibleSpace<dim> &space,
+              const DistributedVector    &density,
+              Squares                    &error,
+              Squares                    &norm)
+    {
+      const MappingQ1<dim> mapping;
+      visit_cells_of(
+        reference.faces,
+        space.dof_handler,
+        [&](const auto &cell, const auto &samples, const auto &points) {
+          FEValues<dim> here(mapping,
+                             space.dof_handler.get_fe(),
+                             Quadrature<dim>(points),
+                             update_values);
+          here.reinit(cell);
+          std::vector<Tensor<1, dim>> multiplier(points.size());
+          here[displacement].get_function_values(density, multiplier);
+          for (unsigned int q = 0; q < points.size(); ++q)
+            {
+              Tensor<1, dim> lambda;
+              for (unsigned int d = 0; d < dim; ++d)
+                lambda[d] = samples[q][FieldSamples<dim>::multiplier_index + d];
+              error[3] +=
+                (lambda - multiplier[q]).norm_square() * samples[q][dim];
+              norm[3] += lambda.norm_square() * samples[q][dim];
+            }
+        });
+    }
+
+
+
+    template <std::size_t n>
+    void
+    append(const std::vector<std::array<double, n>> &rows,
+           std::vector<double>                      &numbers)
+    {
+      for (const auto &row : rows)
+        numbers.insert(numbers.end(), row.begin(), row.end());
+    }
+
+
+
+    template <std::size_t n>
+    bool
+    split(const std::vector<double>          &numbers,
+          std::vector<std::array<double, n>> &rows)
+    {
+      for (std::size_t i = 0; i + n <= numbers.size(); i += n)
+        {
+          rows.emplace_back();
+          std::copy_n(numbers.begin() + i, n, rows.back().begin());
+        }
+      return numbers.size() % n == 0;
+    }
+
+
+
+    /// What all ranks have, in the order of ranks, on rank 0.
+    std::vector<double>
+    gather(const std::vector<double> &numbers, const MPI_Comm communicator)
+    {
+      std::vector<double> result;
+      for (const auto &part : Utilities::MPI::gather(communicator, numbers))
+        result.insert(result.end(), part.begin(), part.end());
+      return result;
+    }
+
+
+
+    /// Throws on all ranks if rank 0 has something to complain about.
+    void
+    agree(const std::string &complaint, const MPI_Comm communicator)
+    {
+      const std::string text =
+        Utilities::MPI::broadcast(communicator, complaint);
+      AssertThrow(text.empty(), ExcMessage(text));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  FieldSamples<dim>
+  sample_fields(const StressSampling<dim> &sampling,
+                const State<dim>          &state,
+                const DistributedVector   *multiplier_density)
+  {
+    using Samples           = FieldSamples<dim>;
+    const auto &space       = sampling.space;
+    const auto &dof_handler = space.dof_handler;
+    Samples     result;
+    result.t = state.t;
+    FEValues<dim>               fe_values(dof_handler.get_fe(),
+                            QMidpoint<dim>(),
+                            update_values | update_gradients |
+                              update_JxW_values | update_quadrature_points);
+    FEValues<dim>               whole(dof_handler.get_fe(),
+                        QGauss<dim>(2),
+                        update_gradients | update_JxW_values);
+    std::vector<Tensor<2, dim>> all_gradients(whole.n_quadrature_points);
+    FEFaceValues<dim>           face_values(dof_handler.get_fe(),
+                                  QGauss<dim - 1>(2),
+                                  update_values | update_JxW_values |
+                                    update_quadrature_points);
+    std::vector<Tensor<1, dim>> values(fe_values.n_quadrature_points);
+    std::vector<Tensor<2, dim>> gradients(fe_values.n_quadrature_points);
+    std::vector<Tensor<1, dim>> lambda(face_values.n_quadrature_points);
+    const auto                  stress = sampling.mean_stress(state.u, state.z);
+    const auto                  components = stress_components<dim>();
+
+    std::size_t index = 0;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      {
+        if (!cell->is_locally_owned())
+          continue;
+        fe_values.reinit(cell);
+        fe_values[displacement].get_function_values(state.u, values);
+        fe_values[displacement].get_function_gradients(state.u, gradients);
+        double dilatation = trace(gradients[0]);
+        if (sampling.mean_dilatation)
+          {
+            whole.reinit(cell);
+            whole[displacement].get_function_gradients(state.u, all_gradients);
+            dilatation = mean_divergence(whole.get_JxW_values(), all_gradients);
+          }
+        for (const unsigned int q : fe_values.quadrature_point_indices())
+          {
+            typename Samples::CellPoint sample;
+            sample[dim]                       = fe_values.JxW(q);
+            sample[Samples::dilatation_index] = dilatation;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                sample[d]                    = fe_values.quadrature_point(q)[d];
+                sample[Samples::u_index + d] = values[q][d];
+                for (unsigned int e = 0; e < dim; ++e)
+                  sample[Samples::gradient_index + d * dim + e] =
+                    gradients[q][d][e];
+              }
+            for (unsigned int c = 0; c < components.size(); ++c)
+              sample[Samples::stress_index + c] =
+                stress[index][components[c].first][components[c].second];
+            result.cells.push_back(sample);
+          }
+        ++index;
+
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (multiplier_density == nullptr || !cell->face(f)->at_boundary())
+              continue;
+            if (!space.scene.boundary.at(cell->face(f)->boundary_id())
+                   .has_friction())
+              continue;
+            face_values.reinit(cell, f);
+            face_values[displacement].get_function_values(*multiplier_density,
+                                                          lambda);
+            for (const unsigned int q : face_values.quadrature_point_indices())
+              {
+                typename Samples::FacePoint sample;
+                sample[dim] = face_values.JxW(q);
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    sample[d] = face_values.quadrature_point(q)[d];
+                    sample[Samples::multiplier_index + d] = lambda[q][d];
+                  }
+                result.faces.push_back(sample);
+              }
+          }
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  write_samples(const FieldSamples<dim> &samples,
+                const std::string       &file,
+                const MPI_Comm           communicator)
+  {
+    std::vector<double> cells, faces;
+    append(samples.cells, cells);
+    append(samples.faces, faces);
+    cells = gather(cells, communicator);
+    faces = gather(faces, communicator);
+    std::string complaint;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        BinaryWriter archive;
+        archive &magic_number<dim> &samples.t &cells &faces;
+        try
+          {
+            replace_file(file, archive.bytes());
+          }
+        catch (const std::exception &exception)
+          {
+            complaint = reason(exception);
+          }
+      }
+    agree(complaint, communicator);
+  }
+
+
+
+  template <int dim>
+  FieldSamples<dim>
+  read_samples(const std::string &file, const MPI_Comm communicator)
+  {
+    FieldSamples<dim> result;
+    std::string       complaint;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        std::ifstream      stream(file, std::ios::binary);
+        std::ostringstream bytes;
+        bytes << stream.rdbuf();
+        bool is_good = stream.is_open();
+        try
+          {
+            BinaryReader        archive(bytes.str());
+            double              magic = 0.;
+            std::vector<double> cells, faces;
+            archive &magic &result.t &cells &faces;
+            is_good = is_good && magic == magic_number<dim> &&
+                      archive.is_at_end() && split(cells, result.cells) &&
+                      split(faces, result.faces);
+          }
+        catch (const std::exception &)
+          {
+            is_good = false; // said below
+          }
+        if (!is_good)
+          complaint = "'" + file + "' holds no reference fields in " +
+                      std::to_string(dim) +
+                      " dimensions; they are written by a run with 'Output/"
+                      "Reference fields' = true.";
+      }
+    agree(complaint, communicator);
+    result.t = Utilities::MPI::broadcast(communicator, result.t);
+    return result;
+  }
+
+
+
+  template <int dim>
+  SolutionErrors
+  differences(const FieldSamples<dim>   &reference,
+              const StressSampling<dim> &sampling,
+              const State<dim>          &state,
+              const DistributedVector   *multiplier_density)
+  {
+    const MPI_Comm communicator = sampling.space.communicator;
+    Squares        error{}, norm{};
+    add_cells(reference, sampling, state, error, norm);
+    if (multiplier_density)
+      add_faces(reference, sampling.space, *multiplier_density, error, norm);
+    SolutionErrors result;
+    result.error = roots(error, communicator);
+    result.exact = roots(norm, communicator);
+    return result;
+  }
+
+
+
+  std::string
+  samples_file(const std::string &directory, const unsigned int phase)
+  {
+    return directory + "/reference_" + std::to_string(phase) + ".bin";
+  }
+
+
+
+  template struct FieldSamples<2>;
+  template struct FieldSamples<3>;
+  template FieldSamples<2>
+  sample_fields<2>(const StressSampling<2> &,
+                   const State<2> &,
+                   const DistributedVector *);
+  template FieldSamples<3>
+  sample_fields<3>(const StressSampling<3> &,
+                   const State<3> &,
+                   const DistributedVector *);
+  template void
+  write_samples<2>(const FieldSamples<2> &,
+                   const std::string &,
+                   const MPI_Comm);
+  template void
+  write_samples<3>(const FieldSamples<3> &,
+                   const std::string &,
+                   const MPI_Comm);
+  template FieldSamples<2>
+  read_samples<2>(const std::string &, const MPI_Comm);
+  template FieldSamples<3>
+  read_samples<3>(const std::string &, const MPI_Comm);
+  template SolutionErrors
+  differences<2>(const FieldSamples<2> &,
+                 const StressSampling<2> &,
+                 const State<2> &,
+                 const DistributedVector *);
+  template SolutionErrors
+  differences<3>(const FieldSamples<3> &,
+                 const StressSampling<3> &,
+                 const State<3> &,
+                 const DistributedVector *);
+} // namespace Viscoplastic

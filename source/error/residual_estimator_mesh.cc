@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/qprojector.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/error/residual_estimator.h>
+
+#include <cmath>
+#include <limits>
+
+// What ResidualEstimator keeps of a mesh; how it uses that is in
+// residual_estimator.cc.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Gradients, normals, places and weights at the points of a (sub)face.
+    template <int dim, typename FaceShape>
+    void
+    copy_face(const Point<dim>            &origin,
+              const FEFaceValuesBase<dim> &values,
+              FaceShape                   &face)
+    {
+      for (const unsigned int q : values.quadrature_point_indices())
+        {
+          for (unsigned int v = 0; v < face.gradients[q].size(); ++v)
+            face.gradients[q][v] = values.shape_grad(v * dim, q);
+          face.normals[q]   = values.normal_vector(q);
+          face.positions[q] = values.quadrature_point(q) - origin;
+          face.weights[q]   = values.JxW(q);
+        }
+    }
+
+
+
+    const UpdateFlags on_faces = update_gradients | update_normal_vectors |
+                                 update_quadrature_points | update_JxW_values;
+
+
+
+    template <int dim>
+    bool
+    depends_on_position(const VectorExpression<dim> &expression)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (expression[d].depends_on_position())
+          return true;
+      return false;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  ResidualEstimator<dim>::ResidualEstimator(const StressSampling<dim> &sampling)
+    : sampling(sampling)
+    , uniform_body_force(false)
+  {
+    make_cells();
+    make_faces();
+    shape_of_key.clear();
+    subface_shape_of.clear();
+
+    const auto &b = sampling.space.scene.body_force;
+    if (!b)
+      return;
+    uniform_body_force = !depends_on_position(*b);
+    if (!b->depends_on_time() && !uniform_body_force)
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        for (const auto &x : shapes[cells[c].shape].positions)
+          body_force.push_back(b->vector(origins[c] + x, 0.));
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  ResidualEstimator<dim>::find_shape(const Cell        &cell,
+                                     FEValues<dim>     &values,
+                                     FEFaceValues<dim> &on_face)
+  {
+    // Vertices from the first, relative to the diameter and rounded: equal for
+    // translated cells, whatever rounding did to their vertices.
+    constexpr double resolution = 1ll << 36;
+    ShapeKey         key;
+    int              exponent;
+    const double     diameter = cell->diameter();
+    key[0] = std::llround(std::frexp(diameter, &exponent) * resolution);
+    key[1] = exponent;
+    for (unsigned int v = 1, i = 2; v < n_vertices; ++v)
+      for (unsigned int d = 0; d < dim; ++d, ++i)
+        key[i] = std::llround((cell->vertex(v)[d] - cell->vertex(0)[d]) /
+                              diameter * resolution);
+    const auto [entry, is_new] = shape_of_key.emplace(key, shapes.size());
+    if (!is_new)
+      return entry->second;
+
+    values.reinit(cell);
+    shapes.emplace_back();
+    Shape &shape   = shapes.back();
+    shape.diameter = diameter;
+    double volume  = 0.;
+    for (const unsigned int q : values.quadrature_point_indices())
+      {
+        shape.weights[q]   = values.JxW(q);
+        shape.positions[q] = values.quadrature_point(q) - cell->vertex(0);
+        volume += values.JxW(q);
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          {
+            shape.mean_gradients[v] +=
+              values.shape_grad(v * dim, q) * values.JxW(q);
+            shape.hessians[q][v] = values.shape_hessian(v * dim, q);
+          }
+      }
+    for (auto &gradient : shape.mean_gradients)
+      gradient /= volume;
+    shape.volume            = volume;
+    shape.constant_hessians = true;
+    for (unsigned int q = 1; q < n_points; ++q)
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        shape.constant_hessians &=
+          (shape.hessians[q][v] - shape.hessians[0][v]).norm() <=
+          1e-12 * shape.hessians[0][v].norm();
+    for (unsigned int f = 0; f < n_faces; ++f)
+      {
+        on_face.reinit(cell, f);
+        copy_face(cell->vertex(0), on_face, shape.faces[f]);
+      }
+    return entry->second;
+  }
+
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::make_cells()
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
+    FEValues<dim>               values(fe,
+                         QGauss<dim>(2),
+                         update_gradients | update_hessians |
+                           update_quadrature_points | update_JxW_values);
+    FEFaceValues<dim>           on_face(fe, QGauss<dim - 1>(2), on_faces);
+    for (const bool owned : {true, false})
+      for (const auto &cell : space.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned() == owned && !cell->is_artificial())
+          {
+            LocalCell here{find_shape(cell, values, on_face),
+                           cell->active_cell_index(),
+                           {},
+                           owned ? sampling.moduli(cells.size()) :
+                                   space.scene.material(cell->material_id())
+                                     .stiffness(cell->center())};
+            for (unsigned int v = 0; v < n_vertices; ++v)
+              here.nodes[v] =
+                space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
+            cells.push_back(std::move(here));
+            if (owned)
+              origins.push_back(cell->vertex(0));
+            else
+              ghosts.push_back(cell->global_active_cell_index());
+          }
+  }
+
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::make_faces()
+  {
+    const AdmissibleSpace<dim> &space = sampling.space;
+    const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
+    std::vector<unsigned int>   number(
+      space.dof_handler.get_triangulation().n_active_cells());
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      number[cells[c].active_index] = c;
+    const auto number_of = [&number](const Cell &cell) {
+      return number[cell->active_cell_index()];
+    };
+    const auto traction_of = [](const unsigned int cell,
+                                const unsigned int face) {
+      return (cell * n_faces + face) * n_face_points;
+    };
+    FESubfaceValues<dim> on_subface(fe, QGauss<dim - 1>(2), on_faces);
+
+    // @p side: the shape of the second cell's (sub)face.
+    const auto add_face = [&](const Cell        &fine,
+                              const unsigned int f,
+                              const Cell        &other,
+                              const FaceShape   &side,
+                              const unsigned int other_traction) {
+      const unsigned int c = number_of(fine);
+      InteriorFace       face{{{c, number_of(other)}},
+                        f,
+                        {{traction_of(c, f), other_traction}},
+                        {},
+                        fine->face(f)->diameter()};
+      const FaceShape   &here  = shapes[cells[c].shape].faces[f];
+      const auto         shift = other->vertex(0) - fine->vertex(0);
+      for (unsigned int q = 0; q < n_face_points; ++q)
+        {
+          double nearest = std::numeric_limits<double>::max();
+          for (unsigned int p = 0; p < n_face_points; ++p)
+            {
+              const double distance =
+                (side.positions[p] + shift - here.positions[q]).norm();
+              if (distance < nearest)
+                {
+                  nearest         = distance;
+                  face.partner[q] = p;
+                }
+            }
+        }
+      interior_faces.push_back(face);
+    };
+
+    const auto add_subface = [&](const Cell        &fine,
+                                 const unsigned int fine_f,
+                                 const Cell        &coarse,
+                                 const unsigned int f,
+                                 const unsigned int subface) {
+      const unsigned int c = number_of(coarse);
+      const auto [entry, is_new] =
+        subface_shape_of.emplace(std::make_tuple(cells[c].shape, f, subface),
+                                 subface_shapes.size());
+      if (is_new)
+        {
+          on_subface.reinit(coarse, f, subface);
+          subface_shapes.emplace_back();
+          copy_face(coarse->vertex(0), on_subface, subface_shapes.back());
+        }
+      add_face(fine,
+               fine_f,
+               coarse,
+               subface_shapes[entry->second],
+               traction_of(cells.size(), 0) +
+                 subface_sides.size() * n_face_points);
+      subface_sides.push_back({c, entry->second});
+    };
+
+    // Faces between owned cells are visited once: from the finer side, or from
+    // the cell that comes first.
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      {
+        if (!cell->is_locally_owned())
+          continue;
+        for (const unsigned int f : cell->face_indices())
+          if (cell->at_boundary(f))
+            {
+              const auto &condition =
+                space.scene.boundary.at(cell->face(f)->boundary_id());
+              if (condition.prescribes_all())
+                continue;
+              BoundaryFace     face{number_of(cell),
+                                f,
+                                &condition,
+                                cell->face(f)->diameter(),
+                                {},
+                                {},
+                                {}};
+              const FaceShape &shape = shapes[cells[face.cell].shape].faces[f];
+              for (unsigned int q = 0; q < n_face_points; ++q)
+                {
+                  const Point<dim> x = cell->vertex(0) + shape.positions[q];
+                  face.positions[q]  = x;
+                  if (condition.carries_load() &&
+                      !condition.load_depends_on_time())
+                    face.data[q] = condition.load(x, shape.normals[q], 0.);
+                  if (condition.has_friction() &&
+                      !condition.bound_depends_on_time())
+                    face.bounds[q] = condition.bound(x, 0.);
+                }
+              boundary_faces.push_back(face);
+            }
+          else if (cell->face(f)->has_children())
+            {
+              for (unsigned int s = 0; s < cell->face(f)->n_children(); ++s)
+                {
+                  const Cell child = cell->neighbor_child_on_subface(f, s);
+                  if (!child->is_locally_owned())
+                    add_subface(
+                      child, cell->neighbor_of_neighbor(f), cell, f, s);
+                }
+            }
+          else if (cell->neighbor_is_coarser(f))
+            {
+              const auto [neighbor_f, subface] =
+                cell->neighbor_of_coarser_neighbor(f);
+              add_subface(cell, f, cell->neighbor(f), neighbor_f, subface);
+            }
+          else
+            {
+              const Cell neighbor = cell->neighbor(f);
+              if (!neighbor->is_locally_owned() ||
+                  cell->index() < neighbor->index())
+                {
+                  const unsigned int n          = number_of(neighbor),
+                                     neighbor_f = cell->neighbor_of_neighbor(f);
+                  add_face(cell,
+                           f,
+                           neighbor,
+                           shapes[cells[n].shape].faces[neighbor_f],
+                           traction_of(n, neighbor_f));
+                }
+            }
+      }
+
+    const QGauss<dim - 1> points(2);
+    for (unsigned int f = 0; f < n_faces; ++f)
+      {
+        const Quadrature<dim> on_face =
+          QProjector<dim>::project_to_face(fe.reference_cell(), points, f);
+        for (unsigned int q = 0; q < n_face_points; ++q)
+          for (unsigned int v = 0; v < n_vertices; ++v)
+            face_values[f][q][v] = fe.shape_value(v * dim, on_face.point(q));
+      }
+  }
+
+
+
+  template class ResidualEstimator<2>;
+  template class ResidualEstimator<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/error/solution_errors.h>
+#include <viscoplastic_contact/laws/strain.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The squares of the norms.
+    struct Squares
+    {
+      double energy = 0., h1 = 0., stress = 0., multiplier = 0., memory = 0.;
+    };
+
+
+
+    SolutionNorms
+    roots(const Squares &squares, const MPI_Comm comm)
+    {
+      std::vector<double> sums{squares.energy,
+                               squares.h1,
+                               squares.stress,
+                               squares.multiplier};
+      Utilities::MPI::sum(sums, comm, sums);
+      return {std::sqrt(sums[0]),
+              std::sqrt(sums[1]),
+              std::sqrt(sums[2]),
+              std::sqrt(sums[3])};
+    }
+
+
+
+    template <int dim>
+    void
+    add_cells(const StressSampling<dim> &sampling,
+              const State<dim>          &state,
+              Squares                   &error,
+              Squares                   &exact)
+    {
+      const FEValuesExtractors::Vector displacement(0);
+      const auto                      &dof_handler = sampling.space.dof_handler;
+      const ExactSolution<dim> &solution = *sampling.space.scene.exact_solution;
+      FEValues<dim>             fe_values(dof_handler.get_fe(),
+                              QGauss<dim>(3),
+                              update_values | update_gradients |
+                                update_JxW_values | update_quadrature_points);
+      const unsigned int        n = fe_values.n_quadrature_points;
+      std::vector<Tensor<1, dim>>        values(n);
+      std::vector<Tensor<2, dim>>        gradients(n);
+      std::vector<SymmetricTensor<2, 3>> strains(n);
+      const auto stress          = sampling.mean_stress(state.u, state.z);
+      const bool has_mean_memory = sampling.n_samples == 1 && !state.z.empty();
+
+      std::size_t index = 0;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        {
+          if (!cell->is_locally_owned())
+            continue;
+          fe_values.reinit(cell);
+          fe_values[displacement].get_function_values(state.u, values);
+          fe_values[displacement].get_function_gradients(state.u, gradients);
+          const double dilatation =
+            mean_divergence(fe_values.get_JxW_values(), gradients);
+          for (unsigned int q = 0; q < n; ++q)
+            strains[q] = reduced_strain(gradients[q],
+                                        sampling.mean_dilatation,
+                                        dilatation);
+          const Stiffness &stiffness = sampling.moduli(index);
+          for (unsigned int q = 0; q < n; ++q)
+            {
+              const Point<dim>    &x = fe_values.quadrature_point(q);
+              const double         w = fe_values.JxW(q);
+              const Tensor<1, dim> u = solution.displacement(x, state.t);
+              const Tensor<2, dim> g = solution.gradient(x, state.t);
+              const auto           e = strain(g), defect = e - strains[q];
+              error.energy += w * (stiffness.stress(defect) * defect);
+              exact.energy += w * (stiffness.stress(e) * e);
+              error.h1 += w * ((u - values[q]).norm_square() +
+                               (g - gradients[q]).norm_square());
+              exact.h1 += w * (u.norm_square() + g.norm_square());
+              if (solution.has_stress())
+                {
+                  const auto sigma      = solution.stress(x, state.t);
+                  const auto difference = sigma - stress[index];
+                  error.stress += w * (difference * difference);
+                  exact.stress += w * (sigma * sigma);
+                  if (has_mean_memory)
+                    {
+                      const auto lack =
+                        sigma - stiffness.stress(e) - state.z[index];
+                      error.memory += w * (stiffness.strain(lack) * lack);
+                    }
+                }
+            }
+          ++index;
+        }
+    }
+
+
+
+    template <int dim>
+    void
+    add_contact_faces(const AdmissibleSpace<dim> &space,
+                      const double                t,
+                      const DistributedVector    &density,
+                      Squares                    &error,
+                      Squares                    &exact)
+    {
+      const FEValuesExtractors::Vector displacement(0);
+      FEFaceValues<dim>                face_values(space.dof_handler.get_fe(),
+                                    QGauss<dim - 1>(3),
+                                    update_values | update_JxW_values |
+                                      update_quadrature_points);
+      std::vector<Tensor<1, dim>> multiplier(face_values.n_quadrature_points);
+      for (const auto &cell : space.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int f : cell->face_indices())
+            {
+              if (!cell->face(f)->at_boundary())
+                continue;
+              const BoundaryCondition<dim> &condition =
+                space.scene.boundary.at(cell->face(f)->boundary_id());
+              if (!condition.has_friction())
+                continue;
+              face_values.reinit(cell, f);
+              face_values[displacement].get_function_values(density,
+                                                            multiplier);
+              const Tensor<1, dim> &normal = condition.normal;
+              for (const unsigned int q :
+                   face_values.quadrature_point_indices())
+                {
+                  Tensor<1, dim> lambda =
+                    -1. * space.scene.exact_solution->traction(
+                            face_values.quadrature_point(q), normal, t);
+                  lambda -= (lambda * normal) * normal;
+                  error.multiplier +=
+                    (lambda - multiplier[q]).norm_square() * face_values.JxW(q);
+                  exact.multiplier += lambda.norm_square() * face_values.JxW(q);
+                }
+            }
+    }
+
+
+
+    template <int dim>
+    double
+    squared_error_at_samples(const StressSampling<dim> &sampling,
+                             const State<dim>          &state)
+    {
+      const ExactSolution<dim> &solution = *sampling.space.scene.exact_solution;
+      double                    sum      = 0.;
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        for (unsigned int s = 0; s < sampling.n_samples; ++s)
+          {
+            const Point<dim> &x         = sampling.position(c, s);
+            const Stiffness  &stiffness = sampling.moduli(c);
+            const auto        defect    = solution.stress(x, state.t) -
+                                stiffness.stress(solution.strain(x, state.t)) -
+                                state.z[c * sampling.n_samples + s];
+            sum += sampling.weight(c, s) * (stiffness.strain(defect) * defect);
+          }
+      return sum;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  SolutionErrors
+  solution_errors(const StressSampling<dim> &sampling,
+                  const State<dim>          &state,
+                  const DistributedVector   *multiplier_density)
+  {
+    const Scene<dim> &scene = sampling.space.scene;
+    const MPI_Comm    comm  = sampling.space.communicator;
+    Squares           error, exact;
+    add_cells(sampling, state, error, exact);
+    if (multiplier_density && scene.exact_solution->has_stress())
+      add_contact_faces(
+        sampling.space, state.t, *multiplier_density, error, exact);
+    SolutionErrors result;
+    result.error = roots(error, comm);
+    result.exact = roots(exact, comm);
+    if (sampling.n_samples > 1 && scene.has_irreversible_stress() &&
+        scene.exact_solution->has_stress())
+      error.memory = squared_error_at_samples(sampling, state);
+    result.memory = std::sqrt(Utilities::MPI::sum(error.memory, comm));
+    return result;
+  }
+
+
+
+  template SolutionErrors
+  solution_errors<2>(const StressSampling<2> &,
+                     const State<2> &,
+                     const DistributedVector *);
+  template SolutionErrors
+  solution_errors<3>(const StressSampling<3> &,
+                     const State<3> &,
+                     const DistributedVector *);
+} // namespace Viscoplastic

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/lapack_full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/laws/stiffness.h>
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// An orthonormal basis of the symmetric tensors, in Voigt's order. The
+    /// matrix of a tensor in it is that of Kelvin and Mandel: its eigenvalues
+    /// and inverse are those of the tensor, which Voigt's are not.
+    std::array<SymmetricTensor<2, 3>, 6>
+    kelvin_basis()
+    {
+      std::array<SymmetricTensor<2, 3>, 6> basis;
+      for (unsigned int i = 0; i < 3; ++i)
+        basis[i][i][i] = 1.;
+      basis[3][1][2] = std::sqrt(0.5);
+      basis[4][0][2] = std::sqrt(0.5);
+      basis[5][0][1] = std::sqrt(0.5);
+      return basis;
+    }
+  } // namespace
+
+
+
+  Spectrum
+  spectrum(const SymmetricTensor<4, 3> &tensor)
+  {
+    const auto               basis = kelvin_basis();
+    LAPACKFullMatrix<double> matrix(6, 6);
+    for (unsigned int i = 0; i < 6; ++i)
+      for (unsigned int j = 0; j < 6; ++j)
+        matrix(i, j) = basis[i] * (tensor * basis[j]);
+
+    // All eigenvalues are within this bound; zero would be an empty interval.
+    const double       bound = std::max(2 * matrix.frobenius_norm(), 1.);
+    Vector<double>     values;
+    FullMatrix<double> vectors;
+    matrix.compute_eigenvalues_symmetric(-bound, bound, 0., values, vectors);
+    AssertThrow(values.size() == 6, ExcInternalError());
+
+    Spectrum result;
+    for (unsigned int mode = 0; mode < 6; ++mode)
+      {
+        result.values[mode] = values[mode];
+        for (unsigned int i = 0; i < 6; ++i)
+          result.modes[mode] += vectors(i, mode) * basis[i];
+      }
+    return result;
+  }
+
+
+
+  Stiffness
+  Stiffness::anisotropic(const FullMatrix<double> &voigt)
+  {
+    AssertDimension(voigt.m(), 6);
+    AssertDimension(voigt.n(), 6);
+
+    const double scale = voigt.linfty_norm();
+    for (unsigned int i = 0; i < 6; ++i)
+      for (unsigned int j = 0; j < 6; ++j)
+        {
+          std::ostringstream message;
+          message << "The Voigt matrix has " << voigt(i, j) << " in row "
+                  << i + 1 << ", column " << j + 1 << ", and " << voigt(j, i)
+                  << " in row " << j + 1 << ", column " << i + 1
+                  << "; it must be symmetric and finite.";
+          // Rounding of matrices that a program has written is no asymmetry.
+          // Written so that NaN is refused, too.
+          AssertThrow(std::fabs(voigt(i, j) - voigt(j, i)) <= 1e-8 * scale &&
+                        std::isfinite(scale),
+                      ExcMessage(message.str()));
+        }
+    AssertThrow(scale >= least_modulus && scale <= largest_modulus,
+                ExcMessage(out_of_range("The norm of the Voigt matrix",
+                                        scale,
+                                        least_modulus,
+                                        largest_modulus)));
+
+    // With engineering shears, Voigt's matrix holds the components themselves.
+    constexpr std::array<std::pair<unsigned int, unsigned int>, 6> axes = {
+      {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
+    auto data = std::make_shared<Anisotropic>();
+    for (unsigned int i = 0; i < 6; ++i)
+      for (unsigned int j = 0; j < 6; ++j)
+        data->stiffness[axes[i].first][axes[i].second][axes[j].first]
+                       [axes[j].second] = (voigt(i, j) + voigt(j, i)) / 2;
+
+    const Spectrum     eigen = spectrum(data->stiffness);
+    std::ostringstream message;
+    message << "The smallest eigenvalue of the elastic tensor that the Voigt "
+               "matrix gives is "
+            << eigen.values[0] << ", the largest " << eigen.values[5]
+            << "; it must be positive definite.";
+    AssertThrow(eigen.values[0] > 1e-12 * eigen.values[5],
+                ExcMessage(message.str()));
+    for (unsigned int mode = 0; mode < 6; ++mode)
+      data->compliance += outer_product(eigen.modes[mode], eigen.modes[mode]) /
+                          eigen.values[mode];
+
+    const SymmetricTensor<4, 3> P = deviator_tensor<3>();
+    data->largest_deviatoric      = spectrum(P * data->stiffness * P).values[5];
+    data->smallest_deviatoric =
+      1. / spectrum(P * data->compliance * P).values[5];
+
+    // Voigt's averages: E : I (x) I = 9 K and the full trace 3 K + 10 mu.
+    double I_E_I = 0., full_trace = 0.;
+    for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int j = 0; j < 3; ++j)
+        {
+          I_E_I += data->stiffness[i][i][j][j];
+          full_trace += data->stiffness[i][j][i][j];
+        }
+    Stiffness result((full_trace - I_E_I / 3) / 10, I_E_I / 9);
+    result.anisotropic_data = std::move(data);
+    return result;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,526 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/precondition.h>
+#include <deal.II/lac/solver_cg.h>
+
+#include <viscoplastic_contact/linear_solvers/schur_solver.h>
+
+#include <cholmod.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The Schur complement on the truncated space, with springs.
+    struct TruncatedFace
+    {
+      const FullMatrix<double> &S;
+      const FrictionFace       &face;
+      const FaceTruncation     &truncation;
+
+      void
+      vmult(Vector<double> &y, const Vector<double> &x) const
+      {
+        // x lies in the truncated space, where CG keeps it.
+        S.vmult(y, x);
+        for (unsigned int n = 0; n < face.n_nodes(); ++n)
+          face.set_node_values(truncation.projector[n] *
+                                 (face.node_values(y, n) +
+                                  truncation.spring[n] *
+                                    face.node_values(x, n)),
+                               n,
+                               y);
+      }
+    };
+
+
+
+    /// Inverse diagonal blocks of that, as a preconditioner.
+    struct NodalBlocks
+    {
+      const FrictionFace       &face;
+      std::vector<Tensor<2, 3>> inverse;
+
+      void
+      vmult(Vector<double> &y, const Vector<double> &x) const
+      {
+        for (unsigned int n = 0; n < face.n_nodes(); ++n)
+          face.set_node_values(inverse[n] * face.node_values(x, n), n, y);
+      }
+    };
+  } // namespace
+
+
+
+  struct SchurSolver::Factor
+  {
+    cholmod_common  common;
+    cholmod_factor *L        = nullptr;
+    cholmod_dense  *solution = nullptr;
+
+    Factor()
+    {
+      cholmod_l_start(&common);
+      common.supernodal                 = CHOLMOD_SUPERNODAL;
+      common.final_ll                   = 1;
+      common.nmethods                   = 1;
+      common.print                      = 0;
+      common.try_catch                  = 1; // we report errors
+      common.quick_return_if_not_posdef = 1;
+    }
+
+    Factor(const Factor &) = delete;
+
+    ~Factor()
+    {
+      cholmod_l_free_factor(&L, &common);
+      cholmod_l_free_dense(&solution, &common);
+      cholmod_l_finish(&common);
+    }
+
+    void
+    check(const std::string &doing) const
+    {
+      AssertThrow(common.status != CHOLMOD_NOT_POSDEF,
+                  ExcMessage("The elastic matrix is not positive definite in "
+                             "the direct solver; the elastic data or the mesh "
+                             "are degenerate."));
+      AssertThrow(common.status >= CHOLMOD_OK,
+                  ExcMessage("The direct solver failed " + doing +
+                             (common.status == CHOLMOD_OUT_OF_MEMORY ?
+                                ": memory is short" :
+                                "") +
+                             "; use 'Solver/Linear solver' = multigrid."));
+    }
+
+    /// The upper triangle by columns (= the lower one by rows) of the leading n
+    /// unknowns in their present order.
+    cholmod_sparse *
+    to_cholmod(const DistributedMatrix         &matrix,
+               const std::vector<unsigned int> &unknowns,
+               const unsigned int               n,
+               const bool                       with_values)
+    {
+      constexpr unsigned int    none = numbers::invalid_unsigned_int;
+      const Epetra_CrsMatrix   &crs  = matrix.trilinos_matrix();
+      std::vector<unsigned int> position(crs.NumMyRows(), none);
+      for (unsigned int i = 0; i < n; ++i)
+        position[unknowns[i]] = i;
+      std::vector<SuiteSparse_long> begin(n + 1, 0);
+      const auto                    for_each = [&](const auto &visit) {
+        for (unsigned int column = 0; column < n; ++column)
+          {
+            int     length, *indices;
+            double *values;
+            crs.ExtractMyRowView(unknowns[column], length, values, indices);
+            for (int e = 0; e < length; ++e)
+              {
+                const unsigned int row = position[crs.GCID(indices[e])];
+                if (row != none && row <= column)
+                  visit(column, row, values[e]);
+              }
+          }
+      };
+      for_each([&](const unsigned int column,
+                   const unsigned int,
+                   const double) { ++begin[column + 1]; });
+      for (unsigned int i = 0; i < n; ++i)
+        begin[i + 1] += begin[i];
+      cholmod_sparse *A =
+        cholmod_l_allocate_sparse(n,
+                                  n,
+                                  begin[n],
+                                  /* sorted = */ 0,
+                                  /* packed = */ 1,
+                                  /* stype: upper = */ 1,
+                                  with_values ? CHOLMOD_REAL : CHOLMOD_PATTERN,
+                                  &common);
+      check("for want of memory");
+      std::copy(begin.begin(),
+                begin.end(),
+                static_cast<SuiteSparse_long *>(A->p));
+      for_each([&](const unsigned int column,
+                   const unsigned int row,
+                   const double       value) {
+        const auto at                             = begin[column]++;
+        static_cast<SuiteSparse_long *>(A->i)[at] = row;
+        if (with_values)
+          static_cast<double *>(A->x)[at] = value;
+      });
+      return A;
+    }
+
+    /// In place: x := L^{-1} x or L^{-T} x.
+    void
+    solve(const int system, Vector<double> &x)
+    {
+      if (x.size() == 0)
+        return;
+      cholmod_dense b;
+      b.nrow = b.d = b.nzmax = x.size();
+      b.ncol                 = 1;
+      b.x                    = &x[0];
+      b.z                    = nullptr;
+      b.xtype                = CHOLMOD_REAL;
+      b.dtype                = CHOLMOD_DOUBLE;
+      cholmod_l_free_dense(&solution, &common);
+      solution = cholmod_l_solve(system, L, &b, &common);
+      check("in a solve");
+      const double *values = static_cast<const double *>(solution->x);
+      std::copy(values, values + x.size(), x.begin());
+    }
+  };
+
+
+
+  SchurSolver::SchurSolver(
+    const DistributedMatrix                    &matrix,
+    const std::vector<bool>                    &excluded,
+    const FrictionFace                         &face,
+    const std::vector<types::global_dof_index> &face_dofs,
+    const unsigned int                          dim)
+    : matrix(matrix)
+    , face(face)
+    , factor(std::make_unique<Factor>())
+  {
+    AssertDimension(matrix.m(), excluded.size());
+    analyse(excluded, face_dofs, dim);
+    factorise();
+  }
+
+
+
+  void
+  SchurSolver::analyse(const std::vector<bool>                    &excluded,
+                       const std::vector<types::global_dof_index> &face_dofs,
+                       const unsigned int                          dim)
+  {
+    // Unknowns off the face first.
+    std::vector<bool> on_face(excluded.size(), false);
+    for (const auto dof : face_dofs)
+      on_face[dof] = true;
+    for (unsigned int i = 0; i < excluded.size(); ++i)
+      if (!excluded[i] && !on_face[i])
+        unknowns.push_back(i);
+    const unsigned int n_interior = unknowns.size();
+    unknowns.insert(unknowns.end(), face_dofs.begin(), face_dofs.end());
+    AssertThrow(!unknowns.empty(),
+                ExcMessage(
+                  "The boundary conditions prescribe the "
+                  "displacement at every node, and nothing is left to "
+                  "solve for; refine the mesh or release a boundary."));
+
+    // A fill reducing ordering of the interior; the face stays last. AMD is
+    // better in 2D, nested dissection in 3D.
+    cholmod_common &common = factor->common;
+    if (n_interior > 0)
+      {
+        common.method[0].ordering = dim == 2 ? CHOLMOD_AMD : CHOLMOD_METIS;
+        cholmod_sparse *A =
+          factor->to_cholmod(matrix, unknowns, n_interior, false);
+        cholmod_factor *symbolic = cholmod_l_analyze(A, &common);
+        factor->check("to order the unknowns");
+        const auto *permutation =
+          static_cast<const SuiteSparse_long *>(symbolic->Perm);
+        const std::vector<unsigned int> old(unknowns);
+        for (unsigned int i = 0; i < n_interior; ++i)
+          unknowns[i] = old[permutation[i]];
+        cholmod_l_free_factor(&symbolic, &common);
+        cholmod_l_free_sparse(&A, &common);
+      }
+
+    common.method[0].ordering = CHOLMOD_NATURAL;
+    common.postorder          = 0;
+    cholmod_sparse *A =
+      factor->to_cholmod(matrix, unknowns, unknowns.size(), false);
+    factor->L = cholmod_l_analyze(A, &common);
+    factor->check("to analyse the matrix");
+    cholmod_l_free_sparse(&A, &common);
+    y.reinit(unknowns.size());
+  }
+
+
+
+  void
+  SchurSolver::factorise()
+  {
+    cholmod_sparse *A =
+      factor->to_cholmod(matrix, unknowns, unknowns.size(), true);
+    cholmod_l_factorize(A, factor->L, &factor->common);
+    factor->check("to factorise the matrix");
+    cholmod_l_free_sparse(&A, &factor->common);
+    if (face.n_dofs() > 0)
+      extract_schur_complement();
+  }
+
+
+
+  bool
+  SchurSolver::renew(const DistributedMatrix &of)
+  {
+    if (&of != &matrix)
+      return false;
+    factorise();
+    return true;
+  }
+
+
+
+  SchurSolver::~SchurSolver() = default;
+
+
+
+  void
+  SchurSolver::extract_schur_complement()
+  {
+    // L is stored in supernodes: dense blocks of columns with the same rows.
+    const cholmod_factor &L = *factor->L;
+    const auto *super       = static_cast<const SuiteSparse_long *>(L.super);
+    const auto *pi          = static_cast<const SuiteSparse_long *>(L.pi);
+    const auto *px          = static_cast<const SuiteSparse_long *>(L.px);
+    const auto *rows        = static_cast<const SuiteSparse_long *>(L.s);
+    const auto *x           = static_cast<const double *>(L.x);
+
+    const int              n     = face.n_dofs();
+    const SuiteSparse_long first = unknowns.size() - n;
+    face_factor.reinit(n, n);
+    for (std::size_t s = 0; s < L.nsuper; ++s)
+      for (SuiteSparse_long j = std::max(super[s], first); j < super[s + 1];
+           ++j)
+        {
+          const SuiteSparse_long n_rows = pi[s + 1] - pi[s];
+          const SuiteSparse_long local  = j - super[s];
+          for (SuiteSparse_long i = local; i < n_rows; ++i)
+            face_factor(rows[pi[s] + i] - first, j - first) =
+              x[px[s] + local * n_rows + i];
+        }
+
+    face_factor.set_property(LAPACKSupport::lower_triangular);
+    LAPACKFullMatrix<double> product_matrix(n, n);
+    face_factor.mTmult(product_matrix, face_factor);
+    FullMatrix<double> S(n, n);
+    S                = product_matrix;
+    schur_complement = std::make_unique<DenseFaceMatrix>(face, std::move(S));
+
+    face_load.reinit(n);
+    face_change.reinit(n);
+    correction.reinit(n);
+    product.reinit(n);
+  }
+
+
+
+  std::string
+  SchurSolver::name() const
+  {
+    return "direct (CHOLMOD)";
+  }
+
+
+
+  void
+  SchurSolver::forward(const DistributedVector &load,
+                       const DistributedVector &start)
+  {
+    DistributedVector residual(load);
+    matrix.vmult(residual, start);
+    squared_norm = start * residual;
+    residual.sadd(-1., 1., load);
+    for (unsigned int i = 0; i < unknowns.size(); ++i)
+      y[i] = residual.begin()[unknowns[i]];
+    factor->solve(CHOLMOD_L, y);
+  }
+
+
+
+  void
+  SchurSolver::backward(DistributedVector &target)
+  {
+    factor->solve(CHOLMOD_Lt, y);
+    for (unsigned int i = 0; i < unknowns.size(); ++i)
+      target.begin()[unknowns[i]] += y[i];
+  }
+
+
+
+  unsigned int
+  SchurSolver::solve(const DistributedVector &load,
+                     DistributedVector       &u,
+                     const double /*tolerance*/)
+  {
+    forward(load, u);
+    backward(u);
+    return 1;
+  }
+
+
+
+  void
+  SchurSolver::begin(const DistributedVector &load, DistributedVector &u_)
+  {
+    u = &u_;
+    forward(load, u_);
+    // y = (y_i, y_c); the face's load after condensation is L_cc y_c.
+    const unsigned int n_interior = unknowns.size() - face.n_dofs();
+    for (unsigned int i = 0; i < n_interior; ++i)
+      squared_norm += y[i] * y[i];
+    for (unsigned int i = 0; i < face.n_dofs(); ++i)
+      face_load[i] = y[n_interior + i];
+    const Vector<double> y_face(face_load);
+    face_factor.vmult(face_load, y_face);
+    face_change = 0.;
+  }
+
+
+
+  const FaceMatrix &
+  SchurSolver::face_matrix() const
+  {
+    return *schur_complement;
+  }
+
+
+
+  void
+  SchurSolver::face_residual(Vector<double> &r)
+  {
+    schur_complement->matrix().vmult(r, face_change);
+    r.sadd(-1., 1., face_load);
+  }
+
+
+
+  void
+  SchurSolver::move_face(const Vector<double> &change)
+  {
+    face_change += change;
+  }
+
+
+
+  void
+  SchurSolver::set_truncation(const FaceTruncation &truncation_,
+                              const bool /*may_rebuild*/)
+  {
+    truncation = truncation_;
+  }
+
+
+
+  double
+  SchurSolver::dual_norm(const Vector<double> &force)
+  {
+    // The bulk is in equilibrium, so the residual lives on the face, and its
+    // dual norm is that of the Schur complement.
+    face_residual(product);
+    product -= force;
+    face_factor.solve(product);
+    return product.l2_norm();
+  }
+
+
+
+  double
+  SchurSolver::confirmed_dual_norm(const Vector<double> &force,
+                                   unsigned int & /*iterations*/)
+  {
+    return dual_norm(force);
+  }
+
+
+
+  double
+  SchurSolver::energy_norm() const
+  {
+    Vector<double> c(face_change.size());
+    face_factor.Tvmult(c, face_change);
+    // Of a translation it is rounding, of either sign.
+    return std::sqrt(std::max(0., squared_norm + c.norm_sqr()));
+  }
+
+
+
+  unsigned int
+  SchurSolver::correct(const Vector<double> &force,
+                       const double          tolerance,
+                       Vector<double>       &w)
+  {
+    face_residual(product);
+    product -= force;
+    truncation.project(face, product);
+    w                 = 0.;
+    const double size = product.l2_norm();
+    if (size == 0.)
+      return 0;
+
+    NodalBlocks blocks{face, std::vector<Tensor<2, 3>>(face.n_nodes())};
+    for (unsigned int n = 0; n < face.n_nodes(); ++n)
+      {
+        // Blocked directions get the identity, which keeps the block regular,
+        // which must not swamp the others in units of huge stresses.
+        const Tensor<2, 3> &P         = truncation.projector[n];
+        const Tensor<2, 3>  stiffness = schur_complement->diagonal_block(n);
+        const double        size      = stiffness.norm();
+        const double        one       = size < 1e-6 ? size : 1.;
+        Tensor<2, 3>        block =
+          P * (stiffness + truncation.spring[n]) * P - one * P;
+        for (unsigned int d = 0; d < 3; ++d)
+          block[d][d] += one;
+        blocks.inverse[n] = P * invert(block) * P;
+      }
+    // A small face problem costs nothing: solve it to the end, and the active
+    // set iteration is finite in 2D. In a large one, follow the caller.
+    const double reduction =
+      face.n_dofs() <= 600 ? 1e-13 : std::max(1e-13, 0.01 * tolerance);
+    SolverControl control(std::max(100u, 4 * face.n_dofs()), reduction * size);
+    SolverCG<Vector<double>> cg(control);
+    try
+      {
+        cg.solve(TruncatedFace{schur_complement->matrix(), face, truncation},
+                 w,
+                 product,
+                 blocks);
+      }
+    catch (const SolverControl::NoConvergence &)
+      {
+        // Rounding stopped it; the line search and the error bound judge what
+        // came out.
+      }
+    return 0;
+  }
+
+
+
+  BulkSolver::SearchTerms
+  SchurSolver::search_terms(const Vector<double> &w)
+  {
+    correction = w;
+    Vector<double> r(face.n_dofs());
+    face_residual(r);
+    schur_complement->matrix().vmult(product, correction);
+    return {r * correction, product * correction};
+  }
+
+
+
+  void
+  SchurSolver::take_step(const double step)
+  {
+    face_change.add(step, correction);
+  }
+
+
+
+  unsigned int
+  SchurSolver::finish()
+  {
+    Vector<double> c(face_change.size());
+    face_factor.Tvmult(c, face_change);
+    const unsigned int n_interior = unknowns.size() - face.n_dofs();
+    for (unsigned int i = 0; i < face.n_dofs(); ++i)
+      y[n_interior + i] = c[i];
+    backward(*u);
+    return 1;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/mesh/files/mesh_file.h>
+#include <viscoplastic_contact/mesh/files/mesh_reader.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::string
+    content(const std::string &name)
+    {
+      namespace fs             = std::filesystem;
+      const std::string     it = "The mesh file '" + name + "' ";
+      std::error_code       error;
+      const fs::file_status status = fs::status(name, error);
+      AssertThrow(fs::exists(status), ExcMessage(it + "does not exist."));
+      AssertThrow(!fs::is_directory(status),
+                  ExcMessage(it + "is a directory."));
+      AssertThrow(fs::is_regular_file(status),
+                  ExcMessage(it + "is not a regular file."));
+      std::ifstream input(name, std::ios::binary);
+      AssertThrow(input, ExcMessage(it + "cannot be opened."));
+      std::string text{std::istreambuf_iterator<char>(input),
+                       std::istreambuf_iterator<char>()};
+      AssertThrow(text.find_first_not_of(" \t\r\n") != std::string::npos,
+                  ExcMessage(it + "is empty."));
+      return text;
+    }
+
+
+
+    std::string
+    format_of(const std::string &name, const std::string &text)
+    {
+      std::string suffix = std::filesystem::path(name).extension();
+      std::transform(suffix.begin(), suffix.end(), suffix.begin(), ::tolower);
+      if (suffix == ".msh")
+        return "msh";
+      if (suffix == ".vtk")
+        return "vtk";
+      if (suffix == ".ucd" || suffix == ".avs")
+        return "ucd";
+      // A suffix of two formats: keywords of ABAQUS begin with a star.
+      if (suffix == ".inp")
+        return text[text.find_first_not_of(" \t\r\n")] == '*' ? "abaqus" :
+                                                                "ucd";
+      AssertThrow(false,
+                  ExcMessage("The format of the mesh file '" + name +
+                             "' cannot be told from its name; set "
+                             "'Geometry/File format' to msh, ucd, vtk or "
+                             "abaqus."));
+      return {};
+    }
+
+
+
+    std::string
+    at_line(const MeshFile::Element &element)
+    {
+      return "line " + std::to_string(element.line) + ": ";
+    }
+
+
+
+    /// Nodes of a cell, or those of one of its faces, sorted, so that equal
+    /// ones compare equal.
+    template <typename Nodes>
+    Nodes
+    sorted_nodes(const MeshFile::Element         &element,
+                 const std::vector<unsigned int> &which = {})
+    {
+      Nodes result;
+      for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = element.nodes[which.empty() ? i : which[i]];
+      std::sort(result.begin(), result.end());
+      return result;
+    }
+
+
+
+    void
+    check_plane(const MeshFile &mesh)
+    {
+      double z_min = mesh.nodes[mesh.cells[0].nodes[0]][2], z_max = z_min;
+      double extent = 0.;
+      for (const auto &cell : mesh.cells)
+        for (unsigned int n = 0; n < 4; ++n)
+          {
+            const Point<3> &x = mesh.nodes[cell.nodes[n]];
+            z_min             = std::min(z_min, x[2]);
+            z_max             = std::max(z_max, x[2]);
+            extent =
+              std::max(extent, x.distance(mesh.nodes[mesh.cells[0].nodes[0]]));
+          }
+      if (z_max - z_min > 1e-6 * extent)
+        throw std::runtime_error("its quadrilaterals are not in a plane z = "
+                                 "const., as a 2D body has to be");
+    }
+
+
+
+    /// What create_triangulation() takes for granted. Keeps the faces that are
+    /// on the boundary.
+    template <int dim>
+    void
+    check(MeshFile &mesh)
+    {
+      constexpr unsigned int n_face_nodes = 1 << (dim - 1);
+      using Face            = std::array<unsigned int, n_face_nodes>;
+      using Cell            = std::array<unsigned int, 1 << dim>;
+      const auto cell_faces = faces_of_cell(dim);
+      // With the indices of the cells.
+      std::vector<std::pair<Cell, std::size_t>> cells;
+      std::vector<std::pair<Face, std::size_t>> faces;
+      for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+        {
+          const MeshFile::Element &element = mesh.cells[c];
+          const Cell               cell    = sorted_nodes<Cell>(element);
+          if (std::adjacent_find(cell.begin(), cell.end()) != cell.end())
+            throw std::runtime_error(at_line(element) +
+                                     "a cell has a node twice; collapsed "
+                                     "cells are not supported");
+          cells.emplace_back(cell, c);
+          for (const auto &face : cell_faces)
+            faces.emplace_back(sorted_nodes<Face>(element, face), c);
+        }
+
+      std::sort(cells.begin(), cells.end());
+      for (std::size_t c = 1; c < cells.size(); ++c)
+        if (cells[c].first == cells[c - 1].first)
+          throw std::runtime_error(
+            at_line(mesh.cells[cells[c].second]) +
+            "this cell is already in line " +
+            std::to_string(mesh.cells[cells[c - 1].second].line) +
+            "; a cell can be in one group only");
+
+      std::sort(faces.begin(), faces.end());
+      for (std::size_t f = 0; f < faces.size();)
+        {
+          std::size_t end = f;
+          while (end < faces.size() && faces[end].first == faces[f].first)
+            ++end;
+          if (end - f > 2)
+            throw std::runtime_error(at_line(mesh.cells[faces[f].second]) +
+                                     "a face of this cell belongs to more "
+                                     "than two cells");
+          f = end;
+        }
+
+      // The id of an inner face means nothing; a face of no cell is a mistake
+      // that would otherwise go unnoticed.
+      std::vector<MeshFile::Element> kept;
+      std::map<Face, unsigned int>   lines;
+      for (const auto &element : mesh.faces)
+        {
+          const Face face = sorted_nodes<Face>(element);
+          const auto first =
+            std::lower_bound(faces.begin(),
+                             faces.end(),
+                             std::make_pair(face, std::size_t(0)));
+          if (first == faces.end() || first->first != face)
+            throw std::runtime_error(at_line(element) +
+                                     "this boundary element is not a face of "
+                                     "any cell");
+          if (std::next(first) != faces.end() &&
+              std::next(first)->first == face)
+            continue;
+          if (!lines.emplace(face, element.line).second)
+            throw std::runtime_error(
+              at_line(element) + "this boundary element is already in line " +
+              std::to_string(lines[face]) +
+              "; a face can be in one group only");
+          kept.push_back(element);
+        }
+      mesh.faces = std::move(kept);
+    }
+  } // namespace
+
+
+
+  MeshFile
+  read_mesh_file(const std::string &name,
+                 const std::string &file_format,
+                 const unsigned int dim)
+  {
+    std::string       text = content(name);
+    const std::string format =
+      file_format == "automatic" ? format_of(name, text) : file_format;
+    const std::map<std::string, void (*)(MeshReader &)> readers{
+      {"msh", read_msh},
+      {"ucd", read_ucd},
+      {"vtk", read_vtk},
+      {"abaqus", read_abaqus}};
+    const auto read = readers.find(format);
+    AssertThrow(read != readers.end(),
+                ExcMessage("'Geometry/File format' = " + format +
+                           " is none of automatic, msh, ucd, vtk, abaqus."));
+
+    MeshReader reader(std::move(text), dim);
+    try
+      {
+        read->second(reader);
+        if (reader.mesh.cells.empty())
+          throw std::runtime_error(
+            std::string("it has no ") +
+            (dim == 2 ? "quadrilaterals" : "hexahedra") +
+            (reader.has_dimension[5 - dim] ?
+               std::string(" but ") +
+                 (dim == 2 ? "hexahedra" : "quadrilaterals") +
+                 ", and 'Dimension' is " + std::to_string(dim) :
+             format == "msh" ?
+               "; once there are physical groups, Gmsh writes nothing but "
+               "their elements" :
+               ""));
+        if (dim == 2 && reader.has_dimension[3])
+          throw std::runtime_error("it has hexahedra, and 'Dimension' is 2");
+        if (dim == 2)
+          {
+            check_plane(reader.mesh);
+            check<2>(reader.mesh);
+          }
+        else
+          check<3>(reader.mesh);
+      }
+    catch (const std::exception &exception)
+      {
+        AssertThrow(false,
+                    ExcMessage("The mesh file '" + name +
+                               "' cannot be read as " + format + ": " +
+                               reason(exception) + "."));
+      }
+    return std::move(reader.mesh);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/ids.h>
+#include <viscoplastic_contact/mesh/files/mesh_reader.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <stdexcept>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    bool
+    is_space(const char c)
+    {
+      return std::isspace(static_cast<unsigned char>(c)) != 0;
+    }
+  } // namespace
+
+
+
+  std::string
+  MeshReader::quoted(const std::string &word)
+  {
+    std::string result = word.substr(0, 40);
+    for (char &c : result)
+      if (!std::isprint(static_cast<unsigned char>(c)))
+        c = '?';
+    return "'" + result + (word.size() > 40 ? "..." : "") + "'";
+  }
+
+
+
+  MeshReader::MeshReader(std::string text, const unsigned int dim)
+    : dim(dim)
+    , text(std::move(text))
+  {}
+
+
+
+  bool
+  MeshReader::at_end()
+  {
+    for (; position < text.size() && is_space(text[position]); ++position)
+      if (text[position] == '\n')
+        ++line;
+    return position == text.size();
+  }
+
+
+
+  std::string
+  MeshReader::word(const std::string &what)
+  {
+    if (at_end())
+      fail("the file ends where " + what + " should be");
+    const std::size_t begin = position;
+    while (position < text.size() && !is_space(text[position]))
+      ++position;
+    return text.substr(begin, position - begin);
+  }
+
+
+
+  std::string
+  MeshReader::rest_of_line()
+  {
+    const std::size_t end   = std::min(text.find('\n', position), text.size());
+    std::size_t       begin = position, last = end;
+    while (begin < last && is_space(text[begin]))
+      ++begin;
+    while (last > begin && is_space(text[last - 1]))
+      --last;
+    position = end;
+    return text.substr(begin, last - begin);
+  }
+
+
+
+  bool
+  MeshReader::next_line(std::string &result)
+  {
+    position = std::min(text.find('\n', position), text.size());
+    if (position + 1 >= text.size())
+      return false;
+    ++position;
+    ++line;
+    result = rest_of_line();
+    return true;
+  }
+
+
+
+  void
+  MeshReader::expect(const std::string &keyword)
+  {
+    const std::string found = word(keyword);
+    if (found != keyword)
+      fail("expected " + keyword + ", found " + quoted(found));
+  }
+
+
+
+  long
+  MeshReader::to_integer(const std::string &word, const std::string &what) const
+  {
+    // Ids and numbers of nodes that anyone uses are far below; and signs can
+    // be changed and differences taken without a second look.
+    constexpr long largest = 1000000000000;
+    char          *end     = nullptr;
+    // Beyond its range, this is one end of it.
+    const long value = std::strtol(word.c_str(), &end, 10);
+    if (word.empty() || *end != '\0' || value < -largest || value > largest)
+      fail("expected " + what + ", found " + quoted(word));
+    return value;
+  }
+
+
+
+  double
+  MeshReader::to_number(const std::string &word, const std::string &what) const
+  {
+    char        *end   = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (word.empty() || *end != '\0' || !std::isfinite(value))
+      fail("expected " + what + ", found " + quoted(word));
+    return value;
+  }
+
+
+
+  long
+  MeshReader::integer(const std::string &what)
+  {
+    return to_integer(word(what), what);
+  }
+
+
+
+  double
+  MeshReader::number(const std::string &what)
+  {
+    return to_number(word(what), what);
+  }
+
+
+
+  unsigned long
+  MeshReader::count(const std::string &what)
+  {
+    const long value = integer(what);
+    if (value < 0 || static_cast<unsigned long>(value) > text.size() - position)
+      fail(what + " is " + std::to_string(value) +
+           ", which the rest of the file cannot hold");
+    return value;
+  }
+
+
+
+  void
+  MeshReader::fail(const std::string &message) const
+  {
+    throw std::runtime_error("line " + std::to_string(line) + ": " + message);
+  }
+
+
+
+  void
+  MeshReader::add_node(const long number, const Point<3> &x)
+  {
+    if (!node_indices.emplace(number, mesh.nodes.size()).second)
+      fail("the node " + std::to_string(number) + " is there twice");
+    mesh.nodes.push_back(x);
+  }
+
+
+
+  void
+  MeshReader::add_element(const Shape             &shape,
+                          const long               id,
+                          const std::vector<long> &node_numbers)
+  {
+    const unsigned int dimension = shape.dimension;
+    if (shape.n_nodes != 1u << dimension)
+      fail("this element is a " + shape.name +
+           "; only quadrilaterals and hexahedra with nodes at their corners "
+           "are supported (in Gmsh, set Mesh.RecombineAll = 1 and "
+           "Mesh.SubdivisionAlgorithm = 1, in 3D 2)");
+    has_dimension[dimension] = true;
+    if (dimension + 1 < dim || dimension > dim)
+      return;
+    if (id < 0 || id > largest_id)
+      fail("the id " + std::to_string(id) + " is not between 0 and " +
+           std::to_string(largest_id));
+
+    MeshFile::Element element;
+    element.id   = id;
+    element.line = line;
+    for (std::size_t n = 0; n < node_numbers.size(); ++n)
+      {
+        const auto index = node_indices.find(node_numbers[n]);
+        if (index == node_indices.end())
+          fail("there is no node " + std::to_string(node_numbers[n]));
+        element.nodes[n] = index->second;
+      }
+    (dimension == dim ? mesh.cells : mesh.faces).push_back(element);
+  }
+
+
+
+  std::vector<std::vector<unsigned int>>
+  faces_of_cell(const unsigned int dim)
+  {
+    if (dim == 2)
+      return {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+    return {{0, 1, 2, 3},
+            {4, 5, 6, 7},
+            {0, 1, 5, 4},
+            {1, 2, 6, 5},
+            {2, 3, 7, 6},
+            {3, 0, 4, 7}};
+  }
+
+
+
+  const MeshReader::Shape &
+  MeshReader::shape(const std::map<std::string, Shape> &shapes)
+  {
+    const std::string type  = word("a type of elements");
+    const auto        found = shapes.find(type);
+    if (found == shapes.end())
+      fail("elements of type " + quoted(type) + " are not supported");
+    return found->second;
+  }
+
+
+
+  std::vector<long>
+  MeshReader::node_numbers(const unsigned int n)
+  {
+    std::vector<long> result(n);
+    for (long &number : result)
+      number = integer("the number of a node");
+    return result;
+  }
+
+
+
+  Point<3>
+  MeshReader::coordinates()
+  {
+    Point<3> x;
+    for (unsigned int d = 0; d < 3; ++d)
+      x[d] = number("a coordinate");
+    return x;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/geometry_info.h>
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/mesh/mesh_check.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /**
+     * The least value in the cell, at its vertices and Gauss points, of the
+     * determinant of the Jacobian divided by the lengths of its columns: 1 in
+     * a box, the sine of the angle in a parallelogram.
+     */
+    template <int dim, typename CellIterator>
+    double
+    least_scaled_jacobian(const CellIterator            &cell,
+                          const std::vector<Point<dim>> &reference_points)
+    {
+      double least = 1.;
+      for (const Point<dim> &xi : reference_points)
+        {
+          Tensor<2, dim> jacobian;
+          for (const unsigned int v : cell->vertex_indices())
+            jacobian += outer_product(
+              Tensor<1, dim>(cell->vertex(v)),
+              GeometryInfo<dim>::d_linear_shape_function_gradient(xi, v));
+          double scale = 1.;
+          for (unsigned int d = 0; d < dim; ++d)
+            scale *= transpose(jacobian)[d].norm();
+          // Neither coinciding vertices nor coordinates beyond all measure.
+          if (!(scale > 0.) || !std::isfinite(scale))
+            return 0.;
+          least = std::min(least, determinant(jacobian) / scale);
+        }
+      return least;
+    }
+
+
+
+    /// Of coarse cells, which all ranks know; cells of refined meshes are not
+    /// smaller by orders of magnitude that matter.
+    template <int dim>
+    void
+    check_lengths(
+      const parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      double largest = 0., smallest = std::numeric_limits<double>::infinity();
+      for (const auto &cell : triangulation.cell_iterators_on_level(0))
+        {
+          double extent = 0.;
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                largest = std::max(largest, std::abs(cell->vertex(v)[d]));
+                extent =
+                  std::max(extent,
+                           std::abs(cell->vertex(v)[d] - cell->vertex(0)[d]));
+              }
+          smallest = std::min(smallest, extent);
+        }
+      AssertThrow(largest <= largest_length,
+                  ExcMessage(out_of_range("The largest coordinate of the mesh",
+                                          largest,
+                                          -largest_length,
+                                          largest_length)));
+      // Vertices that coincide are refused as such.
+      AssertThrow(smallest >= least_length || smallest == 0.,
+                  ExcMessage(out_of_range("The size of the smallest cell",
+                                          smallest,
+                                          least_length,
+                                          largest_length)));
+    }
+
+
+
+    template <int dim, typename Cells>
+    void
+    check_cells(const Cells &cells, const MPI_Comm &comm)
+    {
+      std::vector<Point<dim>> reference_points = QGauss<dim>(2).get_points();
+      for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell; ++v)
+        reference_points.push_back(GeometryInfo<dim>::unit_cell_vertex(v));
+
+      double     worst = 1.;
+      Point<dim> where;
+      for (const auto &cell : cells)
+        if (cell->level() == 0 || cell->is_locally_owned())
+          {
+            const double value = least_scaled_jacobian(cell, reference_points);
+            if (value < worst)
+              {
+                worst = value;
+                where = cell->center();
+              }
+          }
+
+      // Beyond rounding of coordinates with single precision.
+      const double limit   = 1e-6;
+      const auto   extreme = Utilities::MPI::min_max_avg(worst, comm);
+      if (extreme.min > limit)
+        return;
+      where = Utilities::MPI::broadcast(comm, where, extreme.min_index);
+      std::ostringstream message;
+      message << "The cell of the mesh with the centre (" << where
+              << ") is inverted or degenerate: the determinant of its "
+                 "Jacobian, divided by the lengths of its columns, is "
+              << extreme.min
+              << " somewhere in it; it has to be positive (1 in "
+                 "a "
+              << (dim == 2 ? "rectangle" : "box") << ").";
+      AssertThrow(false, ExcMessage(message.str()));
+    }
+
+
+
+    /// Follow shared faces of coarse cells, which all ranks know.
+    template <int dim>
+    void
+    check_connection(
+      const parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      std::vector<bool> seen(triangulation.n_cells(0), false);
+      unsigned int      n_parts = 0;
+      Point<dim>        first, other;
+      for (const auto &start : triangulation.cell_iterators_on_level(0))
+        {
+          if (seen[start->index()])
+            continue;
+          (n_parts == 0 ? first : other) = start->center();
+          ++n_parts;
+          seen[start->index()] = true;
+          std::vector<typename Triangulation<dim>::cell_iterator> front{start};
+          while (!front.empty())
+            {
+              const auto cell = front.back();
+              front.pop_back();
+              for (const unsigned int f : cell->face_indices())
+                if (!cell->at_boundary(f) && !seen[cell->neighbor(f)->index()])
+                  {
+                    seen[cell->neighbor(f)->index()] = true;
+                    front.push_back(cell->neighbor(f));
+                  }
+            }
+        }
+      std::ostringstream message;
+      message << "The mesh consists of " << n_parts
+              << " parts that share no faces, e.g. the cells with the centres ("
+              << first << ") and (" << other
+              << ") are not connected; a scene has one body, whose cells have "
+                 "their nodes in common (merge nodes that are at the same "
+                 "place).";
+      AssertThrow(n_parts == 1, ExcMessage(message.str()));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  check_mesh(const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    const MPI_Comm comm = triangulation.get_communicator();
+    check_lengths(triangulation);
+    check_cells<dim>(triangulation.cell_iterators_on_level(0), comm);
+    // What is refined along straight lines keeps its shape; that on curved
+    // boundaries is moved.
+    if (triangulation.n_global_levels() > 1)
+      check_cells<dim>(triangulation.active_cell_iterators(), comm);
+    check_connection(triangulation);
+  }
+
+
+
+  template void
+  check_mesh(const parallel::distributed::Triangulation<2> &);
+  template void
+  check_mesh(const parallel::distributed::Triangulation<3> &);
+} // namespace Viscoplastic

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+#include <deal.II/grid/grid_generator.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/mesh/mesh_generator.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Which arguments of a generator, counted from 0, are numbers of cells.
+    struct CellCounts
+    {
+      std::vector<std::size_t> arguments;
+      enum
+      {
+        /// Each multiplies the number of cells.
+        product,
+        /// The one there is does so once a direction.
+        power,
+        /// They are added to each other.
+        sum
+      } kind = product;
+    };
+
+
+
+    const std::map<std::string, CellCounts> cell_counts{
+      {"channel_with_cylinder", {{1}}},
+      {"cheese", {{0}}},
+      {"concentric_hyper_shells", {{3, 5}}},
+      {"cylinder_shell", {{3, 4}}},
+      {"eccentric_hyper_shell", {{4}}},
+      {"half_hyper_shell", {{3}}},
+      {"hyper_cross", {{0}, CellCounts::sum}},
+      {"hyper_cube_with_cylindrical_hole", {{3}}},
+      {"hyper_shell", {{3}}},
+      {"moebius", {{0}}},
+      {"plate_with_a_hole", {{10}}},
+      {"quarter_hyper_shell", {{3}}},
+      {"subdivided_cylinder", {{0}}},
+      {"subdivided_hyper_cube", {{0}, CellCounts::power}},
+      {"subdivided_hyper_rectangle", {{0}}},
+      {"torus", {{2}}}};
+
+
+
+    /// deal.II takes negative numbers of cells for huge ones, and asks for all
+    /// the memory that huge ones need.
+    void
+    check_numbers_of_cells(const GeometryParameters &geometry,
+                           const unsigned int        dim,
+                           const MPI_Comm            communicator)
+    {
+      const auto found = cell_counts.find(geometry.generator);
+      if (found == cell_counts.end())
+        return;
+      const CellCounts &counts = found->second;
+      const auto        arguments =
+        Utilities::split_string_list(geometry.arguments, ':');
+      double      total       = counts.kind == CellCounts::sum ? 0. : 1.;
+      bool        is_negative = false;
+      std::string numbers;
+      for (const std::size_t place : counts.arguments)
+        {
+          if (place >= arguments.size())
+            return; // deal.II says it
+          numbers += (numbers.empty() ? "" : ", ") + arguments[place];
+          for (const std::string &text :
+               Utilities::split_string_list(arguments[place], ','))
+            {
+              char        *end   = nullptr;
+              const double value = std::strtod(text.c_str(), &end);
+              if (*end != '\0')
+                return; // deal.II says it
+              is_negative = is_negative || value < 0.;
+              // Where zero is possible, deal.II chooses a small number.
+              if (counts.kind == CellCounts::sum)
+                total += value;
+              else
+                total *= std::pow(std::max(1., value),
+                                  counts.kind == CellCounts::power ? dim : 1);
+            }
+        }
+      constexpr unsigned int most = 10000000;
+      std::ostringstream     message;
+      message << "'Geometry/Arguments' = " << geometry.arguments
+              << " asks for ";
+      if (is_negative)
+        message << numbers;
+      else
+        message << total;
+      message << " cells; possible are 1 to " << most
+              << " (refinements make more).";
+      AssertThrow(!is_negative && total <= most, ExcMessage(message.str()));
+      check_mesh_size(dim,
+                      total,
+                      "'Geometry/Arguments' = " + excerpt(geometry.arguments),
+                      communicator);
+    }
+
+
+
+    /// As numbers; empty unless all of them are.
+    std::vector<double>
+    list_of_numbers(const std::string &text)
+    {
+      std::vector<double> values;
+      for (const std::string &part : Utilities::split_string_list(text, ','))
+        {
+          char *end = nullptr;
+          values.push_back(std::strtod(part.c_str(), &end));
+          if (*end != '\0' || part.empty() || !std::isfinite(values.back()))
+            return {};
+        }
+      return values;
+    }
+
+
+
+    /**
+     * deal.II takes what is not a list of whole numbers of cells for lists of
+     * step sizes, one a direction, and in release mode compares neither their
+     * number nor that of the numbers of cells with the dimension.
+     */
+    void
+    check_box(const GeometryParameters &geometry, const unsigned int dim)
+    {
+      const auto arguments =
+        Utilities::split_string_list(geometry.arguments, ':');
+      if (geometry.generator != "subdivided_hyper_rectangle" ||
+          arguments.size() < 3)
+        return; // deal.II says it
+      const auto lists = Utilities::split_string_list(arguments[0], ';');
+      const auto refuse_unless = [&](const bool good, const std::string &what) {
+        AssertThrow(good,
+                    ExcMessage(
+                      "'Geometry/Arguments' = " + excerpt(geometry.arguments) +
+                      ": '" + excerpt(arguments[0]) + "' has to be " + what +
+                      "."));
+      };
+      const std::string n = std::to_string(dim);
+      if (lists.size() < 2)
+        {
+          const std::vector<double> counts = list_of_numbers(arguments[0]);
+          const bool                are_whole =
+            arguments[0].find_first_not_of("0123456789, ") == std::string::npos;
+          refuse_unless(counts.size() == dim && are_whole,
+                        n + " whole numbers of cells separated by commas, or " +
+                          n + " lists of step sizes separated by semicolons");
+          return;
+        }
+
+      refuse_unless(lists.size() == dim,
+                    n + " lists of step sizes separated by semicolons");
+      const std::vector<double> first = list_of_numbers(arguments[1]),
+                                last  = list_of_numbers(arguments[2]);
+      if (first.size() != dim || last.size() != dim)
+        return; // deal.II says it
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const std::vector<double> steps  = list_of_numbers(lists[d]);
+          const double              length = std::abs(last[d] - first[d]);
+          double                    sum    = 0.;
+          bool                      good   = !steps.empty();
+          for (const double step : steps)
+            {
+              good = good && step > 0.;
+              sum += step;
+            }
+          refuse_unless(good && std::abs(sum - length) <= 1e-6 * length,
+                        "lists of positive step sizes that add up to the "
+                        "lengths of the sides");
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  generate_mesh(const GeometryParameters                  &geometry,
+                parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    check_numbers_of_cells(geometry, dim, triangulation.get_communicator());
+    check_box(geometry, dim);
+    try
+      {
+        GridGenerator::generate_from_name_and_arguments(triangulation,
+                                                        geometry.generator,
+                                                        geometry.arguments);
+      }
+    catch (const std::exception &exception)
+      {
+        // deal.II describes types of C++ at length where they do not fit.
+        std::string why = reason(exception);
+        if (why.find("does not match the pattern") != std::string::npos)
+          why = "they must be separated by colons and of the types that "
+                "deal.II's GridGenerator documents.";
+        else if (why.find("not implemented") != std::string::npos)
+          why = "there is no such generator in " + std::to_string(dim) + "D.";
+        AssertThrow(false,
+                    ExcMessage("The mesh generator '" +
+                               excerpt(geometry.generator) +
+                               "' refuses the arguments '" +
+                               excerpt(geometry.arguments) + "': " + why));
+      }
+    AssertThrow(triangulation.all_reference_cells_are_hyper_cube(),
+                ExcMessage("The mesh must consist of quadrilaterals or "
+                           "hexahedra; simplices are not supported."));
+  }
+
+
+
+  template void
+  generate_mesh(const GeometryParameters &,
+                parallel::distributed::Triangulation<2> &);
+  template void
+  generate_mesh(const GeometryParameters &,
+                parallel::distributed::Triangulation<3> &);
+} // namespace Viscoplastic

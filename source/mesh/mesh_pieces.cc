@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_nothing.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/mesh/mesh_pieces.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  PieceNormal<dim>
+  piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,
+               const types::boundary_id                         id)
+  {
+    const MPI_Comm comm = triangulation.get_communicator();
+    // These points include the vertices, where warped faces deviate most.
+    const FE_Nothing<dim> fe;
+    FEFaceValues<dim>     face_values(fe,
+                                  QGaussLobatto<dim - 1>(3),
+                                  update_normal_vectors | update_JxW_values);
+    const auto            for_each_normal = [&](const auto &visit) {
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->at_boundary(f) && cell->face(f)->boundary_id() == id)
+              {
+                face_values.reinit(cell, f);
+                for (const unsigned int q :
+                     face_values.quadrature_point_indices())
+                  visit(face_values.normal_vector(q), face_values.JxW(q));
+              }
+    };
+
+    Tensor<1, dim> sum;
+    double         area = 0.;
+    for_each_normal([&](const Tensor<1, dim> &normal, const double JxW) {
+      sum += normal * JxW;
+      area += JxW;
+    });
+    sum  = Utilities::MPI::sum(sum, comm);
+    area = Utilities::MPI::sum(area, comm);
+    // All around a body the normals cancel.
+    if (sum.norm() <= 1e-10 * area)
+      return {Tensor<1, dim>(), 180.};
+
+    PieceNormal<dim> result{sum / sum.norm(), 0.};
+    // Exact axes keep the nodal frames of axis-parallel bodies trivial.
+    for (unsigned int d = 0; d < dim; ++d)
+      if (std::abs(std::abs(result.normal[d]) - 1.) < 1e-12)
+        {
+          const double sign = result.normal[d] > 0. ? 1. : -1.;
+          result.normal     = 0.;
+          result.normal[d]  = sign;
+        }
+    // By the chord, since an arc cosine knows no angles below 1e-8.
+    double chord = 0.;
+    for_each_normal([&](const Tensor<1, dim> &normal, const double) {
+      chord = std::max(chord, (normal - result.normal).norm());
+    });
+    chord = Utilities::MPI::max(chord, comm);
+    result.deviation =
+      2. * std::asin(std::min(1., chord / 2.)) * 180. / numbers::PI;
+    return result;
+  }
+
+
+
+  template PieceNormal<2>
+  piece_normal(const parallel::distributed::Triangulation<2> &,
+               const types::boundary_id);
+  template PieceNormal<3>
+  piece_normal(const parallel::distributed::Triangulation<3> &,
+               const types::boundary_id);
+} // namespace Viscoplastic

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/mesh/mesh_ids.h>
+#include <viscoplastic_contact/mesh/mesh_refinement.h>
+#include <viscoplastic_contact/mesh/mesh_size.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// `Boundary refinements': how often by boundary id.
+    template <int dim>
+    std::map<types::boundary_id, unsigned int>
+    boundary_refinements(
+      const std::string                               &text,
+      const parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      const std::string entry =
+        "'Geometry/Boundary refinements' = " + excerpt(text);
+      std::map<types::boundary_id, unsigned int> result;
+      const std::set<types::boundary_id> ids = boundary_ids(triangulation);
+      const std::regex                   pair("(\\d{1,9})\\s*:\\s*(\\d{1,2})");
+      for (const std::string &part : Utilities::split_string_list(text, ','))
+        {
+          std::smatch match;
+          // Matching takes a stack as deep as the text is long.
+          AssertThrow(part.size() < 100 && std::regex_match(part, match, pair),
+                      ExcMessage(entry +
+                                 " consists of `boundary id: times' separated "
+                                 "by commas, but has '" +
+                                 excerpt(part) + "'."));
+          const types::boundary_id id = std::stoul(match[1]);
+          AssertThrow(ids.count(id) == 1,
+                      ExcMessage(
+                        entry + " names the boundary id " + std::to_string(id) +
+                        ", but the mesh has the ids " + list(ids) + "."));
+          AssertThrow(result.emplace(id, std::stoul(match[2])).second,
+                      ExcMessage(entry + " names the boundary id " +
+                                 std::to_string(id) + " twice."));
+        }
+      return result;
+    }
+
+
+
+    /// About how many cells there will be, from below: each face brings a cell
+    /// to be halved, and 2^(dim-1) faces in its place.
+    template <int dim>
+    double
+    n_cells_after(
+      const std::map<types::boundary_id, unsigned int> &times,
+      const parallel::distributed::Triangulation<dim>  &triangulation)
+    {
+      double n = 0.;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            n += 1.;
+            for (const unsigned int f : cell->face_indices())
+              {
+                const auto found = cell->at_boundary(f) ?
+                                     times.find(cell->face(f)->boundary_id()) :
+                                     times.end();
+                if (found != times.end())
+                  for (unsigned int pass = 0; pass < found->second; ++pass)
+                    n +=
+                      std::ldexp(Utilities::pow(2, dim) - 1, (dim - 1) * pass);
+              }
+          }
+      return Utilities::MPI::sum(n, triangulation.get_communicator());
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  refine_mesh(const GeometryParameters                  &geometry,
+              parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    std::map<types::boundary_id, unsigned int> times;
+    if (!Utilities::trim(geometry.boundary_refinements).empty())
+      times =
+        boundary_refinements(geometry.boundary_refinements, triangulation);
+
+    // Halving is exact and indices suffice up to here.
+    const unsigned int global = geometry.global_refinements;
+    unsigned int       local  = 0;
+    for (const auto &pair : times)
+      local = std::max(local, pair.second);
+    const unsigned int n_levels = 18;
+    AssertThrow(global <= n_levels && global + local <= n_levels,
+                ExcMessage(
+                  "'Geometry/Global refinements' = " + std::to_string(global) +
+                  " with " + std::to_string(local) +
+                  " further ones at boundaries; together, " +
+                  std::to_string(n_levels) + " are possible."));
+    const MPI_Comm comm = triangulation.get_communicator();
+    if (global > 0)
+      check_mesh_size(dim,
+                      std::ldexp(triangulation.n_cells(0), dim * global),
+                      "'Geometry/Global refinements' = " +
+                        std::to_string(global),
+                      comm);
+
+    triangulation.refine_global(global);
+    if (local > 0)
+      check_mesh_size(dim,
+                      n_cells_after(times, triangulation),
+                      "'Geometry/Boundary refinements' = " +
+                        excerpt(geometry.boundary_refinements),
+                      comm);
+    for (unsigned int pass = 0; pass < local; ++pass)
+      {
+        // A cell may touch the boundary in a vertex or an edge only.
+        std::vector<bool> touches(triangulation.n_vertices(), false);
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (!cell->is_artificial())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->at_boundary(f))
+                {
+                  const auto face  = cell->face(f);
+                  const auto found = times.find(face->boundary_id());
+                  if (found != times.end() && pass < found->second)
+                    for (const unsigned int v : face->vertex_indices())
+                      touches[face->vertex_index(v)] = true;
+                }
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int v : cell->vertex_indices())
+              if (touches[cell->vertex_index(v)])
+                cell->set_refine_flag();
+        triangulation.execute_coarsening_and_refinement();
+      }
+  }
+
+
+
+  template void
+  refine_mesh(const GeometryParameters &,
+              parallel::distributed::Triangulation<2> &);
+  template void
+  refine_mesh(const GeometryParameters &,
+              parallel::distributed::Triangulation<3> &);
+} // namespace Viscoplastic

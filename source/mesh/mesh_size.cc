@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/mesh/mesh_size.h>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// Of this computer, in bytes, or less if the process may have less.
+    double
+    physical_memory()
+    {
+      double       bytes = std::numeric_limits<double>::infinity();
+      const double pages = sysconf(_SC_PHYS_PAGES);
+      if (pages > 0.)
+        bytes = pages * sysconf(_SC_PAGESIZE);
+      rlimit limit;
+      if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        bytes = std::min(bytes, static_cast<double>(limit.rlim_cur));
+      return bytes;
+    }
+
+
+
+    unsigned int
+    n_ranks_on_this_computer(const MPI_Comm communicator)
+    {
+      MPI_Comm computer;
+      AssertThrowMPI(MPI_Comm_split_type(
+        communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &computer));
+      const unsigned int n = Utilities::MPI::n_mpi_processes(computer);
+      AssertThrowMPI(MPI_Comm_free(&computer));
+      return n;
+    }
+  } // namespace
+
+
+
+  void
+  check_mesh_size(const unsigned int dim,
+                  const double       n_cells,
+                  const std::string &cause,
+                  const MPI_Comm     communicator)
+  {
+    // There are about as many nodes as cells. Trilinos counts with signed
+    // numbers of 32 bits, unknowns as well as the entries of a rank's matrix.
+    constexpr double   most       = std::numeric_limits<int>::max();
+    const double       n_unknowns = dim * n_cells;
+    const double       n_entries  = n_unknowns * (dim == 2 ? 18. : 81.);
+    const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
+
+    std::ostringstream message;
+    message << cause << " would make about " << n_cells << " cells and "
+            << n_unknowns << " unknowns, ";
+    AssertThrow(n_unknowns <= most,
+                ExcMessage(message.str() + "more than can be numbered (" +
+                           std::to_string(std::numeric_limits<int>::max()) +
+                           ")."));
+    AssertThrow(n_entries / n_ranks <= most,
+                ExcMessage(
+                  message.str() + "which is too much for " +
+                  (n_ranks == 1 ? "one MPI rank" :
+                                  std::to_string(n_ranks) + " MPI ranks") +
+                  ", whose matrix would have more entries than can be "
+                  "numbered; take at least " +
+                  std::to_string(
+                    static_cast<unsigned int>(std::ceil(n_entries / most))) +
+                  "."));
+
+    // Measured: mesh and spaces take 760 (2D) and 1280 bytes (3D) a cell. The
+    // solver takes several times as much: this refuses only what must fail.
+    const double n_bytes = n_cells / n_ranks *
+                           n_ranks_on_this_computer(communicator) *
+                           (dim == 2 ? 760. : 1280.);
+    const double n_possible = physical_memory();
+    message << "whose mesh alone takes " << std::ceil(n_bytes / 1e9)
+            << " GB of memory, and there are "
+            << std::floor(n_possible / 1e8) / 10.
+            << " GB; --check says what a mesh needs.";
+    // Computers may differ, and all ranks have to throw.
+    const bool is_possible =
+      Utilities::MPI::min(n_bytes <= n_possible ? 1 : 0, communicator) == 1;
+    AssertThrow(is_possible, ExcMessage(message.str()));
+  }
+} // namespace Viscoplastic

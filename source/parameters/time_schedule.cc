@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/parameters/time_schedule.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// More are a slip of the pen, and would not fit into the type of n.
+    constexpr double max_n_steps = 1e9;
+
+
+
+    /// The end of step j of a phase.
+    double
+    step_end(const TimeSchedule::Phase &phase, const unsigned int j)
+    {
+      return j == phase.n_steps ?
+               phase.end :
+               phase.start + (phase.end - phase.start) * j / phase.n_steps;
+    }
+  } // namespace
+
+
+
+  TimeSchedule::TimeSchedule(const std::string &text)
+  {
+    double start = 0., n_all_steps = 0.;
+    for (const std::string &phase : Utilities::split_string_list(text, ','))
+      {
+        const auto parts   = Utilities::split_string_list(phase, ':');
+        double     end     = 0.;
+        int        n_steps = 0;
+        try
+          {
+            if (parts.size() == 2)
+              {
+                end = Utilities::string_to_double(parts[0]);
+                // Not as an integer, which large numbers would wrap.
+                const double number = Utilities::string_to_double(parts[1]);
+                if (number == std::floor(number))
+                  n_steps =
+                    static_cast<int>(std::clamp(number, 0., 2. * max_n_steps));
+              }
+          }
+        catch (const std::exception &)
+          {
+            n_steps = 0; // refused below
+          }
+        AssertThrow(n_steps > 0,
+                    ExcMessage("'Time/Phases': '" + excerpt(phase) +
+                               "' is not of the form `end time: number of "
+                               "steps' with a positive number of steps."));
+        std::ostringstream message;
+        message << "'Time/Phases': the end time of '" << excerpt(phase)
+                << "' must be finite and lie after " << std::setprecision(15)
+                << start << ".";
+        AssertThrow(std::isfinite(end) && end > start,
+                    ExcMessage(message.str()));
+        const double step = (end - start) / n_steps;
+        AssertThrow(step > 1e-14 * end,
+                    ExcMessage("'Time/Phases': the steps of '" +
+                               excerpt(phase) +
+                               "' are shorter than 1e-14 of "
+                               "its end time, which is what rounding leaves "
+                               "of times; take fewer steps."));
+        AssertThrow(step >= least_time && end <= largest_time,
+                    ExcMessage(out_of_range("'Time/Phases': the " +
+                                              std::string(step < least_time ?
+                                                            "time step" :
+                                                            "end time") +
+                                              " of '" + excerpt(phase) + "'",
+                                            step < least_time ? step : end,
+                                            least_time,
+                                            largest_time)));
+        n_all_steps += n_steps;
+        AssertThrow(n_all_steps <= max_n_steps,
+                    ExcMessage("'Time/Phases' has more than 1e9 steps up to '" +
+                               excerpt(phase) + "'; take fewer."));
+        phases.push_back({start, end, static_cast<unsigned int>(n_steps)});
+        start = end;
+      }
+    AssertThrow(!phases.empty(),
+                ExcMessage("'Time/Phases' is empty; give at least one phase as "
+                           "`end time: number of steps'."));
+  }
+
+
+
+  unsigned int
+  TimeSchedule::n_steps() const
+  {
+    unsigned int n = 0;
+    for (const Phase &phase : phases)
+      n += phase.n_steps;
+    return n;
+  }
+
+
+
+  TimeStep
+  TimeSchedule::step(const unsigned int n) const
+  {
+    Assert(n >= 1 && n <= n_steps(), ExcIndexRange(n, 1, n_steps() + 1));
+    unsigned int i = n; // counted within the phase, from 1
+    auto         p = phases.begin();
+    for (; i > p->n_steps; ++p)
+      i -= p->n_steps;
+    const double t_old = step_end(*p, i - 1), t = step_end(*p, i);
+    return {n, t_old, t, t - t_old};
+  }
+
+
+
+  unsigned int
+  TimeSchedule::phase_ending_at(const double t) const
+  {
+    for (unsigned int i = 0; i < phases.size(); ++i)
+      if (phases[i].end == t)
+        return i + 1;
+    return 0;
+  }
+
+
+
+  const TimeSchedule::Phase &
+  TimeSchedule::phase_at(const double t) const
+  {
+    Assert(t >= 0. && t < end_time(), ExcIndexRange(t, 0., end_time()));
+    auto p = phases.begin();
+    while (t >= p->end)
+      ++p;
+    return *p;
+  }
+
+
+
+  double
+  TimeSchedule::next_time(const double t) const
+  {
+    const Phase &phase = phase_at(t);
+    // A guess that rounding may have moved by one.
+    unsigned int j = static_cast<unsigned int>(
+      std::clamp((t - phase.start) / phase.step_size(),
+                 1.,
+                 static_cast<double>(phase.n_steps)));
+    while (j > 1 && step_end(phase, j - 1) > t)
+      --j;
+    while (step_end(phase, j) <= t)
+      ++j;
+    return step_end(phase, j);
+  }
+
+
+
+  TimeStep
+  TimeSchedule::largest_step() const
+  {
+    unsigned int n       = 1;
+    TimeStep     largest = step(n);
+    for (const Phase &phase : phases)
+      {
+        if (const TimeStep first = step(n); first.k > largest.k)
+          largest = first;
+        n += phase.n_steps;
+      }
+    return largest;
+  }
+} // namespace Viscoplastic

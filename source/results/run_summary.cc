@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/results/run_summary.h>
+
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::string
+    number(const double value)
+    {
+      std::ostringstream text;
+      text << std::setprecision(5) << value;
+      return text.str();
+    }
+
+
+
+    std::string
+    with_uncertainty(const double value, const double *coarser)
+    {
+      std::string text = number(value);
+      if (coarser != nullptr)
+        {
+          std::ostringstream difference;
+          difference << std::setprecision(2) << std::abs(value - *coarser);
+          text += " +- " + difference.str();
+        }
+      return text;
+    }
+
+
+
+    template <int dim>
+    std::string
+    components(const Tensor<1, dim> &vector,
+               const Tensor<1, dim> *coarser = nullptr)
+    {
+      std::string text;
+      for (unsigned int d = 0; d < dim; ++d)
+        text += (d > 0 ? "; " : "") +
+                with_uncertainty(vector[d], coarser ? &(*coarser)[d] : nullptr);
+      return text;
+    }
+
+
+
+    void
+    print_row(std::ostream      &out,
+              const std::string &name,
+              const std::string &value)
+    {
+      out << "  " << std::left << std::setw(26) << name << std::right << value
+          << '\n';
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  RunSummary<dim>::print(std::ostream &out, const RunSummary *coarser) const
+  {
+    const auto row = [&](const std::string &name, const auto member) {
+      const auto &value = this->*member;
+      if (value)
+        print_row(out,
+                  name,
+                  with_uncertainty(*value,
+                                   coarser ? &*(coarser->*member) : nullptr));
+    };
+    out << "At t = " << number(t)
+        << (coarser ? " (+- what twice the mesh width and the time steps "
+                      "change):\n" :
+                      ":\n");
+    if (friction_force)
+      print_row(out,
+                "friction force",
+                components(*friction_force,
+                           coarser ? &*coarser->friction_force : nullptr));
+    if (coarser)
+      row("slipping area", &RunSummary::slipping_area);
+    for (const auto &[id, force] : reactions)
+      print_row(out,
+                "reaction of boundary " + std::to_string(id),
+                components(force,
+                           coarser ? &coarser->reactions.at(id) : nullptr));
+    if (coarser)
+      for (unsigned int i = 0; i < point_displacements.size(); ++i)
+        print_row(out,
+                  "displacement of point " + std::to_string(i),
+                  components(point_displacements[i],
+                             &coarser->point_displacements[i]));
+    print_row(out,
+              "external work",
+              with_uncertainty(external_work,
+                               coarser ? &coarser->external_work : nullptr));
+    print_row(out,
+              "stored energy",
+              with_uncertainty(stored_energy,
+                               coarser ? &coarser->stored_energy : nullptr));
+    row("viscous dissipation", &RunSummary::viscous_dissipation);
+    row("friction dissipation", &RunSummary::friction_dissipation);
+    if (adaptation_energy)
+      print_row(out, "energy from new meshes", number(*adaptation_energy));
+    print_row(out, "energy balance defect", number(energy_balance_defect));
+    if (error_estimate)
+      print_row(out, "error estimate", number(*error_estimate));
+
+    const auto with_time = [](const Largest &largest) {
+      return number(largest.value) + " at t = " + number(largest.t);
+    };
+    out << "Largest in the run:\n";
+    print_row(out, "displacement", with_time(displacement));
+    print_row(out, "von Mises stress", with_time(von_mises));
+    if (friction_force)
+      print_row(out,
+                "slipping area",
+                number(slip_area.value) + " of " + number(friction_area) +
+                  " at t = " + number(slip_area.t));
+    if (capped_volume.value > 0.)
+      print_row(out, "volume beyond the cap", with_time(capped_volume));
+    if (stiffness.value > 0.)
+      {
+        std::ostringstream place;
+        place << std::setprecision(3) << critical_position;
+        print_row(out,
+                  "time step times r",
+                  with_time(stiffness) + ", x = (" + place.str() + ")");
+      }
+    if (steps)
+      {
+        std::string text = std::to_string(n_steps) + " accepted";
+        const auto  add  = [&](const unsigned int n, const std::string &what) {
+          if (n > 0)
+            text += ", " + std::to_string(n) + ' ' + what;
+        };
+        add(steps->rejected, "rejected for their error");
+        add(steps->events, "rejected to resolve events of slip");
+        add(steps->failed, "that failed");
+        out << "Steps: " << text << '\n';
+        if (steps->unresolved > 0)
+          out << "Note: " << steps->unresolved
+              << " steps of the smallest size have larger errors than 'Step "
+                 "control/Tolerance' allows: where the data jump, or because "
+                 "'Smallest step' is too large.\n";
+      }
+    if (implicit_steps)
+      out << "Steps by backward Euler, beyond the limit 2/r: "
+          << *implicit_steps << " of " << n_steps << '\n';
+
+    const auto error =
+      [&](const std::string &name, const double value, const double norm) {
+        if (norm > 0.)
+          print_row(out,
+                    "error of " + name,
+                    number(value) + " (" + number(100. * value / norm) +
+                      " % of the exact solution)");
+      };
+    error("u in energy", largest_error.energy, largest_exact.energy);
+    error("u in H1", largest_error.h1, largest_exact.h1);
+    error("stress in L2", largest_error.stress, largest_exact.stress);
+    error("multiplier in L2",
+          largest_error.multiplier,
+          largest_exact.multiplier);
+    if (errors)
+      {
+        const auto part = [&](const std::string &name, const double value) {
+          const double       size = errors->largest_energy_norm;
+          std::ostringstream text;
+          text << std::setprecision(2) << value;
+          if (size > 0.)
+            text << " (" << 100. * value / size << " %)";
+          print_row(out, name, text.str());
+        };
+        out << "Estimated error in the energy norm, largest at t = "
+            << number(errors->t)
+            << " (without what the mesh\nhas done to the memory z of earlier "
+               "steps), and relative to the solution:\n";
+        part("mesh", errors->largest.space);
+        if (viscous_dissipation)
+          part("time steps", errors->largest.time);
+        part("iterations", errors->largest.algebraic);
+        if (errors->largest.initial > 0.)
+          part("initial data", errors->largest.initial);
+        part("sum", errors->largest.total());
+      }
+  }
+
+
+
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  RunSummary<dim>::quantities() const
+  {
+    std::vector<std::pair<std::string, double>> result;
+    const auto add = [&](const std::string &name, const Tensor<1, dim> &value) {
+      for (unsigned int d = 0; d < dim; ++d)
+        result.emplace_back(name + "_" + "xyz"[d], value[d]);
+    };
+    if (friction_force)
+      {
+        add("friction_force", *friction_force);
+        result.emplace_back("slip_area", *slipping_area);
+        result.emplace_back("friction_dissipation", *friction_dissipation);
+      }
+    for (const auto &[id, force] : reactions)
+      add("reaction_" + std::to_string(id), force);
+    if (viscous_dissipation)
+      result.emplace_back("viscous_dissipation", *viscous_dissipation);
+    result.emplace_back("stored_energy", stored_energy);
+    result.emplace_back("external_work", external_work);
+    result.emplace_back("max_displacement", max_displacement);
+    for (unsigned int i = 0; i < point_displacements.size(); ++i)
+      add("point" + std::to_string(i), point_displacements[i]);
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  write_uncertainties(const std::string     &file,
+                      const RunSummary<dim> &summary,
+                      const RunSummary<dim> &coarser)
+  {
+    std::ofstream out(file);
+    out << std::setprecision(12) << "quantity,value,uncertainty\n";
+    const auto fine = summary.quantities(), coarse = coarser.quantities();
+    AssertDimension(fine.size(), coarse.size());
+    for (unsigned int i = 0; i < fine.size(); ++i)
+      out << fine[i].first << ',' << fine[i].second << ','
+          << std::abs(fine[i].second - coarse[i].second) << '\n';
+    out.close();
+    AssertThrow(out, ExcMessage("'" + file + "' cannot be written."));
+  }
+
+
+
+  void
+  print_seconds(std::ostream                        &out,
+                const std::map<std::string, double> &seconds,
+                const double                         first_set_up,
+                const double                         total,
+                const bool                           has_viscosity,
+                const bool                           has_friction)
+  {
+    // In this order; phases without a text follow under their own names.
+    const std::vector<std::pair<std::string, std::string>> texts{
+      {"set-up", "spaces, matrix, factorisation or multigrid"},
+      {"rate", "viscosity: flow of the law in all cells"},
+      {"tangent", "backward Euler: matrix of the step with its set-up"},
+      {"load", "loads and prescribed displacements"},
+      {"contact",
+       has_friction ? "friction and elasticity together: all solves" :
+                      "elasticity: linear solves"},
+      {"estimate", "error estimates"},
+      {"adaptation", "adaptivity: new meshes with their set-up"},
+      {"balance", "energies, reactions, statistics.csv"},
+      {"output", "fields for ParaView"},
+      {"checkpoint", "checkpoints"}};
+    std::map<std::string, double> remaining(seconds);
+    double                        rest = total;
+
+    const auto print_phase =
+      [&](const std::string &name, const double time, const std::string &text) {
+        std::ostringstream digits;
+        digits << std::fixed << std::setprecision(3) << time;
+        out << "  " << std::left << std::setw(12) << name << std::right
+            << std::setw(9) << digits.str() << std::setw(5)
+            << std::lround(total > 0. ? 100. * time / total : 0.) << " %"
+            << (text.empty() ? "" : "  ") << text << '\n';
+        rest -= time;
+      };
+    out << "Seconds by phase:\n";
+    if (!has_viscosity)
+      remaining.erase("rate");
+    if (remaining.count("set-up") > 0)
+      remaining["set-up"] = first_set_up;
+    for (const auto &[name, text] : texts)
+      {
+        const auto phase = remaining.find(name);
+        if (phase == remaining.end())
+          continue;
+        print_phase(name, phase->second, text);
+        remaining.erase(phase);
+      }
+    for (const auto &[name, time] : remaining)
+      print_phase(name, time, "");
+    const double others = rest;
+    print_phase("rest", others, "mesh, initial state, progress");
+    print_phase("whole run", total, "");
+  }
+
+
+
+  template struct RunSummary<2>;
+  template struct RunSummary<3>;
+  template void
+  write_uncertainties<2>(const std::string &,
+                         const RunSummary<2> &,
+                         const RunSummary<2> &);
+  template void
+  write_uncertainties<3>(const std::string &,
+                         const RunSummary<3> &,
+                         const RunSummary<3> &);
+} // namespace Viscoplastic

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/results/statistics.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  Statistics::Statistics(const std::string &file_name)
+    : name(file_name)
+    , file(file_name)
+  {
+    AssertThrow(file, ExcMessage("The file '" + name + "' cannot be written."));
+  }
+
+
+
+  Statistics::Statistics(const std::string &file_name,
+                         const unsigned int last_step)
+    : name(file_name)
+  {
+    std::ifstream  old_file(name, std::ios::binary);
+    std::string    line;
+    std::uintmax_t size     = 0;
+    const auto     get_line = [&]() {
+      // A line without its end is unfinished.
+      if (!std::getline(old_file, line) || old_file.eof())
+        return false;
+      size += line.size() + 1;
+      return true;
+    };
+    unsigned int n_rows = 0;
+    if (get_line())
+      {
+        std::istringstream header(line);
+        std::string        column;
+        while (std::getline(header, column, ','))
+          columns.push_back(column);
+        while (n_rows <= last_step && get_line() &&
+               line.compare(0, line.find(','), std::to_string(n_rows)) == 0)
+          ++n_rows;
+      }
+    AssertThrow(n_rows == last_step + 1,
+                ExcMessage("The rows up to step " + std::to_string(last_step) +
+                           ", with which the run would go on, are not in '" +
+                           name + "'."));
+    old_file.close();
+    std::error_code error;
+    std::filesystem::resize_file(name, size, error);
+    file.open(name, std::ios::app);
+    AssertThrow(!error && file,
+                ExcMessage("The file '" + name + "' cannot be written."));
+  }
+
+
+
+  void
+  Statistics::add(const std::string &column, const double value)
+  {
+    row.emplace_back(column, value);
+  }
+
+
+
+  void
+  Statistics::end_row()
+  {
+    if (columns.empty())
+      {
+        for (const auto &entry : row)
+          {
+            file << (columns.empty() ? "" : ",") << entry.first;
+            columns.push_back(entry.first);
+          }
+        file << '\n';
+      }
+    bool same = columns.size() == row.size();
+    for (unsigned int i = 0; same && i < row.size(); ++i)
+      same = columns[i] == row[i].first;
+    AssertThrow(same,
+                ExcMessage("The columns of '" + name +
+                           "' are not those of this run, which cannot go on "
+                           "with it."));
+    // A result that is none must not pass for one. No limit is imposed where
+    // nothing flows.
+    for (const auto &[column, value] : row)
+      {
+        const bool is_limit = column == "step_limit" && value > 0.;
+        // Not known between the times of a reference.
+        const bool is_unknown =
+          column.rfind("error_", 0) == 0 || column.rfind("exact_", 0) == 0;
+        if (std::isfinite(value) || is_limit || is_unknown)
+          continue;
+        std::ostringstream message;
+        message << "In step " << row[0].second << ", '" << column << "' is "
+                << value
+                << "; it must be finite: the numbers of this scene leave the "
+                   "range of floating-point numbers, choose other units or "
+                   "look for a datum that is too large or too small.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+    file << std::setprecision(12);
+    for (unsigned int i = 0; i < row.size(); ++i)
+      file << (i == 0 ? "" : ",") << row[i].second;
+    file << std::endl;
+    AssertThrow(file,
+                ExcMessage("Writing to '" + name +
+                           "' failed; is the disk full?"));
+    row.clear();
+  }
+
+
+
+  void
+  Statistics::synchronise()
+  {
+    // The stream has no buffer left: end_row() flushes.
+    Viscoplastic::synchronise(name);
+  }
+} // namespace Viscoplastic

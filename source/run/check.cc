@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/error/solution_errors.h>
+#include <viscoplastic_contact/linear_solvers/bulk_solver_factory.h>
+#include <viscoplastic_contact/run/viscoplastic_contact.h>
+#include <viscoplastic_contact/time_stepping/explicit_step.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /**
+     * Memory in bytes that matrix, solver and vectors take beyond mesh and
+     * spaces: fitted to measurements (doc/solvers.md), good to a factor of
+     * 1.5 or so.
+     */
+    double
+    solver_memory(const unsigned int dim,
+                  const double       n_dofs,
+                  const double       n_face_dofs,
+                  const bool         direct)
+    {
+      // 12 bytes an entry, 9 or 27 neighbours a node; some 20 vectors.
+      const double matrix  = n_dofs * (dim == 2 ? 18. : 81.) * 12.;
+      const double vectors = n_dofs * 20. * 8.;
+      if (!direct) // a second matrix without the prescribed rows, and ML
+        return 2. * matrix + vectors + n_dofs * (dim == 2 ? 850. : 2700.);
+      // Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
+      const double factor = dim == 2 ?
+                              n_dofs * 78. * std::log2(std::max(n_dofs, 2.)) :
+                              n_dofs * 190. * std::cbrt(n_dofs);
+      return matrix + vectors + factor + 2. * 8. * n_face_dofs * n_face_dofs;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_steps()
+  {
+    if (!scene.has_viscosity())
+      return;
+    const State<dim> &state = accepted.state;
+    accepted.rate =
+      evaluate_flow(discretization->laws, state.u, state.z, state.t);
+    const FlowRate &initial = *accepted.rate;
+    const double    rate    = initial.relaxation_rate;
+    const bool      has_limit =
+      !is_implicit() && !changes_scheme() && !control.needs_limit();
+    if (has_limit)
+      check_stability<dim>(parameters, initial, scene.schedule.step(1));
+    if (rate == 0.)
+      return;
+    out << "Stability limit 2/r of the initial state: " << 2. / rate
+        << (is_implicit() ? " of explicit schemes\n" : "\n");
+    if (!has_limit)
+      return;
+    const TimeStep largest = scene.schedule.largest_step();
+    if (!is_stable(initial, largest.k))
+      {
+        std::ostringstream message;
+        message << "Warning: the time step " << largest.k << " of step "
+                << largest.n << " (t = " << largest.t
+                << ") exceeds this limit; the run will end there unless the "
+                   "limit has grown by then. Take more steps in "
+                   "'Time/Phases', or set 'Time/Scheme' = backward Euler.";
+        console.remark(message.str());
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check()
+  {
+    make_mesh();
+    dof_handler.distribute_dofs(fe);
+    discretization = std::make_unique<Discretization<dim>>(dof_handler, scene);
+    const Discretization<dim> &d = *discretization;
+    announce_mesh();
+    announce_held_faces();
+    recorder.set_mesh(d);
+
+    check_references();
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      check_exact_solution(d.space);
+    // The initial data, and where they need no solution, the first step.
+    accepted.state =
+      make_initial_state(d.sampling, parameters.initial_state.equilibrate);
+    // Equilibrium at t = 0 would need a solution.
+    if (!parameters.initial_state.equilibrate)
+      {
+        check_compatibility(d.loads.assemble(0.));
+        check_steps();
+      }
+    const unsigned int n_steps = scene.schedule.n_steps();
+
+    // The data of later times, of at most a hundred steps.
+    const unsigned int stride = (n_steps + 99) / 100;
+    DistributedVector  u      = d.space.owned_vector();
+    for (unsigned int i = 1; i < n_steps + stride; i += stride)
+      {
+        const TimeStep step = scene.schedule.step(std::min(i, n_steps));
+        d.loads.assemble(step.t);
+        d.space.set_prescribed(step.t, u);
+        d.laws.check(step.t);
+        if (d.face)
+          {
+            d.face->bounds(step.t);
+            d.face->foundation_step(step.t_old, step.t);
+          }
+      }
+
+    const unsigned int n_face_dofs = d.face ? d.face->layout().n_dofs() : 0;
+    const bool         direct      = is_direct({parameters.solver.linear_solver,
+                                                d.moduli.max_poissons_ratio(),
+                                                d.n_solves},
+                                  dim,
+                                  dof_handler.n_dofs(),
+                                  n_face_dofs,
+                                  communicator);
+    Utilities::System::MemoryStats now;
+    Utilities::System::get_memory_stats(now);
+    const double bytes =
+      Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
+                          communicator) +
+      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct) +
+      (is_implicit() || changes_scheme() ?
+         // A second matrix, and two tensors of rank 4 a sample.
+         dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
+           2. * sizeof(SymmetricTensor<4, 3>) * d.sampling.n_samples *
+             triangulation.n_global_active_cells() :
+         0.);
+    out << "Linear solver: "
+        << (direct ? "direct (CHOLMOD)" : "conjugate gradients, multigrid (ML)")
+        << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()
+        << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
+        << (scene.is_adaptive() ? " on the initial mesh" : "")
+        << "\nThe scene is valid"
+        << (console.remarks().empty() ? "." : ", with the remarks above.")
+        << std::endl;
+  }
+
+
+
+  template void
+  ViscoplasticContact<2>::check();
+  template void
+  ViscoplasticContact<3>::check();
+} // namespace Viscoplastic

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/config.h>
+
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/run/command_line.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// A part of the sources as it can be named from here, if the sources are
+    /// still where the program was built.
+    std::string
+    source_path(const std::string &path)
+    {
+      std::error_code             error;
+      const std::filesystem::path full =
+        std::filesystem::path(VISCOPLASTIC_CONTACT_SOURCE_DIRECTORY) / path;
+      if (!std::filesystem::exists(full, error))
+        return path;
+      const std::string from_here =
+        std::filesystem::proximate(full, error).string();
+      return error || from_here.compare(0, 2, "..") == 0 ? full.string() :
+                                                           from_here;
+    }
+  } // namespace
+
+
+
+  CommandLine
+  read_command_line(const std::vector<std::string> &arguments)
+  {
+    using Task = CommandLine::Task;
+    const std::vector<std::string> flags{
+      "--help", "--version", "--describe", "--check", "--quiet", "--restart"};
+    const std::vector<std::string> with_value{"--set", "--log", "--price"};
+    const auto contains = [](const std::vector<std::string> &list,
+                             const std::string              &item) {
+      return std::find(list.begin(), list.end(), item) != list.end();
+    };
+
+    CommandLine result;
+    if (arguments.empty())
+      result.task = Task::guide;
+    bool        only_files = false;
+    std::string task_option;
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+      {
+        const std::string &argument = arguments[i];
+        if (!only_files && argument == "study" && result.files.empty())
+          {
+            result.task = Task::study;
+            task_option = "study";
+            continue;
+          }
+        if (only_files || argument.empty() || argument[0] != '-')
+          {
+            std::error_code error;
+            AssertThrow(argument.find('=') == std::string::npos ||
+                          std::filesystem::exists(argument, error),
+                        ExcMessage("There is no parameter file '" +
+                                   excerpt(argument) +
+                                   "'; to give an entry a value write --set '" +
+                                   excerpt(argument) + "'."));
+            result.files.push_back(argument);
+            continue;
+          }
+        if (argument == "--")
+          {
+            only_files = true;
+            continue;
+          }
+        const std::size_t equals = argument.find('=');
+        std::string       option = argument.substr(0, equals);
+        std::string       value =
+          equals == std::string::npos ? "" : argument.substr(equals + 1);
+        if (option == "-h")
+          option = "--help";
+
+        if (contains(with_value, option))
+          {
+            if (equals == std::string::npos)
+              {
+                AssertThrow(i + 1 < arguments.size(),
+                            ExcMessage("The option " + option +
+                                       (option == "--set" ?
+                                          " needs 'Section/Entry=value'" :
+                                        option == "--price" ?
+                                          " needs a relative error" :
+                                          " needs the name of a file") +
+                                       " after it."));
+                value = arguments[++i];
+              }
+            if (option == "--set")
+              result.overrides.push_back(value);
+            else if (option == "--price")
+              {
+                try
+                  {
+                    result.price = Utilities::string_to_double(value);
+                  }
+                catch (const std::exception &)
+                  {
+                    result.price = 0.; // refused below
+                  }
+                AssertThrow(result.price >= 1e-6 && result.price <= 0.5,
+                            ExcMessage("The option --price needs a relative "
+                                       "error from 1e-6 to 0.5 after it, such "
+                                       "as 0.01, not '" +
+                                       excerpt(value) + "'."));
+              }
+            else
+              {
+                AssertThrow(!value.empty(),
+                            ExcMessage("The option --log needs the name of a "
+                                       "file after it."));
+                AssertThrow(std::filesystem::path(value).extension() != ".prm",
+                            ExcMessage("The option --log would overwrite '" +
+                                       excerpt(value) +
+                                       "', which looks like a parameter file; "
+                                       "choose another name."));
+                result.log = value;
+              }
+            continue;
+          }
+
+        if (!contains(flags, option))
+          {
+            std::vector<std::string> options(flags);
+            options.insert(options.end(), with_value.begin(), with_value.end());
+            const std::string nearest = nearest_name(option, options);
+            AssertThrow(false,
+                        ExcMessage(
+                          "There is no option '" + excerpt(option) + "'; " +
+                          (nearest.empty() ?
+                             "the options are " + enumeration(options) + "." :
+                             "did you mean " + nearest + "?")));
+          }
+        if (option == "--quiet")
+          result.quiet = true;
+        else if (option == "--restart")
+          result.restart = value == "auto" ? CommandLine::Restart::automatic :
+                                             CommandLine::Restart::yes;
+        else
+          {
+            AssertThrow(task_option.empty() || task_option == option,
+                        ExcMessage("The options " + task_option + " and " +
+                                   option + " exclude each other."));
+            task_option = option;
+            result.task = option == "--help"    ? Task::help :
+                          option == "--version" ? Task::version :
+                          option == "--check"   ? Task::check :
+                          value == "markdown"   ? Task::describe_as_markdown :
+                                                  Task::describe;
+          }
+        AssertThrow(equals == std::string::npos ||
+                      (option == "--describe" &&
+                       (value == "markdown" || value == "prm")) ||
+                      (option == "--restart" && value == "auto"),
+                    ExcMessage(
+                      "The option " + option +
+                      (option == "--describe" ?
+                         " can have the values prm and markdown, not '" :
+                       option == "--restart" ?
+                         " can have the value auto, not '" :
+                         " has no value, such as '") +
+                      excerpt(value) + "'."));
+      }
+
+    const bool reads_scene = result.task == Task::run ||
+                             result.task == Task::check ||
+                             result.task == Task::study;
+    AssertThrow(result.price == 0. || result.task == Task::run ||
+                  result.task == Task::check,
+                ExcMessage("The options " + task_option +
+                           " and --price exclude each other."));
+    AssertThrow(!reads_scene || !result.files.empty(),
+                ExcMessage("There is no parameter file among the arguments; "
+                           "write viscoplastic_contact [options] scene.prm."));
+    AssertThrow(
+      result.task == Task::run || result.restart == CommandLine::Restart::no,
+      ExcMessage(result.task == Task::study ?
+                   "A study finds its finished runs without --restart." :
+                   "The options " + task_option +
+                     " and --restart exclude each other."));
+    AssertThrow(reads_scene ||
+                  (result.files.empty() && result.overrides.empty()),
+                ExcMessage("The option " + task_option +
+                           " goes without parameter files and --set."));
+    return result;
+  }
+
+
+
+  std::string
+  help_text()
+  {
+    return "Usage: viscoplastic_contact [options] scene.prm [more.prm ...]\n"
+           "       viscoplastic_contact study [options] scene.prm [more.prm "
+           "...]\n"
+           "\n"
+           "Computes the scene that the parameter file describes. Further "
+           "files override\n"
+           "entries of the earlier ones. `study' computes it on several "
+           "meshes and with\n"
+           "several steps, as 'Study' describes, and says what accuracy costs. "
+           "What is\n"
+           "finished is not computed again.\n"
+           "\n"
+           "  --set 'SECTION/ENTRY=VALUE'  override an entry of the files; may "
+           "be repeated\n"
+           "  --check                      validate the scene and print its "
+           "effects, size,\n"
+           "                               solver and memory, without "
+           "computing it\n"
+           "  --price ERROR                find the cheapest mesh and steps "
+           "for this\n"
+           "                               relative error by a few short runs, "
+           "say what\n"
+           "                               they cost, and run them; with "
+           "--check say it only\n"
+           "  --describe[=markdown]        print a parameter file with every "
+           "entry, its\n"
+           "                               meaning, unit, default and allowed "
+           "values\n"
+           "  --restart                    go on from the last checkpoint of "
+           "this scene\n"
+           "  --restart=auto               the same, or begin where there is "
+           "none\n"
+           "  --quiet                      print nothing but errors\n"
+           "  --log FILE                   write the messages to FILE, too\n"
+           "  --version                    print version and libraries\n"
+           "  -h, --help                   print this text\n"
+           "  --                           what follows are files\n"
+           "\n"
+           "Results go to 'Output/Directory', by default output/<scene>/ in "
+           "the working\n"
+           "directory. Exit codes: 0 every step was solved to its tolerance, "
+           "1 something\n"
+           "was wrong (one sentence says what), 2 wrong arguments, 3 ended by "
+           "SIGTERM or\n"
+           "SIGINT after a checkpoint.\n"
+           "\n"
+           "In parallel: mpirun -n 4 viscoplastic_contact scene.prm\n"
+           "\n"
+           "Manual: " +
+           source_path("doc/index.md") + "\n";
+  }
+
+
+
+  std::string
+  guide_text()
+  {
+    const std::string demo = source_path("prm/demos/salt_pillar_2d.prm");
+    return "viscoplastic_contact computes how elastic-viscoplastic bodies "
+           "deform slowly, in\n"
+           "contact with friction on rigid foundations. A parameter file "
+           "describes the scene.\n"
+           "\n"
+           "Run a demo (seconds; the results are for ParaView):\n"
+           "    viscoplastic_contact " +
+           demo +
+           "\n"
+           "See whether a scene is right, and how large, before it runs:\n"
+           "    viscoplastic_contact --check " +
+           demo +
+           "\n"
+           "Begin a scene of your own from a file with every entry "
+           "explained:\n"
+           "    viscoplastic_contact --describe > my_scene.prm\n"
+           "\n"
+           "Other demos are in " +
+           source_path("prm/demos") + ", the manual begins at\n" +
+           source_path("README.md") + " and " + source_path("doc/scene.md") +
+           ".\nAll options: viscoplastic_contact --help\n";
+  }
+
+
+
+  std::string
+  version_text()
+  {
+    return "viscoplastic_contact " VISCOPLASTIC_CONTACT_VERSION
+           " (" VISCOPLASTIC_CONTACT_GIT_REVISION
+           "), deal.II " DEAL_II_PACKAGE_VERSION "\n";
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/checkpoint/checkpoint.h>
+#include <viscoplastic_contact/run/viscoplastic_contact.h>
+
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    const std::string run_file = "run.bin";
+
+    std::string
+    mesh_file(const unsigned int rank)
+    {
+      return "mesh_" + Utilities::int_to_string(rank, 5) + ".bin";
+    }
+
+    std::string
+    fields_file(const unsigned int rank)
+    {
+      return "fields_" + Utilities::int_to_string(rank, 5) + ".bin";
+    }
+
+
+
+    template <typename Archive, typename Memory>
+    void
+    exchange_memory(Archive &archive, std::optional<Memory> &memory)
+    {
+      bool     has_memory = memory.has_value();
+      archive &has_memory;
+      if (!has_memory)
+        return;
+      if (!memory)
+        memory.emplace();
+      archive & memory->built_for.projector & memory->built_for.spring &
+        memory->best_rate & memory->lost_iterations & memory->is_fresh;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  CheckpointStore
+  ViscoplasticContact<dim>::checkpoints() const
+  {
+    const std::string &directory = parameters.checkpoint.directory;
+    return CheckpointStore(directory.empty() ?
+                             results_directory(parameters) + "checkpoint" :
+                             directory,
+                           communicator);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::begin_checkpoints()
+  {
+    const CheckpointStore       store  = checkpoints();
+    const CheckpointParameters &wanted = parameters.checkpoint;
+    if (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.)
+      {
+        store.make_directory();
+        lock_directories();
+      }
+    const CheckpointStore::Removal removal = store.remove_all();
+    for (const std::string &remark : removal.remarks)
+      console.remark(remark);
+    if (removal.n_checkpoints > 0)
+      console.remark("Note: the checkpoints of an earlier run in '" +
+                     store.directory + "' have been removed.");
+  }
+
+
+
+  template <int dim>
+  template <typename Archive>
+  void
+  ViscoplasticContact<dim>::exchange(Archive &archive)
+  {
+    // What record() and estimate() make anew in each step is not here.
+    State<dim> &state = accepted.state;
+    archive &state.n &state.t &state.k &accepted.is_solution;
+    archive &state.friction.slip &state.friction.multiplier &state.friction
+      .sticks;
+    control.exchange(archive);
+    if (error_bar)
+      accepted.errors.exchange(archive);
+    recorder.exchange(archive);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::write_checkpoint()
+  {
+    TimerOutput::Scope    phase(timer, "checkpoint");
+    const unsigned int    rank = Utilities::MPI::this_mpi_process(communicator);
+    const State<dim>     &state = accepted.state;
+    const Vector<double> &indicators =
+      accepted.space_estimate.squared_indicators;
+    CheckpointManifest manifest;
+    manifest.n         = state.n;
+    manifest.t         = state.t;
+    manifest.dimension = dim;
+    manifest.n_ranks   = Utilities::MPI::n_mpi_processes(communicator);
+    manifest.version =
+      VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
+    manifest.parameters = parameters.values();
+
+    std::map<std::string, std::string> files;
+    files[mesh_file(rank)] = pack_mesh(triangulation);
+    files[fields_file(rank)] =
+      pack_fields(discretization->sampling, state, indicators);
+    // Collective, as all of it.
+    auto memory = time_stepper->method().memory();
+    if (rank == 0)
+      {
+        const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
+        BinaryWriter     archive;
+        archive &coarse_mesh.topology &coarse_mesh.vertices;
+        archive &(state.initial_u.size() > 0);
+        archive &(indicators.size() > 0);
+        archive & output->output_times();
+        archive &recorder.elapsed_in_all();
+        exchange(archive);
+        exchange_memory(archive, memory);
+        files[run_file] = archive.bytes();
+        recorder.synchronize(); // whose rows the checkpoint relies on
+      }
+    const CheckpointStore store = checkpoints();
+    store.make_directory(); // unless the scene has asked for checkpoints
+    lock_directories();
+    for (const std::string &remark :
+         store.write(manifest, files, parameters.checkpoint.keep))
+      console.remark(remark);
+  }
+
+
+
+  template <int dim>
+  std::string
+  ViscoplasticContact<dim>::keep_checkpoints(const SignalRequests &signals)
+  {
+    const State<dim>           &state   = accepted.state;
+    const CheckpointParameters &wanted  = parameters.checkpoint;
+    const bool                  is_last = is_finished();
+    bool                        is_due =
+      wanted.every_n_steps > 0 && state.n % wanted.every_n_steps == 0;
+    // The last one, for who adds a phase later.
+    is_due |=
+      is_last && (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.);
+    // The clock of one rank counts.
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      is_due |=
+        wanted.wall_time_interval > 0. &&
+        recorder.elapsed() - last_checkpoint >= wanted.wall_time_interval;
+
+    const SignalRequests::Request request = signals.agree(communicator, is_due);
+    const bool                    stops   = request.stop != nullptr && !is_last;
+    if (!request.checkpoint && !stops)
+      return "";
+    write_checkpoint();
+    last_checkpoint = recorder.elapsed();
+    std::ostringstream text;
+    text << "step " << state.n << " (t = " << state.t << "): '"
+         << checkpoints().path(state.n) << "'";
+    if (!stops)
+      {
+        // Regular ones need no words.
+        if (!is_due)
+          out << "Checkpoint of " << text.str() << std::endl;
+        return "";
+      }
+    const std::string interruption = std::string(request.stop) +
+                                     " has ended the run after the checkpoint "
+                                     "of " +
+                                     text.str() + "; --restart goes on.";
+    console.log() << interruption << std::endl;
+    return interruption;
+  }
+
+
+
+  template <int dim>
+  std::optional<CheckpointManifest>
+  ViscoplasticContact<dim>::find_checkpoint(const CommandLine::Restart restart)
+  {
+    using Restart = CommandLine::Restart;
+    if (restart == Restart::no)
+      return {};
+    std::vector<std::string> remarks;
+    auto                     found = checkpoints().newest(remarks);
+    for (const std::string &remark : remarks)
+      console.remark("Warning: " + remark + '.');
+    const std::string directory = checkpoints().directory;
+    AssertThrow(found || remarks.empty(),
+                ExcMessage("None of the " + std::to_string(remarks.size()) +
+                           " checkpoint(s) in '" + directory +
+                           "' can be used: " + remarks[0] + '.'));
+    AssertThrow(found || restart == Restart::automatic,
+                ExcMessage("There is no checkpoint in '" + directory +
+                           "'; begin without --restart, or name the place in "
+                           "'Checkpoint/Directory' or 'Output/Directory'."));
+    return found;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::resume(const CheckpointManifest &checkpoint)
+  {
+    State<dim>           &state = accepted.state;
+    const CheckpointStore store = checkpoints();
+    const std::string     name  = "The checkpoint '" + store.path(checkpoint.n);
+    const unsigned int    rank = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
+
+    const ParameterChanges changes =
+      compare_parameters(checkpoint.parameters, parameters.values());
+    AssertThrow(checkpoint.dimension == dim && changes.forbidden.empty(),
+                ExcMessage(name + "' cannot go on with other unknowns: " +
+                           enumeration(changes.forbidden) +
+                           "; undo that, or begin without --restart."));
+    BinaryReader        archive(store.read(checkpoint, run_file));
+    CoarseMesh          coarse_mesh;
+    bool                has_initial_u, has_estimate;
+    double              earlier_seconds;
+    std::vector<double> output_times;
+    archive &coarse_mesh.topology &coarse_mesh.vertices;
+    AssertThrow(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
+                ExcMessage(name + "' belongs to another coarse mesh."));
+    archive &has_initial_u &has_estimate &output_times &earlier_seconds;
+    exchange(archive);
+    std::optional<BulkSolver::Memory> memory;
+    exchange_memory(archive, memory);
+
+    // Steps of the phases must be there; others, chosen by the run, must not
+    // pass its end.
+    const bool is_on_schedule =
+      state.n >= 1 &&
+      (control.may_reject() ? state.t <= scene.schedule.end_time() :
+                              state.n <= scene.schedule.n_steps() &&
+                                scene.schedule.step(state.n).t == state.t &&
+                                scene.schedule.step(state.n).k == state.k);
+    AssertThrow(is_on_schedule,
+                ExcMessage("'Time/Phases' = " + parameters.time.phases +
+                           " does not contain the step of the checkpoint '" +
+                           store.path(checkpoint.n) +
+                           "'; change only what comes after it."));
+
+    std::vector<std::string> meshes, fields;
+    for (unsigned int r = 0; r < checkpoint.n_ranks; ++r)
+      meshes.push_back(store.read(checkpoint, mesh_file(r)));
+    restore_mesh(meshes, triangulation);
+    const bool is_solution = accepted.is_solution;
+    set_up(); // which knows of no solution
+    const Discretization<dim> &d = *discretization;
+
+    // On as many ranks as before, each finds all in its own file.
+    const auto unpack = [&](const unsigned int begin, const unsigned int end) {
+      fields.clear();
+      for (unsigned int r = begin; r < end; ++r)
+        fields.push_back(store.read(checkpoint, fields_file(r)));
+      const bool complete =
+        unpack_fields({meshes.begin() + begin, meshes.begin() + end},
+                      fields,
+                      d.sampling,
+                      has_initial_u,
+                      has_estimate,
+                      ErrorBar<dim>::n_sample_fields(scene),
+                      state,
+                      accepted.space_estimate.squared_indicators);
+      return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
+    };
+    const unsigned int n_points = d.face ? d.face->layout().points.size() : 0;
+    AssertThrow(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
+                 unpack(0, checkpoint.n_ranks)) &&
+                  state.friction.slip.size() == n_points &&
+                  state.friction.multiplier.size() == n_points &&
+                  state.friction.sticks.size() == n_points &&
+                  archive.is_at_end(),
+                ExcMessage(name + "' does not fit the scene."));
+    time_stepper->method().restore(accepted, memory);
+    accepted.is_solution = is_solution;
+    accepted.forces =
+      evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
+
+    std::string failure;
+    if (rank == 0)
+      {
+        try
+          {
+            recorder.write_to(std::make_unique<Statistics>(
+              results_directory(parameters) + "statistics.csv", state.n));
+          }
+        catch (const std::exception &exception)
+          {
+            failure = reason(exception);
+          }
+      }
+    failure = Utilities::MPI::broadcast(communicator, failure);
+    AssertThrow(failure.empty(), ExcMessage(failure));
+    output.emplace(scene, communicator);
+    output->resume(output_times);
+    for (const std::string &remark : store.remove_after(state.n).remarks)
+      console.remark(remark);
+
+    out << "Restart after step " << state.n << " (t = " << state.t << ") from '"
+        << store.path(state.n) << "'" << std::endl;
+    if (checkpoint.n_ranks != n_ranks)
+      console.remark("Note: the checkpoint is from " +
+                     std::to_string(checkpoint.n_ranks) +
+                     " MPI rank(s), this run has " + std::to_string(n_ranks) +
+                     "; results will differ by the contact tolerance.");
+    const std::string version =
+      VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
+    if (checkpoint.version != version)
+      console.remark("Note: the checkpoint is from version '" +
+                     excerpt(checkpoint.version) + "', this is " + version +
+                     ".");
+    if (!changes.allowed.empty())
+      console.remark("Note: changed since the checkpoint: " +
+                     enumeration(changes.allowed) + ".");
+
+    recorder.resume(state, earlier_seconds);
+    last_checkpoint = recorder.elapsed();
+  }
+
+
+
+  template class ViscoplasticContact<2>;
+  template class ViscoplasticContact<3>;
+} // namespace Viscoplastic

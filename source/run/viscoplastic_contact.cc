@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_q.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/discretization/elasticity.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/error/mesh_adaptation.h>
+#include <viscoplastic_contact/error/solution_errors.h>
+#include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/run/viscoplastic_contact.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
+                                                Console          &console)
+    : communicator(MPI_COMM_WORLD)
+    , parameters(parameters)
+    , console(console)
+    , out(console.stream(), Utilities::MPI::this_mpi_process(communicator) == 0)
+    , scene(parameters)
+    // Always rebuilt from its coarse cells: then the order of cells, and with
+    // it the rounding of sums, does not depend on the history of the mesh.
+    , triangulation(communicator,
+                    Triangulation<dim>::none,
+                    parallel::distributed::Triangulation<
+                      dim>::mesh_reconstruction_after_repartitioning)
+    , fe(FE_Q<dim>(1), dim)
+    , dof_handler(triangulation)
+    , control(parameters.step_control,
+              parameters.time.stiffness_policy,
+              scene.schedule,
+              parameters.time.scheme == "Heun" ? 2 : 1,
+              parameters.output.fields_interval)
+    , error_bar(parameters.error_control.error_bar ?
+                  std::make_unique<ErrorBar<dim>>(scene) :
+                  nullptr)
+    , timer(out, TimerOutput::never, TimerOutput::wall_times)
+    , recorder(scene, control, console, timer)
+  {}
+
+
+
+  template <int dim>
+  std::string
+  ViscoplasticContact<dim>::run(const CommandLine::Restart restart)
+  {
+    make_mesh();
+    check_references();
+    lock_directories();
+    if (const auto checkpoint = find_checkpoint(restart))
+      {
+        resume(*checkpoint);
+        if (is_finished())
+          {
+            out << "This is the last step: there is nothing left to do."
+                << std::endl;
+            return "";
+          }
+      }
+    else
+      begin();
+
+    const SignalRequests signals;
+    while (!is_finished())
+      {
+        if (output->is_due(make_step()))
+          write_fields();
+        const std::string interruption = keep_checkpoints(signals);
+        if (!interruption.empty())
+          return interruption;
+      }
+    close();
+    return "";
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::lock_directories(const bool make_results)
+  {
+    const std::string results = results_directory(parameters),
+                      saved   = checkpoints().directory;
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) != 0)
+        return;
+      if (make_results)
+        make_results_directory(results);
+      results_lock.acquire(results);
+      std::error_code none;
+      if (!std::filesystem::equivalent(results, saved, none))
+        checkpoint_lock.acquire(saved);
+    });
+  }
+
+
+
+  template <int dim>
+  RunSummary<dim>
+  ViscoplasticContact<dim>::run_without_files()
+  {
+    make_mesh();
+    set_up();
+    set_initial_state();
+    check_steps();
+    record_initial_state();
+    while (!is_finished())
+      make_step();
+    recorder.check_sizes(/* at_end = */ true);
+    return recorder.summary();
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::compare_with(const RunSummary<dim> &coarser)
+  {
+    coarser_summary = coarser;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::begin()
+  {
+    set_up();
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      check_exact_solution(discretization->space);
+    set_initial_state();
+    check_steps();
+    lock_directories(/* make_results = */ true);
+    output.emplace(scene, communicator);
+    begin_checkpoints();
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      recorder.write_to(
+        std::make_unique<Statistics>(output->directory() + "statistics.csv"));
+    record_initial_state();
+    write_fields();
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::record_initial_state()
+  {
+    AcceptedStep<dim> initial;
+    initial.time_step = {0, 0., 0., 0.};
+    initial.end       = accepted;
+    initial.report    = initial_report;
+    recorder.record(accepted, initial, measure_errors(accepted.state));
+  }
+
+
+
+  template <int dim>
+  TimeStep
+  ViscoplasticContact<dim>::make_step()
+  {
+    const unsigned int n = accepted.state.n;
+    if (scene.is_adaptive() && n > 0 &&
+        n % parameters.refinement.every_n_steps == 0)
+      adapt_mesh();
+    AcceptedStep<dim> step = time_stepper->next(accepted);
+    announce_solver();
+    recorder.record(accepted, step, measure_errors(step.end.state));
+    accepted = std::move(step.end);
+    return step.time_step;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::make_mesh()
+  {
+    Viscoplastic::make_mesh(parameters.geometry, triangulation);
+    scene.inspect(triangulation);
+    AssertThrow(!control.is_on || !scene.has_viscosity() || error_bar,
+                ExcMessage("'Step control/Tolerance' needs an estimate of the "
+                           "error; set 'Error control/Error bar' = true."));
+    control.set_has_estimate(scene.has_viscosity());
+    announce();
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::set_up()
+  {
+    TimerOutput::Scope scope(timer, "set-up");
+    dof_handler.distribute_dofs(fe);
+    // The old one goes first: matrices and factors are what fills memory.
+    accepted.is_solution = false;
+    time_stepper.reset();
+    discretization.reset();
+    discretization = std::make_unique<Discretization<dim>>(dof_handler, scene);
+    discretization->assemble_matrix();
+    time_stepper = std::make_unique<TimeStepper<dim>>(*discretization,
+                                                      error_bar.get(),
+                                                      control,
+                                                      timer);
+    if (accepted.forces.u.size() == 0) // the first time
+      announce_mesh();
+    announce_held_faces();
+    announce_solver();
+    recorder.set_mesh(*discretization);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::set_initial_state()
+  {
+    const Discretization<dim> &d = *discretization;
+    const bool equilibrate       = parameters.initial_state.equilibrate;
+    accepted.state               = make_initial_state(d.sampling, equilibrate);
+    if (error_bar)
+      error_bar->begin(d.sampling, accepted);
+    if (equilibrate)
+      initial_report = time_stepper->equilibrate(accepted);
+    else
+      {
+        const Load<dim> load = d.loads.assemble(0.);
+        check_compatibility(load);
+        accepted.forces =
+          evaluate_forces(d.sampling, d.matrix, load, accepted.state);
+      }
+    if (scene.is_adaptive() || equilibrate)
+      time_stepper->estimate(accepted);
+    if (error_bar && equilibrate)
+      error_bar->assess_equilibrium(initial_report, accepted);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::check_compatibility(const Load<dim> &load)
+  {
+    const Discretization<dim> &d = *discretization;
+    const double tolerance = parameters.initial_state.compatibility_tolerance;
+    const double violation = compatibility_violation(d.space,
+                                                     load,
+                                                     d.face.get(),
+                                                     accepted.state.friction);
+    // Data that a solution makes are compatible up to quadrature.
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      return;
+    std::ostringstream message;
+    message << "The initial data are not in equilibrium with the loads at "
+               "t = 0, (2.12): the relative violation is "
+            << violation << ", and 'Initial state/Compatibility tolerance' is "
+            << tolerance
+            << "; start with loads that the initial stress balances, or set "
+               "'Initial state/Equilibrate'.";
+    AssertThrow(violation <= tolerance, ExcMessage(message.str()));
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::adapt_mesh()
+  {
+    TimerOutput::Scope    phase(timer, "adaptation");
+    State<dim>           &state = accepted.state;
+    const Vector<double> &squared_indicators =
+      accepted.space_estimate.squared_indicators;
+    // What rounding and iterations leave of an estimate, as in uniform states,
+    // says nothing about the mesh, and differs between numbers of ranks.
+    if (parameters.refinement.strategy == "residual" &&
+        total_estimate(squared_indicators, communicator) <=
+          10. * std::max(1e-10, time_stepper->tolerance(accepted)) *
+            std::sqrt(2. * std::max(0., accepted.forces.strain_energy)))
+      return;
+    if (!mark_cells(triangulation, squared_indicators, parameters.refinement))
+      return;
+
+    DistributedVector density;
+    if (discretization->face)
+      density = discretization->face->density(state.friction);
+    const double       energy = stored_energy(*discretization, accepted);
+    StateTransfer<dim> transfer(triangulation,
+                                discretization->sampling,
+                                state,
+                                discretization->face ? &density : nullptr);
+    triangulation.execute_coarsening_and_refinement();
+    set_up();
+
+    const Discretization<dim> &d      = *discretization;
+    auto                       result = transfer.unpack(d.sampling);
+    state                             = std::move(result.state);
+    if (d.face)
+      {
+        // Sets by what the multipliers and velocities say.
+        const std::vector<double> bounds = d.face->bounds(state.t);
+        state.friction                   = FrictionState(bounds.size());
+        state.friction.multiplier =
+          d.face->multipliers(result.multiplier_density);
+        DistributedVector velocity = d.space.owned_vector();
+        d.space.to_frames(state.velocity, velocity);
+        Vector<double> carried =
+          d.face->foundation_step(state.t - state.k, state.t);
+        if (carried.size() > 0)
+          carried /= state.k;
+        const auto   slip_rates = d.face->slips(velocity, carried);
+        const double max_speed  = velocity.linfty_norm();
+        for (unsigned int p = 0; p < bounds.size(); ++p)
+          {
+            auto        &multiplier = state.friction.multiplier[p];
+            const double size       = stable_norm(multiplier);
+            if (size > bounds[p])
+              multiplier *= bounds[p] / size;
+            state.friction.sticks[p] =
+              size < (1. - 1e-6) * bounds[p] ||
+              stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
+          }
+      }
+    accepted.forces =
+      evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
+    accepted.rate.reset();
+    if (error_bar)
+      error_bar->change_mesh(d.space, d.matrix, accepted);
+    recorder.record_mesh_change(stored_energy(d, accepted) - energy);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::write_fields()
+  {
+    TimerOutput::Scope    phase(timer, "output");
+    const Vector<double> &squared_indicators =
+      accepted.space_estimate.squared_indicators;
+    const std::vector<std::string> remarks =
+      output->write_fields(discretization->sampling,
+                           accepted.state,
+                           discretization->face.get(),
+                           squared_indicators.size() > 0 ? &squared_indicators :
+                                                           nullptr);
+    for (const std::string &remark : remarks)
+      console.remark(remark);
+  }
+
+
+
+  template class ViscoplasticContact<2>;
+  template class ViscoplasticContact<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/scene/boundary_condition.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::string
+    entry(const types::boundary_id id, const std::string &name)
+    {
+      return "Boundary " + std::to_string(id) + "/" + name;
+    }
+
+
+
+    BoundaryRole
+    role_by_name(const types::boundary_id id, const std::string &name)
+    {
+      if (name == "clamped")
+        return BoundaryRole::clamped;
+      if (name == "displacement")
+        return BoundaryRole::displacement;
+      if (name == "traction")
+        return BoundaryRole::traction;
+      if (name == "free")
+        return BoundaryRole::free;
+      if (name == "symmetry")
+        return BoundaryRole::symmetry;
+      if (name == "contact")
+        return BoundaryRole::contact;
+      AssertThrow(false,
+                  ExcMessage("'" + entry(id, "Role") +
+                             "' is missing; it must be clamped, displacement, "
+                             "traction, free, symmetry or contact."));
+      return BoundaryRole::free;
+    }
+
+
+
+    FrictionLaw
+    friction_law_by_name(const types::boundary_id id, const std::string &name)
+    {
+      if (name == "none")
+        return FrictionLaw::none;
+      if (name == "tresca")
+        return FrictionLaw::tresca;
+      if (name == "coulomb")
+        return FrictionLaw::coulomb;
+      if (name == "glued")
+        return FrictionLaw::glued;
+      AssertThrow(false,
+                  ExcMessage("'" + entry(id, "Friction law") +
+                             "' is missing; it must be none, tresca, coulomb "
+                             "or glued."));
+      return FrictionLaw::none;
+    }
+
+
+
+    template <int dim>
+    std::array<std::optional<Expression<dim>>, dim>
+    given_components(const std::string &text, const std::string &entry)
+    {
+      const auto parts = Utilities::split_string_list(text, ';');
+      AssertThrow(parts.size() == dim,
+                  ExcMessage("'" + entry + "' needs " + std::to_string(dim) +
+                             " components separated by semicolons, but '" +
+                             excerpt(text) + "' has " +
+                             std::to_string(parts.size()) + "."));
+      std::array<std::optional<Expression<dim>>, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (parts[d] != "free")
+          result[d].emplace(parts[d], entry);
+      return result;
+    }
+
+
+
+    /// Of the exact solution: all, or those that are not `free'.
+    template <int dim>
+    std::array<std::optional<Expression<dim>>, dim>
+    derived_components(const std::string        &text,
+                       const std::string        &entry,
+                       const ExactSolution<dim> &solution)
+    {
+      std::vector<std::string> parts(dim, "exact");
+      if (!Utilities::trim(text).empty())
+        parts = Utilities::split_string_list(text, ';');
+      AssertThrow(parts.size() == dim &&
+                    std::all_of(parts.begin(),
+                                parts.end(),
+                                [](const std::string &part) {
+                                  return part == "exact" || part == "free";
+                                }),
+                  ExcMessage("'" + entry + "' is '" + excerpt(text) +
+                             "', but with 'Exact solution/Data' = solution it "
+                             "can only be left out, or be a list of `exact' "
+                             "and `free' for the " +
+                             std::to_string(dim) + " components."));
+      std::array<std::optional<Expression<dim>>, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (parts[d] == "exact")
+          result[d].emplace(
+            [&solution, d](const Point<dim> &x, const double t) {
+              return solution.displacement(x, t)[d];
+            },
+            "Exact solution/Displacement");
+      return result;
+    }
+
+
+
+    /// Whether the entry @p name means something for the role and the friction
+    /// law.
+    template <int dim>
+    bool
+    uses(const BoundaryCondition<dim> &condition, const std::string &name)
+    {
+      const bool is_contact = condition.role == BoundaryRole::contact;
+      if (name == "Displacement")
+        return condition.role == BoundaryRole::displacement;
+      if (name == "Traction")
+        return condition.role == BoundaryRole::traction;
+      if (name == "Friction bound")
+        return condition.friction_law == FrictionLaw::tresca;
+      if (name == "Friction coefficient" || name == "Normal stress")
+        return condition.friction_law == FrictionLaw::coulomb;
+      if (name == "Foundation displacement")
+        return is_contact && condition.is_bilateral();
+      if (name == "Foundation motion")
+        return condition.has_friction() || condition.is_glued();
+      Assert(name == "Friction law", ExcInternalError());
+      return is_contact;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  BoundaryCondition<dim>::BoundaryCondition(
+    const types::boundary_id  id,
+    const BoundaryParameters &parameters,
+    const ExactSolution<dim> *solution)
+    : id(id)
+    , role(role_by_name(id, parameters.role))
+    , solution(solution)
+  {
+    if (role == BoundaryRole::contact)
+      friction_law = friction_law_by_name(id, parameters.friction_law);
+
+    // What is not used is parsed all the same: nonsense should not wait for
+    // the day when the role changes.
+    const auto is_given = [](const std::string &text) {
+      return !Utilities::trim(text).empty();
+    };
+    if (solution)
+      for (const auto &[name, text] :
+           {std::make_pair("Traction", parameters.traction),
+            std::make_pair("Normal stress", parameters.normal_stress)})
+        AssertThrow(!is_given(text),
+                    ExcMessage("'" + entry(id, name) +
+                               "' is given, but 'Exact solution/Data' = "
+                               "solution makes it; leave one of them out."));
+    const auto scalar = [&](const std::string &name, const std::string &text) {
+      std::optional<Expression<dim>> result;
+      AssertThrow(is_given(text) || !uses(*this, name) ||
+                    (solution && name == "Normal stress"),
+                  ExcMessage("'" + entry(id, name) +
+                             "' is missing; the friction law " +
+                             parameters.friction_law + " needs it."));
+      if (is_given(text))
+        result.emplace(text, entry(id, name));
+      if (!uses(*this, name))
+        result.reset();
+      return result;
+    };
+    const auto vector = [&](const std::string &name, const std::string &text) {
+      auto result = optional_vector<dim>(text, dim, entry(id, name));
+      if (!uses(*this, name))
+        result.reset();
+      return result;
+    };
+
+    const bool has_displacement = uses(*this, "Displacement");
+    if (has_displacement || is_given(parameters.displacement))
+      {
+        auto components = solution ?
+                            derived_components<dim>(parameters.displacement,
+                                                    entry(id, "Displacement"),
+                                                    *solution) :
+                            given_components<dim>(parameters.displacement,
+                                                  entry(id, "Displacement"));
+        if (has_displacement)
+          displacement = std::move(components);
+      }
+    AssertThrow(role != BoundaryRole::traction || solution ||
+                  is_given(parameters.traction),
+                ExcMessage("'" + entry(id, "Traction") +
+                           "' is missing; a boundary without load has the "
+                           "role free."));
+    traction       = vector("Traction", parameters.traction);
+    friction_bound = scalar("Friction bound", parameters.friction_bound);
+    friction_coefficient =
+      scalar("Friction coefficient", parameters.friction_coefficient);
+    normal_stress = scalar("Normal stress", parameters.normal_stress);
+    foundation_displacement =
+      scalar("Foundation displacement", parameters.foundation_displacement);
+    if (foundation_displacement && foundation_displacement->is_zero())
+      foundation_displacement.reset();
+    foundation_motion =
+      vector("Foundation motion", parameters.foundation_motion);
+    // Only its change counts.
+    if (foundation_motion && !foundation_motion->depends_on_time())
+      foundation_motion.reset();
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  BoundaryCondition<dim>::unused_entries(
+    const BoundaryParameters &parameters) const
+  {
+    std::vector<std::string> names;
+    const auto               compare = [&](const std::string &name,
+                             const std::string &text,
+                             const std::string &nothing) {
+      const std::string given = Utilities::trim(text);
+      if (!given.empty() && given != nothing && given != "not given" &&
+          !uses(*this, name))
+        names.push_back(name);
+    };
+    compare("Displacement", parameters.displacement, "");
+    compare("Traction", parameters.traction, "");
+    compare("Friction law", parameters.friction_law, "none");
+    compare("Friction bound", parameters.friction_bound, "0");
+    compare("Friction coefficient", parameters.friction_coefficient, "0");
+    compare("Normal stress", parameters.normal_stress, "0");
+    compare("Foundation displacement", parameters.foundation_displacement, "0");
+    compare("Foundation motion", parameters.foundation_motion, "");
+    return names;
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::bound(const Point<dim> &x, const double t) const
+  {
+    const bool   is_tresca = friction_law == FrictionLaw::tresca;
+    const double factor    = is_tresca ? friction_bound->value(x, t) :
+                                         friction_coefficient->value(x, t);
+    if (factor < 0.)
+      {
+        std::ostringstream message;
+        message << "'"
+                << entry(id,
+                         is_tresca ? "Friction bound" : "Friction coefficient")
+                << "' is " << factor << " at x = (" << x << "), t = " << t
+                << "; it must not be negative.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+    return is_tresca ? factor : factor * std::abs(normal_stress->value(x, t));
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryCondition<dim>::derive_data()
+  {
+    if (solution && friction_law == FrictionLaw::coulomb)
+      normal_stress.emplace(
+        [solution = solution, normal = normal](const Point<dim> &x,
+                                               const double      t) {
+          return solution->traction(x, normal, t) * normal;
+        },
+        "Exact solution/Stress");
+  }
+
+
+
+  template <int dim>
+  bool
+  BoundaryCondition<dim>::load_depends_on_time() const
+  {
+    return (traction && traction->depends_on_time()) ||
+           (normal_stress && normal_stress->depends_on_time()) ||
+           has_derived_traction();
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::load(const Point<dim>     &x,
+                               const Tensor<1, dim> &outward_normal,
+                               const double          t) const
+  {
+    if (traction)
+      return traction->vector(x, t);
+    if (normal_stress)
+      return normal_stress->value(x, t) * outward_normal;
+    Tensor<1, dim> result;
+    if (has_derived_traction())
+      {
+        result = solution->traction(x, outward_normal, t);
+        for (unsigned int d = 0; d < dim; ++d)
+          if (displacement[d])
+            result[d] = 0.;
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::sliding(const Point<dim> &x, const double t) const
+  {
+    if (!foundation_motion)
+      return {};
+    const Tensor<1, dim> w =
+      foundation_motion->vector(x, t) - foundation_motion->vector(x, 0.);
+    return w - (w * normal) * normal;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::glued_displacement(const Point<dim> &x,
+                                             const double      t) const
+  {
+    Tensor<1, dim> u = sliding(x, t);
+    if (foundation_displacement)
+      u += foundation_displacement->value(x, t) * normal;
+    return u;
+  }
+
+
+
+  template <int dim>
+  std::vector<const Expression<dim> *>
+  BoundaryCondition<dim>::data() const
+  {
+    std::vector<const Expression<dim> *> result;
+    const auto add = [&](const std::optional<Expression<dim>> &datum) {
+      if (datum)
+        result.push_back(&*datum);
+    };
+    for (const auto &component : displacement)
+      add(component);
+    add(foundation_displacement);
+    add(friction_bound);
+    add(friction_coefficient);
+    add(normal_stress);
+    for (const auto *vector : {&traction, &foundation_motion})
+      if (*vector)
+        for (unsigned int d = 0; d < dim; ++d)
+          result.push_back(&(**vector)[d]);
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  BoundaryCondition<dim>::bound_depends_on_time() const
+  {
+    return (friction_bound && friction_bound->depends_on_time()) ||
+           (friction_coefficient && friction_coefficient->depends_on_time()) ||
+           (normal_stress && normal_stress->depends_on_time());
+  }
+
+
+
+  template struct BoundaryCondition<2>;
+  template struct BoundaryCondition<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/laws/strain.h>
+#include <viscoplastic_contact/scene/exact_solution.h>
+#include <viscoplastic_contact/scene/scene.h>
+
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    // Truncation and rounding of second differences are both 1e-8 then.
+    constexpr double relative_step = 1e-4;
+
+
+
+    /// The derivative of @p f at t from one side, of second order.
+    template <typename Side, typename Function>
+    auto
+    one_sided_rate(const double    t,
+                   const double    step,
+                   const Side      side,
+                   const Function &f)
+    {
+      const double h = side == Side::after ? step : -step;
+      return (4. * f(t + h) - f(t + 2. * h) - 3. * f(t)) / (2. * h);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  ExactSolution<dim>::ExactSolution(const ExactSolutionParameters &parameters,
+                                    const double                   end_time)
+    : makes_data(parameters.data == "solution")
+    , space_step(relative_step)
+    , time_step(relative_step * end_time)
+  {
+    AssertThrow(!Utilities::trim(parameters.displacement).empty(),
+                ExcMessage("'Exact solution/Displacement' is missing, but "
+                           "other entries of that section are given."));
+    given_displacement.emplace(parameters.displacement,
+                               dim,
+                               "Exact solution/Displacement");
+    if (!Utilities::trim(parameters.stress).empty())
+      given_stress.emplace(parameters.stress,
+                           stress_components<dim>().size(),
+                           "Exact solution/Stress");
+  }
+
+
+
+  template <int dim>
+  void
+  ExactSolution<dim>::set_body(const double size, const Material<dim> *elastic)
+  {
+    space_step = relative_step * size;
+    material   = has_own_stress() ? nullptr : elastic;
+    AssertThrow(!makes_data || has_stress(),
+                ExcMessage("'Exact solution/Stress' is missing; only for a "
+                           "body of one elastic material it follows from the "
+                           "displacement."));
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  ExactSolution<dim>::displacement(const Point<dim> &x, const double t) const
+  {
+    return given_displacement->vector(x, t);
+  }
+
+
+
+  template <int dim>
+  Tensor<2, dim>
+  ExactSolution<dim>::gradient(const Point<dim> &x, const double t) const
+  {
+    Tensor<2, dim> result;
+    for (unsigned int j = 0; j < dim; ++j)
+      {
+        Point<dim> left(x), right(x);
+        left[j] -= space_step;
+        right[j] += space_step;
+        const Tensor<1, dim> derivative =
+          (displacement(right, t) - displacement(left, t)) /
+          (right[j] - left[j]);
+        for (unsigned int i = 0; i < dim; ++i)
+          result[i][j] = derivative[i];
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, 3>
+  ExactSolution<dim>::strain(const Point<dim> &x, const double t) const
+  {
+    return Viscoplastic::strain(gradient(x, t));
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, 3>
+  ExactSolution<dim>::stress(const Point<dim> &x, const double t) const
+  {
+    Assert(has_stress(), ExcInternalError());
+    if (!has_own_stress())
+      return material->stiffness(x).stress(strain(x, t));
+    SymmetricTensor<2, 3> result;
+    const auto            components = stress_components<dim>();
+    for (unsigned int c = 0; c < components.size(); ++c)
+      result[components[c].first][components[c].second] =
+        given_stress->value(x, t, c);
+    return result;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  ExactSolution<dim>::traction(const Point<dim>     &x,
+                               const Tensor<1, dim> &normal,
+                               const double          t) const
+  {
+    const SymmetricTensor<2, 3> sigma = stress(x, t);
+    Tensor<1, dim>              result;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = 0; j < dim; ++j)
+        result[i] += sigma[i][j] * normal[j];
+    return result;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  ExactSolution<dim>::body_force(const Point<dim> &x, const double t) const
+  {
+    Tensor<1, dim> result;
+    for (unsigned int j = 0; j < dim; ++j)
+      {
+        Point<dim> left(x), right(x);
+        left[j] -= space_step;
+        right[j] += space_step;
+        const SymmetricTensor<2, 3> change = stress(right, t) - stress(left, t);
+        for (unsigned int i = 0; i < dim; ++i)
+          result[i] -= change[i][j] / (right[j] - left[j]);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  ExactSolution<dim>::velocity(const Point<dim> &x,
+                               const double      t,
+                               const Side        side) const
+  {
+    return one_sided_rate(t, time_step, side, [&](const double s) {
+      return displacement(x, s);
+    });
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, 3>
+  ExactSolution<dim>::strain_rate(const Point<dim> &x,
+                                  const double      t,
+                                  const Side        side) const
+  {
+    return one_sided_rate(t, time_step, side, [&](const double s) {
+      return strain(x, s);
+    });
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, 3>
+  ExactSolution<dim>::stress_rate(const Point<dim> &x,
+                                  const double      t,
+                                  const Side        side) const
+  {
+    return one_sided_rate(t, time_step, side, [&](const double s) {
+      return stress(x, s);
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  ExactSolution<dim>::check_rates(const Point<dim> &x, const double t) const
+  {
+    const auto refuse_growth = [&](const auto &name, const auto &f) {
+      // Towards a vertical tangent, as of sqrt(t), differences grow with
+      // smaller steps; those of a smooth function converge.
+      const auto difference = [&](const double step) {
+        return ((f(t + step) - f(t)) / step).norm();
+      };
+      const double coarse = difference(16. * time_step),
+                   fine   = difference(time_step);
+      std::ostringstream message;
+      message << "'Exact solution/" << name
+              << "' has no time derivative at x = (" << x << "), t = " << t
+              << ": its differences over shorter and shorter times grow "
+                 "without bound.";
+      // By 2 for a square root; by 16^0.1 for t^0.9.
+      AssertThrow(!(fine > 1.3 * coarse &&
+                    difference(time_step / 16.) > 1.3 * fine),
+                  ExcMessage(message.str()));
+    };
+    refuse_growth("Displacement",
+                  [&](const double s) { return displacement(x, s); });
+    if (has_own_stress())
+      refuse_growth("Stress", [&](const double s) { return stress(x, s); });
+  }
+
+
+
+  template class ExactSolution<2>;
+  template class ExactSolution<3>;
+} // namespace Viscoplastic

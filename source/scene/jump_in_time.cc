@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
+#include <viscoplastic_contact/scene/jump_in_time.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Of the largest values in the run: less is not called a jump.
+    constexpr double smallest_share = 0.05;
+    /// Of the end time: where a change within that is called a jump.
+    constexpr double width = 1e-12;
+    /// Intervals between which jumps are looked for, in all and in a phase.
+    constexpr unsigned int n_intervals = 200, least_intervals = 10;
+    /// Intervals that are halved.
+    constexpr unsigned int n_candidates = 4;
+    /// So many places, or a few more, stand for a piece of the boundary or for
+    /// the body.
+    constexpr unsigned int n_places = 64;
+    /// Of the range of the values in the run: how far these have to leave those
+    /// at both ends of a step to be called unseen. A sine goes that far with
+    /// about two steps a period, not with three.
+    constexpr double unseen_share = 0.4;
+    /// Steps that are looked into, or one a phase, and where, as shares
+    /// of a step: not evenly, since what steps miss repeats with them.
+    constexpr unsigned int          n_steps_sampled = 200;
+    constexpr std::array<double, 6> inside{
+      {0.081, 0.233, 0.397, 0.514, 0.709, 0.887}};
+
+    struct Interval
+    {
+      double              left, right;
+      std::vector<double> at_left, at_right; // by place
+
+      double
+      change() const
+      {
+        double sum = 0.;
+        for (std::size_t i = 0; i < at_left.size(); ++i)
+          sum += std::fabs(at_right[i] - at_left[i]);
+        return sum;
+      }
+    };
+
+
+
+    std::vector<double>
+    sample_times(const TimeSchedule &schedule)
+    {
+      const unsigned int n =
+        std::max(least_intervals, n_intervals / schedule.n_phases());
+      std::vector<double> times{0.};
+      while (times.back() < schedule.end_time())
+        {
+          const TimeSchedule::Phase &phase = schedule.phase_at(times.back());
+          for (unsigned int i = 1; i < n; ++i)
+            times.push_back(phase.start + i * (phase.end - phase.start) / n);
+          times.push_back(phase.end);
+        }
+      return times;
+    }
+
+
+
+    struct StepEnds
+    {
+      double start, end;
+    };
+
+    /// Some steps of all phases.
+    std::vector<StepEnds>
+    sample_steps(const TimeSchedule &schedule)
+    {
+      const unsigned int n =
+        std::max(1u, n_steps_sampled / schedule.n_phases());
+      std::vector<StepEnds> steps;
+      for (double t = 0.; t < schedule.end_time(); t = steps.back().end)
+        {
+          const TimeSchedule::Phase &phase  = schedule.phase_at(t);
+          const unsigned int         stride = (phase.n_steps + n - 1) / n;
+          const auto                 time   = [&](const unsigned int i) {
+            return phase.start + (phase.end - phase.start) * i / phase.n_steps;
+          };
+          for (unsigned int i = 0; i < phase.n_steps; i += stride)
+            steps.push_back({time(i), time(i + 1)});
+          if (steps.back().end < phase.end)
+            steps.push_back({time(phase.n_steps - 1), phase.end});
+          steps.back().end = phase.end; // without rounding
+        }
+      return steps;
+    }
+
+
+
+    /// The values of a datum at places, all at a time; at one place if these do
+    /// not matter.
+    template <int dim>
+    std::vector<double>
+    values_at(const Expression<dim>         &datum,
+              const std::vector<Point<dim>> &places,
+              const double                   t)
+    {
+      std::vector<double> result;
+      for (const Point<dim> &x : places)
+        {
+          result.push_back(datum.value(x, t));
+          if (!datum.depends_on_position())
+            break;
+        }
+      return result;
+    }
+
+
+
+    double
+    sum_of_sizes(const std::vector<double> &values)
+    {
+      double sum = 0.;
+      for (const double value : values)
+        sum += std::fabs(value);
+      return sum;
+    }
+
+
+
+    /// Places in cells or faces of dimension @p n, spread evenly.
+    template <int n, int dim, typename Iterator>
+    std::vector<Point<dim>>
+    places_in(const std::vector<Iterator> &parts)
+    {
+      if (parts.empty())
+        return {};
+      const std::size_t stride =
+        std::max<std::size_t>(1, parts.size() / n_places);
+      const double       in_each = double(n_places) * stride / parts.size();
+      const QIterated<n> lattice(QMidpoint<1>(),
+                                 std::ceil(std::pow(in_each, 1. / n)));
+      std::vector<Point<dim>> places;
+      for (std::size_t i = 0; i < parts.size(); i += stride)
+        for (const Point<n> &point : lattice.get_points())
+          {
+            Point<dim> x;
+            for (const unsigned int v : parts[i]->vertex_indices())
+              x += GeometryInfo<n>::d_linear_shape_function(point, v) *
+                   parts[i]->vertex(v);
+            places.push_back(x);
+          }
+      return places;
+    }
+
+
+
+    /// On the coarse mesh, which all ranks know.
+    template <int dim>
+    std::vector<Point<dim>>
+    places_on_boundary(const Triangulation<dim> &triangulation,
+                       const types::boundary_id  id)
+    {
+      std::vector<typename Triangulation<dim>::face_iterator> faces;
+      for (const auto &cell : triangulation.cell_iterators_on_level(0))
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary() &&
+              cell->face(f)->boundary_id() == id)
+            faces.push_back(cell->face(f));
+      return places_in<dim - 1, dim>(faces);
+    }
+
+
+
+    template <int dim>
+    std::vector<Point<dim>>
+    places_in_body(const Triangulation<dim> &triangulation)
+    {
+      std::vector<typename Triangulation<dim>::cell_iterator> cells;
+      for (const auto &cell : triangulation.cell_iterators_on_level(0))
+        cells.push_back(cell);
+      return places_in<dim, dim>(cells);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::optional<double>
+  find_jump(const Expression<dim>         &datum,
+            const std::vector<Point<dim>> &places,
+            const TimeSchedule            &schedule)
+  {
+    if (!datum.may_jump() || places.empty())
+      return {};
+    const auto values = [&](const double t) {
+      return values_at(datum, places, t);
+    };
+    try
+      {
+        std::vector<Interval> intervals;
+        double                left    = 0.;
+        auto                  at_left = values(left);
+        double                size    = sum_of_sizes(at_left);
+        for (const double right : sample_times(schedule))
+          if (right > left)
+            {
+              auto at_right = values(right);
+              size          = std::max(size, sum_of_sizes(at_right));
+              intervals.push_back({left, right, at_left, at_right});
+              left    = right;
+              at_left = std::move(at_right);
+            }
+
+        const auto n = std::min<std::size_t>(n_candidates, intervals.size());
+        std::partial_sort(intervals.begin(),
+                          intervals.begin() + n,
+                          intervals.end(),
+                          [](const Interval &a, const Interval &b) {
+                            return a.change() > b.change();
+                          });
+        for (std::size_t c = 0; c < n; ++c)
+          {
+            Interval &interval = intervals[c];
+            while (interval.change() > smallest_share * size &&
+                   interval.right - interval.left > width * schedule.end_time())
+              {
+                const double middle    = 0.5 * (interval.left + interval.right);
+                const auto   at_middle = values(middle);
+                Interval     first{interval.left,
+                               middle,
+                               interval.at_left,
+                               at_middle},
+                  second{middle, interval.right, at_middle, interval.at_right};
+                interval = first.change() > second.change() ? first : second;
+              }
+            if (interval.change() > smallest_share * size)
+              return interval.right;
+          }
+      }
+    catch (const ExceptionBase &)
+      {
+        // No value at a time that perhaps no step has.
+      }
+    return {};
+  }
+
+
+
+  template <int dim>
+  std::optional<double>
+  find_unseen_change(const Expression<dim>         &datum,
+                     const std::vector<Point<dim>> &places,
+                     const TimeSchedule            &schedule)
+  {
+    if (!datum.depends_on_time() || places.empty())
+      return {};
+    std::vector<double> least, most; // in the run, by place
+    double              size           = 0.;
+    const auto          values_for_run = [&](const double t) {
+      std::vector<double> values = values_at(datum, places, t);
+      if (least.empty())
+        least = most = values;
+      for (std::size_t i = 0; i < values.size(); ++i)
+        {
+          least[i] = std::min(least[i], values[i]);
+          most[i]  = std::max(most[i], values[i]);
+        }
+      size = std::max(size, sum_of_sizes(values));
+      return values;
+    };
+    double largest = 0., time = 0.;
+    try
+      {
+        for (const StepEnds &step : sample_steps(schedule))
+          {
+            const auto at_start = values_for_run(step.start),
+                       at_end   = values_for_run(step.end);
+            for (const double share : inside)
+              {
+                const double t = step.start + share * (step.end - step.start);
+                const auto   values = values_for_run(t);
+                double       beyond = 0.;
+                for (std::size_t i = 0; i < values.size(); ++i)
+                  {
+                    const auto [low, high] =
+                      std::minmax(at_start[i], at_end[i]);
+                    beyond += std::max({0., values[i] - high, low - values[i]});
+                  }
+                if (beyond > (1. + 1e-6) * largest) // the first of equals
+                  {
+                    largest = beyond;
+                    time    = t;
+                  }
+              }
+          }
+      }
+    catch (const ExceptionBase &)
+      {
+        return {}; // no value at a time that no step has
+      }
+    double range = 0.;
+    for (std::size_t i = 0; i < least.size(); ++i)
+      range += most[i] - least[i];
+    if (largest > unseen_share * range && largest > smallest_share * size)
+      return time;
+    return {};
+  }
+
+
+
+  namespace
+  {
+    /// Whether a foundation slides at the end of any step.
+    template <int dim>
+    bool
+    slides(const BoundaryCondition<dim>  &condition,
+           const std::vector<Point<dim>> &places,
+           const TimeSchedule            &schedule)
+    {
+      if (!condition.foundation_motion)
+        return false;
+      try
+        {
+          for (const StepEnds &step : sample_steps(schedule))
+            for (const Point<dim> &x : places)
+              {
+                const auto  &w = *condition.foundation_motion;
+                const double size =
+                  (w.vector(x, step.end) - w.vector(x, 0.)).norm();
+                // The normal is known up to rounding.
+                if (condition.sliding(x, step.end).norm() > 1e-10 * size)
+                  return true;
+              }
+        }
+      catch (const ExceptionBase &)
+        {
+          return true; // no value at a place that perhaps no node has
+        }
+      return places.empty();
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  warnings_of_data_in_time(const Scene<dim>         &scene,
+                           const Triangulation<dim> &triangulation)
+  {
+    // Components have the same entry.
+    struct Finding
+    {
+      std::set<std::string> entries;
+      std::string           list;
+
+      void
+      add(const std::string &entry, const std::optional<double> &t)
+      {
+        if (!t || !entries.insert(entry).second)
+          return;
+        std::ostringstream text;
+        text << (list.empty() ? "'" : ", '") << entry << "' at t = " << *t;
+        list += text.str();
+      }
+    };
+    Finding jumps, unseen;
+    // Not where the error chooses the steps, nor where data follow from a
+    // solution, whose steps are a matter of its test.
+    const bool looks_into_steps =
+      !scene.parameters.step_control.is_on() &&
+      !(scene.exact_solution && scene.exact_solution->makes_data);
+    const auto inspect = [&](const Expression<dim>         &datum,
+                             const std::vector<Point<dim>> &places) {
+      jumps.add(datum.name_of_entry(),
+                find_jump(datum, places, scene.schedule));
+      if (looks_into_steps)
+        unseen.add(datum.name_of_entry(),
+                   find_unseen_change(datum, places, scene.schedule));
+    };
+
+    std::vector<std::string> warnings;
+    for (const auto &[id, condition] : scene.boundary)
+      {
+        std::vector<Point<dim>> places;
+        for (const Expression<dim> *datum : condition.data())
+          if (datum->depends_on_time())
+            {
+              if (places.empty())
+                places = places_on_boundary(triangulation, id);
+              inspect(*datum, places);
+            }
+        const std::string entry =
+          "Boundary " + std::to_string(id) + "/Foundation motion";
+        if ((condition.has_friction() || condition.is_glued()) &&
+            optional_vector<dim>(
+              scene.parameters.boundaries.at(id).foundation_motion,
+              dim,
+              entry) &&
+            !slides(condition, places, scene.schedule))
+          warnings.push_back(
+            "'" + entry +
+            "' moves nothing: what counts is how its tangential part changes "
+            "in time, which it does not; 'Foundation displacement' moves the "
+            "foundation in normal direction.");
+      }
+    if (scene.body_force && scene.body_force->depends_on_time())
+      {
+        const auto places = places_in_body(triangulation);
+        for (unsigned int d = 0; d < dim; ++d)
+          inspect((*scene.body_force)[d], places);
+      }
+
+    if (!jumps.list.empty())
+      warnings.push_back(
+        "Data jump in time (" + jumps.list +
+        "), but the theory asks for Lipschitz continuous ones, (2.10): "
+        "equilibrium after a jump is exact, what creeps in its step is "
+        "not, and error estimates may miss that; give it a short step of "
+        "its own in 'Time/Phases', or make it a ramp.");
+    if (!unseen.list.empty())
+      warnings.push_back(
+        "Data come and go unseen within time steps (" + unseen.list +
+        "): a run takes data at the ends of steps. Take more steps in "
+        "'Time/Phases', not in time with the data, or set 'Step "
+        "control/Tolerance'.");
+    return warnings;
+  }
+
+
+
+#define INSTANTIATE(dim)                                                    \
+  template std::optional<double> find_jump(const Expression<dim> &,         \
+                                           const std::vector<Point<dim>> &, \
+                                           const TimeSchedule &);           \
+  template std::optional<double> find_unseen_change(                        \
+    const Expression<dim> &,                                                \
+    const std::vector<Point<dim>> &,                                        \
+    const TimeSchedule &);                                                  \
+  template std::vector<std::string> warnings_of_data_in_time(               \
+    const Scene<dim> &, const Triangulation<dim> &);
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+} // namespace Viscoplastic

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/base/subsection.h>
+#include <viscoplastic_contact/scene/material.h>
+
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    Stiffness
+    read_voigt_matrix(const std::string &text,
+                      const std::string &entry,
+                      const unsigned int dim)
+    {
+      const auto refuse = [&entry](const std::string &why) {
+        AssertThrow(false, ExcMessage("'" + entry + "': " + why));
+      };
+
+      FullMatrix<double> matrix(6, 6);
+      const auto         rows = Utilities::split_string_list(text, ';');
+      if (rows.size() != 6)
+        refuse("there must be 6 rows separated by semicolons, not " +
+               std::to_string(rows.size()) + ".");
+      for (unsigned int i = 0; i < 6; ++i)
+        {
+          const auto numbers = Utilities::split_string_list(rows[i], ',');
+          if (numbers.size() != 6)
+            refuse("row " + std::to_string(i + 1) +
+                   " must have 6 numbers separated by commas, not " +
+                   std::to_string(numbers.size()) + ".");
+          for (unsigned int j = 0; j < 6; ++j)
+            try
+              {
+                matrix(i, j) = Utilities::string_to_double(numbers[j]);
+              }
+            catch (const std::exception &)
+              {
+                refuse("'" + numbers[j] + "' in row " + std::to_string(i + 1) +
+                       " is not a number.");
+              }
+        }
+
+      // Columns and rows 4 and 5 are yz and xz.
+      if (dim == 2)
+        for (const unsigned int in_plane : {0, 1, 2, 5})
+          for (const unsigned int out_of_plane : {3, 4})
+            if (matrix(in_plane, out_of_plane) != 0. ||
+                matrix(out_of_plane, in_plane) != 0.)
+              refuse(
+                "the entry in row " + std::to_string(in_plane + 1) +
+                ", column " + std::to_string(out_of_plane + 1) +
+                " couples deformations in the plane with shear out of it; it "
+                "must be zero in plane strain (2D), or the scene be 3D.");
+
+      try
+        {
+          return Stiffness::anisotropic(matrix);
+        }
+      catch (const std::exception &exception)
+        {
+          refuse(reason(exception));
+        }
+      return Stiffness::isotropic(1., 0.); // not reached
+    }
+
+
+    std::unique_ptr<const ViscoplasticLaw>
+    make_law(const std::string &section,
+             const std::string &name,
+             ParameterHandler  &handler,
+             const unsigned int dim)
+    {
+      const Subsection subsection(handler, section);
+      return make_viscoplastic_law(name, handler, section, dim);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Material<dim>::Material(const std::string        &section,
+                          const MaterialParameters &parameters,
+                          ParameterHandler         &handler)
+    : section(section)
+    , law_name(parameters.law)
+    , law(make_law(section, law_name, handler, dim))
+  {
+    if (!parameters.voigt_matrix.empty())
+      {
+        // What the file gives is used, or refused; the defaults alone go with
+        // a matrix, since complete parameter files hold them.
+        const MaterialParameters defaults;
+        AssertThrow(parameters.youngs_modulus == defaults.youngs_modulus &&
+                      parameters.poissons_ratio == defaults.poissons_ratio,
+                    ExcMessage("'" + section +
+                               "' has a `Voigt matrix' and Young's modulus or "
+                               "Poisson's ratio; give either the matrix or "
+                               "these."));
+        anisotropic = read_voigt_matrix(parameters.voigt_matrix,
+                                        section + "/Voigt matrix",
+                                        dim);
+        return;
+      }
+
+    youngs_modulus.emplace(parameters.youngs_modulus,
+                           section + "/Young's modulus");
+    poissons_ratio.emplace(parameters.poissons_ratio,
+                           section + "/Poisson's ratio");
+    for (const auto &[expression, entry] :
+         {std::make_pair(&*youngs_modulus, "Young's modulus"),
+          std::make_pair(&*poissons_ratio, "Poisson's ratio")})
+      AssertThrow(!expression->depends_on_time(),
+                  ExcMessage("'" + section + "/" + entry +
+                             "' depends on t; elastic moduli must be functions "
+                             "of position only."));
+    if (is_uniform())
+      stiffness(Point<dim>());
+  }
+
+
+
+  template <int dim>
+  Stiffness
+  Material<dim>::stiffness(const Point<dim> &x) const
+  {
+    if (anisotropic)
+      return *anisotropic;
+
+    const auto refuse = [&](const std::string     &entry,
+                            const Expression<dim> &expression,
+                            const double           value,
+                            const std::string     &allowed) {
+      std::ostringstream message;
+      message << "'" << section << "/" << entry << "' is " << value;
+      if (expression.depends_on_position())
+        message << " at x = (" << x << ")";
+      message << "; it must be " << allowed << ".";
+      AssertThrow(false, ExcMessage(message.str()));
+    };
+    const double E  = youngs_modulus->value(x, 0.);
+    const double nu = poissons_ratio->value(x, 0.);
+    if (!(E > 0))
+      refuse("Young's modulus", *youngs_modulus, E, "positive");
+    AssertThrow(E >= least_modulus && E <= largest_modulus,
+                ExcMessage(out_of_range("'" + section + "/Young's modulus'",
+                                        E,
+                                        least_modulus,
+                                        largest_modulus)));
+    if (!(nu > -1 && nu < 0.5))
+      refuse("Poisson's ratio",
+             *poissons_ratio,
+             nu,
+             "larger than -1 and smaller than 0.5");
+    return Stiffness::isotropic(E, nu);
+  }
+
+
+
+  template <int dim>
+  bool
+  Material<dim>::is_uniform() const
+  {
+    return anisotropic || (!youngs_modulus->depends_on_position() &&
+                           !poissons_ratio->depends_on_position());
+  }
+
+
+
+  template class Material<2>;
+  template class Material<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/mesh/mesh_ids.h>
+#include <viscoplastic_contact/mesh/mesh_pieces.h>
+#include <viscoplastic_contact/scene/jump_in_time.h>
+#include <viscoplastic_contact/scene/scene.h>
+
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The diagonal of the box around the vertices.
+    template <int dim>
+    double
+    mesh_size(const Triangulation<dim> &triangulation)
+    {
+      const auto corners =
+        GridTools::compute_bounding_box(triangulation).get_boundary_points();
+      return corners.first.distance(corners.second);
+    }
+
+
+
+    template <int dim>
+    std::unique_ptr<ExactSolution<dim>>
+    make_exact_solution(const ExactSolutionParameters &given,
+                        const double                   end_time)
+    {
+      const bool is_given = !Utilities::trim(given.displacement).empty() ||
+                            !Utilities::trim(given.stress).empty() ||
+                            given.data == "solution";
+      return is_given ? std::make_unique<ExactSolution<dim>>(given, end_time) :
+                        nullptr;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Scene<dim>::Scene(const Parameters &parameters)
+    : parameters(parameters)
+    , schedule(parameters.time.phases)
+    , exact_solution(make_exact_solution<dim>(parameters.exact_solution,
+                                              schedule.end_time()))
+    , body_force(optional_vector<dim>(parameters.loads.body_force,
+                                      dim,
+                                      "Loads/Body force"))
+    , initial_displacement(
+        optional_vector<dim>(parameters.initial_state.displacement,
+                             dim,
+                             "Initial state/Displacement"))
+    , initial_stress(optional_vector<dim>(parameters.initial_state.stress,
+                                          stress_components<dim>().size(),
+                                          "Initial state/Stress"))
+  {
+    const ExactSolution<dim> *source_of_data =
+      exact_solution && exact_solution->makes_data ? exact_solution.get() :
+                                                     nullptr;
+    for (const auto &[id, boundary_parameters] : parameters.boundaries)
+      boundary.emplace(
+        id, BoundaryCondition<dim>(id, boundary_parameters, source_of_data));
+    if (source_of_data)
+      derive_data();
+
+    for (const std::string &point :
+         Utilities::split_string_list(parameters.output.points, ';'))
+      if (!point.empty())
+        output_points.push_back(parse_point<dim>(point, "Output/Points"));
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::derive_data()
+  {
+    for (const auto &[name, text] :
+         {std::make_pair("Loads/Body force", parameters.loads.body_force),
+          std::make_pair("Initial state/Displacement",
+                         parameters.initial_state.displacement),
+          std::make_pair("Initial state/Stress",
+                         parameters.initial_state.stress)})
+      AssertThrow(Utilities::trim(text).empty(),
+                  ExcMessage("'" + std::string(name) +
+                             "' is given, but 'Exact solution/Data' = solution "
+                             "makes it; leave one of them out."));
+    AssertThrow(!parameters.initial_state.equilibrate,
+                ExcMessage("'Initial state/Equilibrate' contradicts 'Exact "
+                           "solution/Data' = solution, whose initial data are "
+                           "those of the solution."));
+
+    using Functions = std::vector<typename Expression<dim>::Function>;
+    const ExactSolution<dim> &solution = *exact_solution;
+    const std::string         stress   = "Exact solution/Stress",
+                      displacement     = "Exact solution/Displacement";
+    Functions forces, displacements, stresses;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        forces.push_back([&solution, d](const Point<dim> &x, const double t) {
+          return solution.body_force(x, t)[d];
+        });
+        displacements.push_back(
+          [&solution, d](const Point<dim> &x, const double t) {
+            return solution.displacement(x, t)[d];
+          });
+      }
+    for (const auto &[i, j] : stress_components<dim>())
+      stresses.push_back(
+        [&solution, i = i, j = j](const Point<dim> &x, const double t) {
+          return solution.stress(x, t)[i][j];
+        });
+    body_force.emplace(forces, stress);
+    initial_displacement.emplace(displacements, displacement);
+    initial_stress.emplace(stresses, stress);
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    warnings.clear();
+    inspect_boundary_ids(boundary_ids(triangulation));
+    inspect_unused_entries();
+    inspect_flatness(triangulation);
+    inspect_junctions(triangulation);
+    for (const std::string &warning :
+         warnings_of_data_in_time(*this, triangulation))
+      warnings.push_back(warning);
+    make_materials(material_ids(triangulation));
+    if (exact_solution)
+      {
+        const bool is_elastic = materials.size() == 1 && !materials[0]->law;
+        exact_solution->set_body(mesh_size(triangulation),
+                                 is_elastic ? materials[0].get() : nullptr);
+        for (auto &pair : boundary)
+          pair.second.derive_data();
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_boundary_ids(
+    const std::set<types::boundary_id> &ids) const
+  {
+    for (const types::boundary_id id : ids)
+      AssertThrow(boundary.count(id) == 1,
+                  ExcMessage("Boundary id " + std::to_string(id) +
+                             " of the mesh has no role; add `subsection "
+                             "Boundary " +
+                             std::to_string(id) +
+                             "' with a role (free, if it carries no load). "
+                             "The mesh has the ids " +
+                             list(ids) +
+                             (id == 0 && !parameters.geometry.file.empty() ?
+                                "; faces that the file puts into no group "
+                                "have the id 0." :
+                                ".")));
+    for (const auto &pair : boundary)
+      AssertThrow(ids.count(pair.first) == 1,
+                  ExcMessage("'Boundary " + std::to_string(pair.first) +
+                             "' has a role, but the mesh has no such boundary "
+                             "id; it has the ids " +
+                             list(ids) + "."));
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_unused_entries()
+  {
+    for (const auto &[id, condition] : boundary)
+      {
+        const BoundaryParameters &given = parameters.boundaries.at(id);
+        for (const std::string &name : condition.unused_entries(given))
+          warnings.push_back("'Boundary " + std::to_string(id) + "/" + name +
+                             "' is not used by the role " + given.role +
+                             (condition.role == BoundaryRole::contact ?
+                                " with the friction law " + given.friction_law :
+                                "") +
+                             ".");
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_flatness(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    const double tolerance = parameters.geometry.flatness_tolerance;
+    for (auto &[id, condition] : boundary)
+      if (condition.role == BoundaryRole::symmetry ||
+          condition.role == BoundaryRole::contact)
+        {
+          const PieceNormal<dim> piece = piece_normal(triangulation, id);
+          condition.normal             = piece.normal;
+          std::ostringstream message;
+          message << "Boundary " << id << " has the role "
+                  << (condition.role == BoundaryRole::contact ? "contact" :
+                                                                "symmetry")
+                  << " but is not flat: its normals deviate by "
+                  << piece.deviation
+                  << " degrees from their mean, and 'Geometry/Flatness "
+                     "tolerance' is "
+                  << tolerance
+                  << "; give each flat piece a boundary id of its own.";
+          AssertThrow(piece.deviation <= tolerance, ExcMessage(message.str()));
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_junctions(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    // On the coarse mesh, which all ranks know.
+    std::map<types::boundary_id, std::set<unsigned int>> vertices;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          for (const unsigned int v : cell->face(f)->vertex_indices())
+            vertices[cell->face(f)->boundary_id()].insert(
+              cell->face(f)->vertex_index(v));
+    for (const auto &[id, condition] : boundary)
+      if (condition.prescribes_all())
+        for (const auto &[other_id, other] : boundary)
+          if (other.has_friction())
+            for (const unsigned int v : vertices[id])
+              if (vertices[other_id].count(v) == 1)
+                {
+                  warnings.push_back(
+                    "Boundary " + std::to_string(id) + " (" +
+                    (condition.is_glued() ? "glued" :
+                     condition.role == BoundaryRole::clamped ?
+                                            "clamped" :
+                                            "prescribed displacement") +
+                    ") touches boundary " + std::to_string(other_id) +
+                    " (friction); the theory keeps the closures of Gamma_1 "
+                    "and Gamma_3 apart, and stresses may be singular where "
+                    "they meet.");
+                  break;
+                }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::make_materials(const std::set<types::material_id> &ids)
+  {
+    materials.clear();
+    material_of_id.clear();
+    if (parameters.materials.empty())
+      {
+        materials.push_back(std::make_unique<const Material<dim>>(
+          "Material", parameters.material, parameters.handler));
+        for (const types::material_id id : ids)
+          material_of_id[id] = materials[0].get();
+        return;
+      }
+
+    const MaterialParameters &plain = parameters.material, defaults;
+    AssertThrow(plain.youngs_modulus == defaults.youngs_modulus &&
+                  plain.poissons_ratio == defaults.poissons_ratio &&
+                  plain.voigt_matrix == defaults.voigt_matrix &&
+                  plain.law == defaults.law,
+                ExcMessage("'Material' gives elasticity or a law beside "
+                           "numbered materials, but no cell would have it; "
+                           "give it to `Material <id>', or leave the numbers "
+                           "out."));
+    for (const types::material_id id : ids)
+      {
+        const auto section = "Material " + std::to_string(id);
+        const auto given   = parameters.materials.find(id);
+        AssertThrow(given != parameters.materials.end(),
+                    ExcMessage("Cells of the mesh have the material id " +
+                               std::to_string(id) +
+                               ", but there is no `subsection " + section +
+                               "'; the mesh has the material ids " + list(ids) +
+                               "."));
+        materials.push_back(std::make_unique<const Material<dim>>(
+          section, given->second, parameters.handler));
+        material_of_id[id] = materials.back().get();
+      }
+    for (const auto &pair : parameters.materials)
+      if (ids.count(pair.first) == 0)
+        warnings.push_back("'Material " + std::to_string(pair.first) +
+                           "' is not used: the mesh has the material ids " +
+                           list(ids) + ".");
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_viscosity() const
+  {
+    for (const auto &material : materials)
+      if (material->law)
+        return true;
+    return has_source();
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_moving_foundation() const
+  {
+    for (const auto &pair : boundary)
+      if (pair.second.has_friction() && pair.second.foundation_motion)
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_friction() const
+  {
+    for (const auto &pair : boundary)
+      if (pair.second.has_friction())
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_contact() const
+  {
+    for (const auto &pair : boundary)
+      if (pair.second.role == BoundaryRole::contact)
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  Scene<dim>::effects() const
+  {
+    std::vector<std::string> result{dim == 2 ? "elasticity (plane strain)" :
+                                               "elasticity (3D)"};
+    for (const auto &material : materials)
+      {
+        const std::string of =
+          materials.size() > 1 ? " of " + material->section : "";
+        if (material->is_anisotropic())
+          result.push_back("anisotropic elasticity" + of);
+        if (!material->law)
+          continue;
+        const std::string announcement = material->law->announcement();
+        result.push_back("viscoplastic flow" + of + " (" + material->law_name +
+                         ", history at " + parameters.stress.stress_history +
+                         (announcement.empty() ? "" : "; " + announcement) +
+                         ")");
+      }
+    if (has_viscosity())
+      result.push_back("time integration by " + parameters.time.scheme);
+    const auto boundaries = [&](const auto &condition) {
+      std::string ids;
+      for (const auto &[id, data] : boundary)
+        if (condition(data))
+          ids += (ids.empty() ? "" : ", ") + std::to_string(id);
+      return ids;
+    };
+    const auto add = [&](const std::string &name, const std::string &ids) {
+      if (!ids.empty())
+        result.push_back(name + " on boundary " + ids);
+    };
+    add("bilateral contact with Tresca friction", boundaries([](const auto &b) {
+          return b.friction_law == FrictionLaw::tresca;
+        }));
+    add("Coulomb friction with given normal stress",
+        boundaries([](const auto &b) {
+          return b.friction_law == FrictionLaw::coulomb;
+        }));
+    add("frictionless bilateral contact", boundaries([](const auto &b) {
+          return b.role == BoundaryRole::contact &&
+                 b.friction_law == FrictionLaw::none;
+        }));
+    add("glued contact",
+        boundaries([](const auto &b) { return b.is_glued(); }));
+    add("foundation moving in normal direction", boundaries([](const auto &b) {
+          return b.foundation_displacement.has_value();
+        }));
+    add("foundation moving in tangential direction",
+        boundaries(
+          [](const auto &b) { return b.foundation_motion.has_value(); }));
+    if (exact_solution)
+      result.push_back(exact_solution->makes_data ?
+                         "manufactured solution, which makes loads, initial "
+                         "data and a source in G" :
+                         "errors against an exact solution");
+    if (body_force)
+      result.push_back("body force");
+    add("surface traction",
+        boundaries([](const auto &b) { return b.traction.has_value(); }));
+    add("prescribed displacement", boundaries([](const auto &b) {
+          return b.role == BoundaryRole::displacement;
+        }));
+    if (initial_displacement || initial_stress)
+      result.push_back("initial displacement or stress");
+    if (is_adaptive())
+      result.push_back("adaptive mesh (" + parameters.refinement.strategy +
+                       " estimator)");
+    return result;
+  }
+
+
+
+  template class Scene<2>;
+  template class Scene<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/study/study.h>
+#include <viscoplastic_contact/study/study_report.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::vector<std::string>
+    items(const std::string &text, const std::string &otherwise)
+    {
+      const auto found = Utilities::split_string_list(text, ',');
+      return found.empty() ? std::vector<std::string>{otherwise} : found;
+    }
+  } // namespace
+
+
+
+  Study::Study(const std::vector<std::string> &files,
+               const std::vector<std::string> &overrides,
+               Console                        &console)
+    : runs(files, overrides, MPI_COMM_WORLD)
+    , parameters(runs.scene.study)
+    , has_exact_solution(!runs.scene.exact_solution.displacement.empty() ||
+                         !runs.scene.exact_solution.reference_directory.empty())
+    , console(console)
+    , out(console.stream(),
+          Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+  {
+    AssertThrow(has_exact_solution || parameters.levels >= 3,
+                ExcMessage(
+                  "'Study/Levels' = " + std::to_string(parameters.levels) +
+                  " is too few for a scene without an exact solution: whether "
+                  "its finest run can serve as a reference shows only in three "
+                  "levels; take at least 3, or give 'Exact solution'."));
+    make_plan();
+  }
+
+
+
+  void
+  Study::make_plan()
+  {
+    const int  finest     = static_cast<int>(parameters.levels) - 1;
+    const auto ladders    = items(parameters.ladders, "both"),
+               strategies = items(parameters.strategies, "uniform"),
+               schemes = items(parameters.time_schemes, runs.scene.time.scheme),
+               histories = items(parameters.stress_histories,
+                                 runs.scene.stress.stress_history);
+
+    const auto add = [&](const RunKey      &way,
+                         const int          mesh_level,
+                         const int          time_level,
+                         const std::string &ladder) -> PlannedRun & {
+      PlannedRun run;
+      run.key            = way;
+      run.key.mesh_level = mesh_level;
+      run.key.time_level = time_level;
+      auto known =
+        std::find_if(plan.begin(), plan.end(), [&](const auto &other) {
+          return other.key == run.key;
+        });
+      if (known == plan.end())
+        known = plan.insert(plan.end(), run);
+      known->ladders.insert(ladder);
+      return *known;
+    };
+
+    RunKey first;
+    first.scheme  = schemes[0];
+    first.history = histories[0];
+    for (const std::string &strategy : strategies)
+      for (const std::string &scheme : schemes)
+        for (const std::string &history : histories)
+          {
+            RunKey way;
+            way.strategy = strategy;
+            way.scheme   = scheme;
+            way.history  = history;
+            // Names of schemes and histories are checked here, once.
+            Parameters(runs.files, runs.overrides_of(way));
+            for (const std::string &ladder : ladders)
+              for (int level = 0; level <= finest; ++level)
+                add(way,
+                    ladder == "time" ? finest : level,
+                    ladder == "space" ? finest : level,
+                    ladder);
+          }
+    if (!has_exact_solution)
+      {
+        for (int level = finest - 1; level <= finest; ++level)
+          add(first, level, level, "both");
+        add(first, finest + 1, finest + 1, "both").is_reference = true;
+      }
+
+    // The cheapest first: what is known early predicts the rest.
+    const auto work = [&](const PlannedRun &run) {
+      return (run.key.strategy == "uniform" ? 1. : 1.5) *
+             std::pow(2.,
+                      static_cast<double>(runs.scene.dimension) *
+                          run.key.mesh_level +
+                        run.key.time_level);
+    };
+    std::stable_sort(plan.begin(),
+                     plan.end(),
+                     [&](const PlannedRun &a, const PlannedRun &b) {
+                       return work(a) < work(b);
+                     });
+  }
+
+
+
+  Records
+  Study::records() const
+  {
+    Records result;
+    for (const PlannedRun &run : plan)
+      if (run.record)
+        result.push_back(&*run.record);
+    return result;
+  }
+
+
+
+  const RunRecord *
+  Study::reference() const
+  {
+    const RunRecord *finest = nullptr;
+    for (const PlannedRun &run : plan) // from cheap to expensive
+      {
+        if (run.is_reference && run.record)
+          return &*run.record;
+        if (run.record && run.key.strategy == "uniform" &&
+            run.ladders.count("both") > 0)
+          finest = &*run.record;
+      }
+    return finest;
+  }
+
+
+
+  std::vector<RunKey>
+  Study::ways() const
+  {
+    std::vector<RunKey> result;
+    for (const PlannedRun &run : plan)
+      if (run.record && !run.is_reference &&
+          std::none_of(result.begin(), result.end(), [&](const RunKey &way) {
+            return way.way() == run.key.way();
+          }))
+        result.push_back(run.key);
+    return result;
+  }
+
+
+
+  double
+  Study::expected_seconds(const RunKey &key) const
+  {
+    Records known = of_way(records(), key);
+    if (known.empty())
+      for (const RunRecord *record : records())
+        if (record->key.strategy == key.strategy)
+          known.push_back(record);
+    if (known.empty())
+      known = records();
+    if (known.empty())
+      return std::numeric_limits<double>::quiet_NaN();
+    if (costs.count(key.way()) == 0)
+      costs.emplace(key.way(), cost_of(known, runs.scene.dimension));
+    const CostModel &cost = costs.at(key.way());
+    const RunRecord *finest =
+      *std::max_element(known.begin(),
+                        known.end(),
+                        [](const auto *a, const auto *b) {
+                          return a->key.mesh_level < b->key.mesh_level;
+                        });
+    const double dofs = finest->number("dofs") *
+                        std::pow(2.,
+                                 static_cast<double>(runs.scene.dimension) *
+                                   (key.mesh_level - finest->key.mesh_level));
+    const unsigned int steps =
+      n_steps(scale_phases(runs.phases, std::pow(2., key.time_level)));
+    double set_ups = 1.;
+    if (key.strategy == "adaptive")
+      set_ups = std::ceil(
+        steps / static_cast<double>(runs.scene.refinement.strategy == "none" ?
+                                      std::max(1u, steps / 10) :
+                                      runs.scene.refinement.every_n_steps));
+    return cost.seconds(dofs, steps, set_ups);
+  }
+
+
+
+  void
+  Study::announce(const PlannedRun &run, const double elapsed) const
+  {
+    const RunRecord   &record = *run.record;
+    std::ostringstream text;
+    text << std::setprecision(3) << record.name << ": "
+         << std::lround(record.number("cells")) << " cells, "
+         << record.number("steps") << " steps";
+    for (const auto &[column, word] :
+         {std::make_pair("error_energy", "error "),
+          std::make_pair("error_stress", "of the stress "),
+          std::make_pair("estimate_total", "estimate ")})
+      if (std::isfinite(record.number(column)))
+        text << ", " << word << record.number(column);
+    text << ", " << seconds_in_words(record.number("seconds_total"));
+
+    unsigned int n_left  = 0;
+    double       seconds = 0.;
+    for (const PlannedRun &other : plan)
+      if (!other.record && other.skipped.empty())
+        {
+          ++n_left;
+          seconds += expected_seconds(other.key);
+        }
+    if (n_left > 0)
+      {
+        text << "; " << n_left << " left, about " << seconds_in_words(seconds);
+        if (elapsed + seconds > parameters.budget)
+          text << " of which "
+               << seconds_in_words(std::max(0., parameters.budget - elapsed))
+               << " are in the budget";
+      }
+    out << text.str() << std::endl;
+  }
+
+
+
+  unsigned int
+  Study::find_finished()
+  {
+    unsigned int n = 0;
+    for (PlannedRun &run : plan)
+      {
+        run.record = runs.find(run.key);
+        costs.clear();
+        n += run.record ? 1 : 0;
+      }
+    return n;
+  }
+
+
+
+  std::string
+  Study::make(PlannedRun &run, const Timer &timer)
+  {
+    const auto elapsed = [&timer] {
+      return Utilities::MPI::broadcast(MPI_COMM_WORLD, timer.wall_time());
+    };
+    const std::string name   = runs.name(run.key);
+    const double      before = elapsed(), seconds = expected_seconds(run.key);
+    const bool        is_known = std::isfinite(seconds);
+    if (before + (is_known ? seconds : 0.) > parameters.budget)
+      {
+        run.skipped =
+          "would take about " + seconds_in_words(seconds) + ", and " +
+          seconds_in_words(std::max(0., parameters.budget - before)) +
+          " of 'Study/Budget' = " + seconds_in_words(parameters.budget) +
+          " were left";
+        out << name << ": left out, it " << run.skipped << std::endl;
+        return "";
+      }
+    console.show_status(
+      name + (is_known ? ": running, about " + seconds_in_words(seconds) :
+                         ": running"));
+    StudyRuns::Outcome outcome = runs.make(run.key);
+    if (!outcome.interruption.empty())
+      {
+        report(false);
+        return outcome.interruption.substr(
+                 0, outcome.interruption.find(" has ended")) +
+               " has ended the study in the run " + name +
+               "; the same command goes on.";
+      }
+    if (!outcome.record)
+      {
+        run.skipped = "failed: " + outcome.failure;
+        console.remark(name + ' ' + run.skipped);
+        return "";
+      }
+    run.record = std::move(outcome.record);
+    costs.clear();
+    announce(run, elapsed());
+    // The fits of a large study take as long as a small run.
+    const double now = elapsed();
+    if (now - last_report > 10.)
+      {
+        report(false);
+        last_report = elapsed();
+      }
+    return "";
+  }
+
+
+
+  std::string
+  Study::make_reference(const Timer &timer)
+  {
+    const auto is_reference = [](const PlannedRun &run) {
+      return run.is_reference;
+    };
+    PlannedRun &last = *std::find_if(plan.begin(), plan.end(), is_reference);
+    runs.reference   = last.key;
+    if (runs.find(last.key))
+      return "";
+    runs.reference.reset();
+
+    // Coarse runs without it tell how long it takes.
+    find_finished();
+    for (PlannedRun &run : plan)
+      if (!run.record && run.key.way() == last.key.way() &&
+          run.key.mesh_level == run.key.time_level &&
+          run.key.mesh_level + 2 < last.key.mesh_level)
+        {
+          const std::string interruption = make(run, timer);
+          if (!interruption.empty())
+            return interruption;
+        }
+    runs.reference                 = last.key;
+    const std::string interruption = make(last, timer);
+    if (!last.record)
+      {
+        runs.reference.reset();
+        out << "The study goes on without a reference run." << std::endl;
+      }
+    return interruption;
+  }
+
+
+
+  std::string
+  Study::run()
+  {
+    Timer timer;
+    runs.lock_directory();
+    out << "Study of " << runs.scene.file << ": " << plan.size() << " runs"
+        << std::endl;
+    if (!has_exact_solution)
+      {
+        const std::string interruption = make_reference(timer);
+        if (!interruption.empty())
+          return interruption;
+      }
+    const unsigned int n_found = find_finished();
+    if (n_found > 0)
+      out << "Finished already: " << n_found << std::endl;
+    for (PlannedRun &run : plan)
+      if (!run.record && run.skipped.empty())
+        {
+          const std::string interruption = make(run, timer);
+          if (!interruption.empty())
+            return interruption;
+        }
+
+    std::string failure = "'Study/Budget' leaves no time.";
+    for (const PlannedRun &run : plan)
+      if (!run.skipped.empty())
+        failure = "the run " + runs.name(run.key) + ' ' + run.skipped;
+    AssertThrow(!records().empty(),
+                ExcMessage("No run of the study could be computed: " +
+                           failure));
+    report(true);
+    out << prices_in_words(*this) << "Results in " << runs.directory
+        << "\nPictures: contrib/plot " << runs.directory << std::endl;
+    return "";
+  }
+
+
+
+  void
+  Study::report(const bool is_finished) const
+  {
+    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 &&
+        !records().empty())
+      write_report(*this, is_finished);
+  }
+} // namespace Viscoplastic

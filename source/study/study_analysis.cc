@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/parameters/time_schedule.h>
+#include <viscoplastic_contact/study/study_analysis.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+
+
+    /// "friction_force_x" as "friction_force" and 'x'; others are scalars.
+    bool
+    is_component(const std::string &quantity)
+    {
+      const std::size_t n = quantity.size();
+      return n > 2 && quantity[n - 2] == '_' && quantity[n - 1] >= 'x';
+    }
+
+
+
+    /// What has the same unit.
+    std::string
+    kind_of(const std::string &quantity)
+    {
+      const auto contains = [&quantity](const std::string &word) {
+        return quantity.find(word) != std::string::npos;
+      };
+      return contains("force") || contains("reaction")     ? "force" :
+             contains("dissipation") || contains("energy") ? "energy" :
+             contains("point") || contains("displacement") ? "length" :
+                                                             quantity;
+    }
+
+
+
+    /// The size of a quantity; for a component that of its vector. Zero for
+    /// what only rounding keeps from being that.
+    double
+    size_of(const RunRecord &record, const std::string &quantity)
+    {
+      double size = 0., largest = 0.;
+      for (const auto &[name, value] : record.quantities)
+        {
+          if (!std::isfinite(value))
+            continue;
+          if (name == quantity ||
+              (is_component(name) && is_component(quantity) &&
+               name.compare(
+                 0, name.size() - 1, quantity, 0, quantity.size() - 1) == 0))
+            size += value * value;
+          if (kind_of(name) == kind_of(quantity))
+            largest = std::max(largest, std::abs(value));
+        }
+      size = std::sqrt(size);
+      return size > 1e-9 * largest ? size : 0.;
+    }
+  } // namespace
+
+
+
+  double
+  quantity_error(const RunRecord   &record,
+                 const std::string &quantity,
+                 const RunRecord   *reference)
+  {
+    if (reference == nullptr || record.key == reference->key)
+      return nan;
+    const double size = size_of(*reference, quantity);
+    return size > 0. ? std::abs(record.quantity(quantity) -
+                                reference->quantity(quantity)) /
+                         size :
+                       nan;
+  }
+
+
+
+  double
+  error_of(const RunRecord   &record,
+           const std::string &measure,
+           const RunRecord   *reference)
+  {
+    if (record.numbers.count(measure) > 0)
+      return record.number(measure);
+    if (measure != "quantities")
+      return quantity_error(record,
+                            measure.substr(0, measure.rfind("_error")),
+                            reference);
+    double largest = nan;
+    for (const auto &entry : record.quantities)
+      {
+        const double error = quantity_error(record, entry.first, reference);
+        if (std::isfinite(error) && !(error <= largest))
+          largest = error;
+      }
+    return largest;
+  }
+
+
+
+  std::string
+  best_measure(const Records &records, const RunRecord *reference)
+  {
+    for (const std::string measure :
+         {"error_energy", "estimate_total", "quantities"})
+      if (std::count_if(
+            records.begin(), records.end(), [&](const RunRecord *record) {
+              const double error = error_of(*record, measure, reference);
+              return std::isfinite(error) && error > 0.;
+            }) >= 3)
+        return measure;
+    return "";
+  }
+
+
+
+  std::string
+  measure_in_words(const std::string &measure)
+  {
+    if (measure == "error_energy")
+      return "error of u in the energy norm";
+    if (measure == "error_h1")
+      return "error of u in H1";
+    if (measure == "error_stress")
+      return "error of the stress in L2";
+    if (measure == "error_multiplier")
+      return "error of the multiplier on Gamma_3";
+    if (measure == "estimate_total")
+      return "estimated error of u in the energy norm";
+    if (measure == "quantities")
+      return "largest error of all quantities of interest";
+    return measure;
+  }
+
+
+
+  Records
+  of_way(const Records &records, const RunKey &way)
+  {
+    Records result;
+    for (const RunRecord *record : records)
+      if (record->key.way() == way.way())
+        result.push_back(record);
+    return result;
+  }
+
+
+
+  std::vector<Sample>
+  error_samples(const Records     &records,
+                const std::string &measure,
+                const RunRecord   *reference)
+  {
+    std::vector<Sample> samples;
+    for (const RunRecord *record : records)
+      samples.push_back({record->number("h"),
+                         record->number("k"),
+                         error_of(*record, measure, reference)});
+    return samples;
+  }
+
+
+
+  TwoPowers
+  fit_measure(const Records     &records,
+              const std::string &measure,
+              const RunRecord   *reference)
+  {
+    const auto samples = error_samples(records, measure, reference);
+    if (measure != "estimate_total")
+      {
+        const bool is_norm =
+          std::find(field_errors.begin(), field_errors.end(), measure) !=
+          field_errors.end();
+        if (reference == nullptr ||
+            (is_norm && std::none_of(records.begin(),
+                                     records.end(),
+                                     [](const auto *record) {
+                                       return record->numbers.count(
+                                                "is_difference") > 0;
+                                     })))
+          return fit_error(samples);
+        return fit_error(samples,
+                         Finer{reference->number("h"),
+                               reference->number("k"),
+                               is_norm ? 2. : 1.,
+                               1.});
+      }
+    std::vector<double> space, time;
+    for (const RunRecord *record : records)
+      {
+        space.push_back(record->number("estimate_space") +
+                        record->number("estimate_initial"));
+        time.push_back(record->number("estimate_time"));
+      }
+    return fit_error_parts(samples, space, time);
+  }
+
+
+
+  CostModel
+  cost_of(const Records &records, const unsigned int dim)
+  {
+    std::vector<CostSample> samples;
+    for (const RunRecord *record : records)
+      samples.push_back({record->number("dofs"),
+                         record->number("steps"),
+                         record->number("set_ups"),
+                         record->number("seconds_set_up"),
+                         record->number("seconds_total"),
+                         record->number("peak_memory_MB")});
+    return fit_cost(samples, dim);
+  }
+
+
+
+  Market
+  make_market(const StudyRuns   &runs,
+              const Records     &records,
+              const std::string &measure,
+              const RunRecord   *reference)
+  {
+    Market market;
+    market.error      = fit_measure(records, measure, reference);
+    market.dim        = runs.scene.dimension;
+    market.cost       = cost_of(records, market.dim);
+    market.h          = runs.h;
+    market.phases     = runs.phases;
+    market.k          = TimeSchedule(runs.scene.time.phases).largest_step().k;
+    market.smallest_h = market.smallest_k =
+      std::numeric_limits<double>::infinity();
+    int    coarsest_mesh = std::numeric_limits<int>::max();
+    double largest_k     = 0.;
+    for (const RunRecord *record : records)
+      {
+        coarsest_mesh = std::min(coarsest_mesh, record->key.mesh_level);
+        largest_k     = std::max(largest_k, record->number("k"));
+        // From the finest mesh, whose boundary counts least.
+        if (record->number("h") < market.smallest_h)
+          {
+            market.smallest_h = record->number("h");
+            market.dofs       = record->number("dofs") *
+                          std::pow(market.smallest_h / market.h,
+                                   static_cast<double>(market.dim));
+          }
+        market.smallest_k  = std::min(market.smallest_k, record->number("k"));
+        const double limit = record->number("step_limit");
+        // Stresses may lower it still; implicit schemes go beyond.
+        if (std::isfinite(limit) && limit >= record->number("k"))
+          market.largest_k = std::min(market.largest_k, 0.95 * limit);
+      }
+    // Nothing coarser than what was measured: there errors obey no law.
+    market.coarsest_level = -coarsest_mesh;
+    market.largest_k      = std::min(market.largest_k, largest_k);
+    if (records[0]->key.strategy == "adaptive")
+      market.steps_per_mesh = runs.scene.refinement.strategy != "none" ?
+                                runs.scene.refinement.every_n_steps :
+                                std::max(1u, n_steps(runs.phases) / 10);
+    return market;
+  }
+
+
+
+  std::vector<Richardson>
+  extrapolate(const std::array<const RunRecord *, 3> &runs)
+  {
+    std::vector<Richardson> result;
+    for (const auto &entry : runs[2]->quantities)
+      {
+        Richardson r;
+        r.quantity = entry.first;
+        for (unsigned int i = 0; i < 3; ++i)
+          r.values[i] = runs[i]->quantity(r.quantity);
+        const double first = r.values[1] - r.values[0],
+                     last  = r.values[2] - r.values[1],
+                     size  = size_of(*runs[2], r.quantity);
+        if (!(size > 0.))
+          continue;
+        if (!(std::abs(last) > 1e-12 * size))
+          {
+            // Nothing left to converge.
+            r.order          = nan;
+            r.extrapolated   = r.values[2];
+            r.error          = 0.;
+            r.is_trustworthy = true;
+          }
+        else
+          {
+            r.order = first / last > 0. ? std::log2(first / last) : nan;
+            r.is_trustworthy = r.order >= 0.5 && r.order <= 3.;
+            r.extrapolated =
+              r.is_trustworthy ? r.values[2] + last / (first / last - 1.) : nan;
+            r.error = r.is_trustworthy ?
+                        std::abs(r.extrapolated - r.values[2]) / size :
+                        std::abs(last) / size;
+          }
+        result.push_back(r);
+      }
+    return result;
+  }
+} // namespace Viscoplastic

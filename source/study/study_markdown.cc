@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/study/study_report.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::string
+    table_row(const std::vector<std::string> &cells)
+    {
+      std::string row = "|";
+      for (const std::string &cell : cells)
+        row += ' ' + cell + " |";
+      return row + '\n';
+    }
+
+
+
+    std::string
+    table_head(const std::vector<std::string> &cells)
+    {
+      return table_row(cells) +
+             table_row(std::vector<std::string>(cells.size(), "---"));
+    }
+
+
+
+    /// Errors to show: those of the fields or estimates that are known, or
+    /// else quantities.
+    std::vector<std::string>
+    shown_measures(const Study &study)
+    {
+      std::vector<std::string> result;
+      const auto               is_known = [&](const std::string &measure) {
+        for (const RunRecord *record : study.records())
+          if (std::isfinite(error_of(*record, measure, study.reference())))
+            return true;
+        return false;
+      };
+      for (const std::string &measure : field_errors)
+        if (is_known(measure))
+          result.push_back(measure);
+      if (is_known("estimate_total"))
+        result.push_back("estimate_total");
+      if (result.empty() || !study.has_exact_solution)
+        result.push_back("quantities");
+      return result;
+    }
+
+
+
+    std::string
+    number_or_dash(const double value, const unsigned int n = 3)
+    {
+      return std::isfinite(value) ? digits(value, n) : "-";
+    }
+
+
+
+    std::string
+    runs_table(const Study &study, const WayResult &way)
+    {
+      const auto               measures = shown_measures(study);
+      std::ostringstream       text;
+      std::vector<std::string> head{
+        "run", "h", "k", "cells", "unknowns", "steps", "seconds", "MB"};
+      head.insert(head.end(), measures.begin(), measures.end());
+      const bool has_effectivity =
+        std::isfinite(way.records[0]->number("effectivity"));
+      if (has_effectivity)
+        head.push_back("effectivity");
+      text << table_head(head);
+      for (const RunRecord *record : way.records)
+        {
+          std::vector<std::string> row{'`' + record->name + '`'};
+          for (const char *name : {"h",
+                                   "k",
+                                   "cells",
+                                   "dofs",
+                                   "steps",
+                                   "seconds_total",
+                                   "peak_memory_MB"})
+            row.push_back(number_or_dash(record->number(name)));
+          for (const std::string &measure : measures)
+            row.push_back(
+              number_or_dash(error_of(*record, measure, study.reference())));
+          if (has_effectivity)
+            row.push_back(number_or_dash(record->number("effectivity")));
+          text << table_row(row);
+        }
+      return text.str();
+    }
+
+
+
+    /// Orders between neighbours of each ladder.
+    std::string
+    orders_table(const Study &study, const WayResult &way)
+    {
+      const auto               measures = shown_measures(study);
+      std::vector<std::string> head{"ladder", "from", "to"};
+      head.insert(head.end(), measures.begin(), measures.end());
+      std::string text = table_head(head);
+      for (const std::string ladder : {"space", "time", "both"})
+        {
+          const RunRecord *last = nullptr;
+          for (const PlannedRun &run : study.plan)
+            {
+              if (!run.record || run.key.way() != way.way.way() ||
+                  run.ladders.count(ladder) == 0)
+                continue;
+              if (last != nullptr)
+                {
+                  const std::string        size = ladder == "time" ? "k" : "h";
+                  std::vector<std::string> row{ladder,
+                                               '`' + last->name + '`',
+                                               '`' + run.record->name + '`'};
+                  bool                     is_known = false;
+                  for (const std::string &measure : measures)
+                    {
+                      const double order =
+                        std::log(
+                          error_of(*last, measure, study.reference()) /
+                          error_of(*run.record, measure, study.reference())) /
+                        std::log(last->number(size) / run.record->number(size));
+                      row.push_back(number_or_dash(order));
+                      is_known |= std::isfinite(order);
+                    }
+                  if (is_known)
+                    text += table_row(row);
+                }
+              last = &*run.record;
+            }
+        }
+      return text;
+    }
+
+
+
+    std::string
+    fits_in_words(const WayResult &way)
+    {
+      std::ostringstream text;
+      const TwoPowers   &error = way.market->error;
+      const CostModel   &cost  = way.market->cost;
+      text << "Fit to the " << measure_in_words(way.measure)
+           << ", relative:\n\n    error = ";
+      if (error.m == 1.)
+        text << digits(error.c_1) << " h^" << digits(error.p) << " + "
+             << digits(error.c_2) << " k^" << digits(error.q) << "\n\n";
+      else
+        text << "((" << digits(error.c_1) << " h^" << digits(error.p)
+             << ")^2 + (" << digits(error.c_2) << " k^" << digits(error.q)
+             << ")^2)^(1/2)\n\nThe parts add up in squares, as orthogonal "
+                "ones do: this fits better than their sum. ";
+      if (!error.is_separable)
+        text << "The runs refine h and k together, so that their parts cannot "
+                "be told apart; half of the error is given to each. ";
+      for (const auto &[is_fitted, name] :
+           {std::make_pair(error.p_is_fitted, "p, that of h,"),
+            std::make_pair(error.q_is_fitted, "q, that of k,")})
+        if (!is_fitted)
+          text << "The exponent " << name
+               << " does not show in these runs and is the theoretical 1. ";
+      if (way.records[0]->numbers.count("is_difference") > 0 &&
+          way.measure.compare(0, 6, "error_") == 0)
+        text << "This is the law of the errors themselves; what was measured "
+                "are differences to the reference, whose own error the fit "
+                "subtracts. ";
+      text << "The fit misses " << error.n_samples << " runs by a factor of "
+           << digits(std::exp(error.rms), 3) << " (root mean square) and "
+           << digits(error.worst_factor, 3) << " at worst (`"
+           << way.records[error.worst_sample]->name << "`).\n";
+      const RunRecord *finest = way.records.back();
+      const double     h = finest->number("h"), k = finest->number("k");
+      text << "At the finest run `" << finest->name << "` the mesh has "
+           << std::lround(100. * error.first(h) /
+                          (error.first(h) + error.second(k)))
+           << " % of the sum of both parts, the steps have the rest.\n\n";
+      const auto power = [](const TwoPowers &fit) {
+        std::string formula = digits(fit.c_1) + " dofs^" + digits(fit.p, 3);
+        if (fit.c_2 > 0.)
+          formula += " + " + digits(fit.c_2);
+        return formula;
+      };
+      text << "    seconds = "
+           << (way.way.strategy == "adaptive" ? "meshes" : "1") << " ("
+           << power(cost.set_up) << ")\n            + steps ("
+           << power(cost.step)
+           << ")\n    MB      = " << power(cost.memory_model)
+           << "\n\nThe seconds miss " << cost.n_samples
+           << " runs by a factor of " << digits(std::exp(cost.rms), 3)
+           << " (root mean square) and " << digits(cost.worst_factor, 3)
+           << " at worst (`" << way.records[cost.worst_sample]->name
+           << "`), the memory by " << digits(std::exp(cost.memory_model.rms), 3)
+           << ". One power alone, seconds = " << digits(cost.simple.c_1)
+           << " dofs^" << digits(cost.simple.p, 3) << " steps, misses by "
+           << digits(std::exp(cost.simple.rms), 3) << " and "
+           << digits(cost.simple.worst_factor, 3) << " at worst.\n";
+      return text.str();
+    }
+
+
+
+    std::string
+    prices_table(const Study &study, const WayResult &way)
+    {
+      std::ostringstream text;
+      const double       budget = study.parameters.budget;
+      text << table_head({"error",
+                          "mesh level",
+                          "h",
+                          "steps",
+                          "k",
+                          "unknowns",
+                          "seconds",
+                          "MB",
+                          "half the error costs"});
+      std::string beyond;
+      for (const Price &price : way.prices)
+        {
+          if (!price.is_in_budget)
+            {
+              beyond += "- " + in_words(*way.market, price, budget) + '\n';
+              continue;
+            }
+          const Offer &offer = *price.offer;
+          text << table_row(
+            {digits(price.tolerance),
+             std::to_string(offer.mesh_level) + (offer.is_far ? " (far)" : ""),
+             digits(offer.h),
+             std::to_string(offer.steps),
+             digits(offer.k),
+             digits(offer.dofs),
+             digits(offer.seconds, 2),
+             digits(offer.memory, 2),
+             digits(price.halving, 2) + " times"});
+        }
+      text << '\n';
+      if (!beyond.empty())
+        text << beyond << '\n';
+      text << next_refinement(*way.market) << '\n';
+      return text.str();
+    }
+
+
+
+    std::string
+    reference_in_words(const Study &study)
+    {
+      std::ostringstream text;
+      const RunRecord   *reference = study.reference();
+      if (study.has_exact_solution)
+        text << "Errors of fields are those to the exact solution of the "
+                "scene. ";
+      else if (study.runs.reference)
+        text << "Errors of fields are differences to those of the run `"
+             << study.runs.name(*study.runs.reference)
+             << "` at the ends of the phases of time; its own error, unknown, "
+                "is part of them. ";
+      if (reference != nullptr)
+        text << "Quantities of interest are compared with those of the run `"
+             << reference->name << "`.\n";
+      for (const PlannedRun &run : study.plan)
+        if (run.is_reference && !run.record)
+          text << "\nThe reference run `" << study.runs.name(run.key)
+               << "` is missing: " << run.skipped
+               << ". The finest run there is has taken its place, and errors "
+                  "near it are too small.\n";
+
+      // The finest three of the diagonal.
+      Records diagonal;
+      for (const PlannedRun &run : study.plan)
+        if (run.record && run.key.strategy == "uniform" &&
+            run.key.mesh_level == run.key.time_level &&
+            run.key.scheme == study.plan.back().key.scheme &&
+            run.key.history == study.plan.back().key.history)
+          diagonal.push_back(&*run.record);
+      if (diagonal.size() < 3)
+        return text.str();
+      const std::size_t n = diagonal.size();
+      text << "\nRichardson check of the quantities at the end, in the runs `"
+           << diagonal[n - 3]->name << "`, `" << diagonal[n - 2]->name
+           << "` and `" << diagonal[n - 1]->name << "`:\n\n"
+           << table_head({"quantity",
+                          "values",
+                          "order",
+                          "extrapolated",
+                          "error of the last",
+                          "as a reference"});
+      for (const Richardson &r :
+           extrapolate({{diagonal[n - 3], diagonal[n - 2], diagonal[n - 1]}}))
+        text << table_row({r.quantity,
+                           digits(r.values[0], 5) + ", " +
+                             digits(r.values[1], 5) + ", " +
+                             digits(r.values[2], 5),
+                           number_or_dash(r.order),
+                           number_or_dash(r.extrapolated, 5),
+                           number_or_dash(r.error, 2),
+                           r.is_trustworthy ? "good" : "not to be trusted"});
+      return text.str();
+    }
+
+
+
+  } // namespace
+
+
+
+  std::string
+  study_as_markdown(const Study &study, const bool is_finished)
+  {
+    const Origin       from = origin();
+    std::ostringstream text;
+    const auto         ways = analyse(study);
+    text << "# Study of " << study.runs.scene.file << "\n\n"
+         << (is_finished ? "" : "**Not finished yet.** ")
+         << "viscoplastic_contact " << from.program << ", " << from.n_ranks
+         << " MPI rank(s), " << from.machine << ", " << from.date
+         << ".\n\nThe ladder `space` refines the mesh with the steps of the "
+            "finest level of the study, `time` the steps on its finest mesh, "
+            "`both` both, which share the finest run: what a ladder leaves "
+            "alone is as good as the study has it, and its part of the error "
+            "is named below. Errors are relative to the largest norm over "
+            "all times. In adaptive runs, h is the width of a uniform mesh "
+            "with as many cells.\n";
+    for (const WayResult &way : ways)
+      {
+        text << "\n## " << way.way.way() << "\n\n"
+             << runs_table(study, way)
+             << "\nObserved orders between neighbours:\n\n"
+             << orders_table(study, way) << '\n';
+        if (way.market)
+          text << fits_in_words(way) << "\n### Price list\n\n"
+               << prices_table(study, way);
+        else
+          text << "No price list: the error is known of fewer than three "
+                  "runs.\n";
+      }
+    text << "\n## Reference\n\n" << reference_in_words(study);
+    std::string skipped;
+    for (const PlannedRun &run : study.plan)
+      if (!run.skipped.empty())
+        skipped +=
+          "- `" + study.runs.name(run.key) + "`: " + run.skipped + ".\n";
+    text << "\n## Left out\n\n"
+         << (skipped.empty() ? "Nothing.\n" : skipped) << "\n## Pictures\n\n"
+         << "    contrib/plot " << study.runs.directory << "\n";
+    std::error_code          error;
+    std::vector<std::string> pictures;
+    for (const auto &file :
+         std::filesystem::directory_iterator(study.runs.directory, error))
+      if (file.path().extension() == ".png")
+        pictures.push_back(file.path().filename().string());
+    std::sort(pictures.begin(), pictures.end());
+    for (const std::string &name : pictures)
+      text << "\n![" << std::filesystem::path(name).stem().string() << "]("
+           << name << ")\n";
+    return text.str();
+  }
+} // namespace Viscoplastic

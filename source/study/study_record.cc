@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Boost's JSON parser uses placeholders that boost says are deprecated.
+#define BOOST_BIND_GLOBAL_PLACEHOLDERS
+
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/study/study_record.h>
+
+#include <boost/property_tree/json_parser.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  const std::vector<std::string> field_errors{"error_energy",
+                                              "error_h1",
+                                              "error_stress",
+                                              "error_multiplier"};
+
+  const std::vector<std::string> estimate_parts{"estimate_space",
+                                                "estimate_time",
+                                                "estimate_algebraic",
+                                                "estimate_initial",
+                                                "estimate_total"};
+
+  namespace
+  {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+
+
+    /// Whether a column is a quantity of interest, with or without _x, _y, _z.
+    bool
+    is_quantity(std::string name)
+    {
+      const std::size_t n = name.size();
+      if (n > 2 && name[n - 2] == '_' && name[n - 1] >= 'x')
+        name.resize(n - 2);
+      for (const char *prefix : {"reaction_", "point"})
+        {
+          const std::string start = prefix;
+          if (name.compare(0, start.size(), start) == 0 &&
+              name.size() > start.size() &&
+              name.find_first_not_of("0123456789", start.size()) ==
+                std::string::npos)
+            return true;
+        }
+      static const std::vector<std::string> names{"friction_force",
+                                                  "slip_area",
+                                                  "friction_dissipation",
+                                                  "viscous_dissipation",
+                                                  "max_displacement",
+                                                  "stored_energy"};
+      return std::find(names.begin(), names.end(), name) != names.end();
+    }
+
+
+
+    double
+    largest(const Table &table, const std::string &name)
+    {
+      if (!table.has(name))
+        return nan;
+      double result = 0.;
+      for (const double value : table.columns.at(name))
+        result = std::max(result, std::abs(value)); // nan does not win
+      return result;
+    }
+
+
+
+    double
+    relative(const double value, const double size)
+    {
+      return size > 0. ? value / size : nan;
+    }
+  } // namespace
+
+
+
+  Table
+  read_table(const std::string &file)
+  {
+    std::ifstream in(file);
+    std::string   line, item;
+    Table         table;
+    AssertThrow(std::getline(in, line),
+                ExcMessage("There is no table in '" + file + "'."));
+    std::istringstream header(line);
+    while (std::getline(header, item, ','))
+      table.names.push_back(item);
+    while (std::getline(in, line))
+      {
+        std::istringstream row(line);
+        for (const std::string &name : table.names)
+          {
+            AssertThrow(std::getline(row, item, ','),
+                        ExcMessage("A row of '" + file + "' is too short."));
+            double value = nan;
+            try
+              {
+                value = std::stod(item);
+              }
+            catch (const std::exception &)
+              {} // not a number
+            table.columns[name].push_back(value);
+          }
+      }
+    AssertThrow(!table.columns.empty(),
+                ExcMessage("There is no row in '" + file + "'."));
+    return table;
+  }
+
+
+
+  double
+  RunRecord::number(const std::string &column) const
+  {
+    const auto found = numbers.find(column);
+    return found == numbers.end() ? nan : found->second;
+  }
+
+
+
+  double
+  RunRecord::quantity(const std::string &column) const
+  {
+    for (const auto &[name, value] : quantities)
+      if (name == column)
+        return value;
+    return nan;
+  }
+
+
+
+  RunRecord
+  make_record(const RunKey          &key,
+              const Table           &statistics,
+              const RunMeasurements &measurements,
+              const bool             is_difference)
+  {
+    RunRecord record;
+    record.key         = key;
+    auto       &number = record.numbers;
+    const auto &column = [&](const std::string &name) {
+      return statistics.has(name) ? statistics.columns.at(name) :
+                                    std::vector<double>();
+    };
+    const auto sum = [&](const std::string &name) {
+      const auto values = column(name);
+      return std::accumulate(values.begin(), values.end(), 0.);
+    };
+    const auto phase = [&](const std::string &name) {
+      const auto found = measurements.seconds.find(name);
+      return found == measurements.seconds.end() ? 0. : found->second;
+    };
+    const double n_rows = column("step").size(); // with the initial state
+    number["steps"]     = n_rows - 1.;
+    number["k"]         = largest(statistics, "k");
+    for (const std::string name : {"cells", "dofs"})
+      {
+        const double first = column(name).front();
+        number[name] =
+          n_rows > 1. ? (sum(name) - first) / (n_rows - 1.) : first;
+      }
+    const auto totals = column("wall_total");
+    // Neither output nor the comparison with an exact solution are what a
+    // user would pay for.
+    number["seconds_total"] =
+      totals.back() - sum("wall_output") - phase("errors");
+    for (const std::string name : {"rate", "load", "contact", "balance"})
+      number["seconds_" + name] = sum("wall_" + name);
+    number["seconds_estimate"] = statistics.has("wall_estimate") ?
+                                   sum("wall_estimate") :
+                                   phase("estimate");
+    number["seconds_set_up"]   = phase("set-up");
+    number["seconds_output"]   = phase("output");
+    number["peak_memory_MB"]   = measurements.peak_memory;
+    for (const std::string name : {"contact_iterations", "linear_iterations"})
+      number[name] = sum(name);
+
+    double limit = std::numeric_limits<double>::infinity();
+    for (const double value : column("step_limit"))
+      if (value > 0.)
+        limit = std::min(limit, value);
+    number["step_limit"] = limit;
+
+    // Norms of a reference are known at the ends of phases only, where loads
+    // may have gone; those of the run itself are known always.
+    const std::map<std::string, std::string> own_norms{
+      {"error_energy", "energy_norm"}, {"error_stress", "stress_norm"}};
+    for (const std::string &name : field_errors)
+      {
+        double     size = largest(statistics, "exact" + name.substr(5));
+        const auto own  = own_norms.find(name);
+        if (is_difference && own != own_norms.end() &&
+            largest(statistics, own->second) > size)
+          size = largest(statistics, own->second);
+        number[name] = relative(largest(statistics, name), size);
+      }
+    if (is_difference)
+      number["is_difference"] = 1.;
+    for (const std::string &name : estimate_parts)
+      number[name] =
+        relative(largest(statistics, name), largest(statistics, "energy_norm"));
+    number["effectivity"] = relative(largest(statistics, "estimate_total"),
+                                     largest(statistics, "error_energy"));
+
+    for (const std::string &name : statistics.names)
+      if (is_quantity(name))
+        record.quantities.emplace_back(name,
+                                       statistics.columns.at(name).back());
+    return record;
+  }
+
+
+
+  std::string
+  json_number(const double value)
+  {
+    if (!std::isfinite(value))
+      return "null";
+    std::ostringstream text;
+    text << std::setprecision(12) << value;
+    return text.str();
+  }
+
+
+
+  std::string
+  to_json(const RunRecord                          &record,
+          const std::map<std::string, std::string> &stamp)
+  {
+    std::ostringstream json;
+    json << "{\n  \"run\": " << std::quoted(record.name)
+         << ",\n  \"strategy\": " << std::quoted(record.key.strategy)
+         << ",\n  \"scheme\": " << std::quoted(record.key.scheme)
+         << ",\n  \"history\": " << std::quoted(record.key.history)
+         << ",\n  \"mesh_level\": " << record.key.mesh_level
+         << ",\n  \"time_level\": " << record.key.time_level
+         << ",\n  \"stamp\": {";
+    const char *separator = "";
+    for (const auto &[name, text] : stamp)
+      {
+        json << separator << "\n    " << std::quoted(name) << ": "
+             << std::quoted(text);
+        separator = ",";
+      }
+    json << "\n  },\n  \"numbers\": {";
+    separator = "";
+    for (const auto &[name, value] : record.numbers)
+      {
+        json << separator << "\n    " << std::quoted(name) << ": "
+             << json_number(value);
+        separator = ",";
+      }
+    json << "\n  },\n  \"quantities\": {";
+    separator = "";
+    for (const auto &[name, value] : record.quantities)
+      {
+        json << separator << "\n    " << std::quoted(name) << ": "
+             << json_number(value);
+        separator = ",";
+      }
+    json << "\n  }\n}\n";
+    return json.str();
+  }
+
+
+
+  RunRecord
+  from_json(const std::string &text, std::map<std::string, std::string> &stamp)
+  {
+    std::istringstream          in(text);
+    boost::property_tree::ptree tree;
+    boost::property_tree::read_json(in, tree);
+    RunRecord record;
+    record.name           = tree.get<std::string>("run");
+    record.key.strategy   = tree.get<std::string>("strategy");
+    record.key.scheme     = tree.get<std::string>("scheme");
+    record.key.history    = tree.get<std::string>("history");
+    record.key.mesh_level = tree.get<int>("mesh_level");
+    record.key.time_level = tree.get<int>("time_level");
+    for (const auto &[name, value] : tree.get_child("stamp"))
+      stamp[name] = value.data();
+    const auto number = [](const std::string &value) {
+      return value == "null" ? nan : Utilities::string_to_double(value);
+    };
+    for (const auto &[name, value] : tree.get_child("numbers"))
+      record.numbers[name] = number(value.data());
+    for (const auto &[name, value] : tree.get_child("quantities"))
+      record.quantities.emplace_back(name, number(value.data()));
+    return record;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/solver_gmres.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/contact/friction_points.h>
+#include <viscoplastic_contact/laws/backward_euler.h>
+#include <viscoplastic_contact/time_stepping/nonsymmetric_correction.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The algorithmic tangents less E, at the samples.
+    template <int dim>
+    std::vector<SymmetricTensor<4, 3>>
+    flow_tangents(const FlowLaws<dim>      &laws,
+                  const NewtonIterate<dim> &at,
+                  const double              t,
+                  const double              k)
+    {
+      const StressSampling<dim>         &sampling = laws.sampling;
+      const unsigned int                 n        = sampling.n_samples;
+      const auto                         now      = laws.at(t);
+      std::vector<SymmetricTensor<4, 3>> result(sampling.n_cells() * n);
+      std::vector<SymmetricTensor<2, 3>> strain(n);
+      fail_together(sampling.space.communicator, [&] {
+        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+          if (const ViscoplasticLaw *law = now.law(c))
+            {
+              const Stiffness            &stiffness = sampling.moduli(c);
+              const SymmetricTensor<4, 3> E         = stiffness.tensor();
+              sampling.strains(c, at.ghosted_u.begin(), strain.data());
+              for (unsigned int s = 0; s < n; ++s)
+                result[c * n + s] =
+                  algorithmic_tangent(*law,
+                                      stiffness.stress(strain[s]) +
+                                        at.z[c * n + s],
+                                      strain[s],
+                                      k,
+                                      stiffness,
+                                      now.point(c, s)) -
+                  E;
+            }
+      });
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  bool
+  have_symmetric_tangents(const FlowLaws<dim> &laws, const double t)
+  {
+    const auto now    = laws.at(t);
+    bool       result = true;
+    for (std::size_t c = 0; c < laws.sampling.n_cells(); ++c)
+      if (const ViscoplasticLaw *law = now.law(c))
+        result &= law->has_symmetric_tangents();
+    return Utilities::MPI::min(result ? 1 : 0,
+                               laws.sampling.space.communicator);
+  }
+
+
+
+  /// P (a_C + springs) P on vectors of the truncated space.
+  template <int dim>
+  struct NonsymmetricCorrection<dim>::Operator
+  {
+    const NonsymmetricCorrection             &step;
+    const std::vector<SymmetricTensor<4, 3>> &flow; // C - E
+    const FaceTruncation                     &truncation;
+    mutable DistributedVector                 ghosted;
+
+    void
+    vmult(DistributedVector &y, const DistributedVector &x) const
+    {
+      const StressSampling<dim> &sampling = step.sampling;
+      const unsigned int         n        = sampling.n_samples;
+      step.elastic_matrix.vmult(y, x);
+      step.space.to_cartesian(x, ghosted);
+      IrreversibleStress                 stress(flow.size());
+      std::vector<SymmetricTensor<2, 3>> strain(n);
+      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        {
+          sampling.strains(c, ghosted.begin(), strain.data());
+          for (unsigned int s = 0; s < n; ++s)
+            stress[c * n + s] = -1. * (flow[c * n + s] * strain[s]);
+        }
+      add_irreversible_load(sampling, stress, y);
+      if (step.face)
+        {
+          const FrictionFace &face = step.face->layout();
+          if (truncation.has_springs())
+            {
+              Vector<double> force = step.face->face_vector(x);
+              for (unsigned int node = 0; node < face.n_nodes(); ++node)
+                face.set_node_values(truncation.spring[node] *
+                                       face.node_values(force, node),
+                                     node,
+                                     force);
+              step.add_face(1., force, y);
+            }
+          step.project(truncation, y);
+        }
+      step.restrict_to_unknowns(y);
+    }
+  };
+
+
+
+  /// The inverse for the symmetric matrix, as well as the solver has it.
+  template <int dim>
+  struct NonsymmetricCorrection<dim>::Preconditioner
+  {
+    const NonsymmetricCorrection &step;
+    const FaceTruncation         &truncation;
+    unsigned int                 &iterations; // of its own
+
+    void
+    vmult(DistributedVector &y, const DistributedVector &x) const
+    {
+      // GMRES measures; the preconditioner need not.
+      constexpr double tolerance = 0.1;
+      y                          = 0.;
+      if (!step.face)
+        {
+          iterations += step.solver.solve(x, y, tolerance);
+          return;
+        }
+      const unsigned int n = step.face->layout().n_dofs();
+      Vector<double>     face_part(n);
+      step.solver.begin(x, y);
+      step.solver.set_truncation(truncation, /* may_rebuild = */ false);
+      iterations +=
+        step.solver.correct(Vector<double>(n), tolerance, face_part);
+      step.solver.search_terms(face_part);
+      step.solver.take_step(1.);
+      step.solver.finish();
+    }
+  };
+
+
+
+  template <int dim>
+  NonsymmetricCorrection<dim>::NonsymmetricCorrection(
+    const FlowLaws<dim>       &laws,
+    const DistributedMatrix   &elastic_matrix,
+    BulkSolver                &solver,
+    const ContactFace<dim>    *face,
+    const DistributedVector   &load,
+    const DistributedVector   &old_u,
+    const std::vector<double> &bounds,
+    const Vector<double>      &foundation_step)
+    : laws(laws)
+    , sampling(laws.sampling)
+    , space(sampling.space)
+    , elastic_matrix(elastic_matrix)
+    , solver(solver)
+    , face(face)
+    , load(load)
+    , old_u(old_u)
+    , bounds(bounds)
+    , foundation_step(foundation_step)
+  {}
+
+
+
+  template <int dim>
+  void
+  NonsymmetricCorrection<dim>::restrict_to_unknowns(DistributedVector &v) const
+  {
+    for (std::size_t i = 0; i < space.excluded().size(); ++i)
+      if (space.excluded()[i])
+        v.begin()[i] = 0.;
+  }
+
+
+
+  template <int dim>
+  void
+  NonsymmetricCorrection<dim>::add_face(const double          factor,
+                                        const Vector<double> &on_face,
+                                        DistributedVector    &v) const
+  {
+    for (unsigned int k = 0; k < on_face.size(); ++k)
+      if (space.owned.is_element(face->dofs()[k]))
+        v.begin()[space.owned.index_within_set(face->dofs()[k])] +=
+          factor * on_face[k];
+  }
+
+
+
+  template <int dim>
+  void
+  NonsymmetricCorrection<dim>::project(const FaceTruncation &truncation,
+                                       DistributedVector    &v) const
+  {
+    Vector<double> change = face->face_vector(v), projected(change);
+    truncation.project(face->layout(), projected);
+    change.sadd(-1., 1., projected);
+    add_face(1., change, v);
+  }
+
+
+
+  template <int dim>
+  FaceTruncation
+  NonsymmetricCorrection<dim>::truncation(const FrictionState &friction) const
+  {
+    if (!face)
+      return {};
+    const FrictionFace       &layout = face->layout();
+    std::vector<Tensor<2, 3>> inverse(layout.n_nodes());
+    for (unsigned int node = 0; node < layout.n_nodes(); ++node)
+      inverse[node] = invert(solver.face_matrix().diagonal_block(node));
+    return make_truncation(layout, bounds, friction, inverse);
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  NonsymmetricCorrection<dim>::residual(NewtonIterate<dim> &iterate) const
+  {
+    DistributedVector r(load), product(load);
+    elastic_matrix.vmult(product, iterate.u);
+    r -= product;
+    add_irreversible_load(sampling, iterate.z, r);
+    restrict_to_unknowns(r);
+    if (face)
+      {
+        Vector<double> force(face->layout().n_dofs());
+        fit_multipliers(face->layout(),
+                        bounds,
+                        face->face_vector(r),
+                        iterate.friction,
+                        force);
+        add_face(-1., force, r);
+      }
+    return r;
+  }
+
+
+
+  template <int dim>
+  double
+  NonsymmetricCorrection<dim>::dual_norm(const DistributedVector &r) const
+  {
+    DistributedVector v(r);
+    v = 0.;
+    if (!face)
+      {
+        solver.solve(r, v, 0.1);
+        return std::sqrt(std::max(0., v * r));
+      }
+    // What the bulk has answered at once, and what is left.
+    solver.begin(r, v);
+    const double answered = solver.energy_norm();
+    return std::hypot(
+      answered, solver.dual_norm(Vector<double>(face->layout().n_dofs())));
+  }
+
+
+
+  template <int dim>
+  NewtonIterate<dim>
+  NonsymmetricCorrection<dim>::move(const NewtonIterate<dim> &from,
+                                    const DistributedVector  &w,
+                                    const double              share) const
+  {
+    NewtonIterate<dim> to(from);
+    to.u.add(share, w);
+    if (face)
+      {
+        const FrictionFace &layout = face->layout();
+        DistributedVector   change(to.u);
+        change -= old_u;
+        Vector<double> x = face->face_vector(change);
+        if (foundation_step.size() > 0)
+          x -= foundation_step;
+        Vector<double> stop(x.size());
+        for (unsigned int p = 0; p < layout.points.size(); ++p)
+          {
+            const FrictionFace::Point &point = layout.points[p];
+            Tensor<1, 2>              &s     = to.friction.slip[p];
+            const Tensor<1, 3> values = layout.node_values(x, point.node);
+            if (to.friction.sticks[p])
+              continue;
+            const Tensor<1, 2> before = s;
+            s                         = slip(point, values);
+            if (bounds[p] == 0.)
+              continue;
+            if (before * s <= 0. && layout.n_node_points(point.node) == 1)
+              {
+                layout.set_node_values(-1. * values, point.node, stop);
+                s = Tensor<1, 2>();
+              }
+            to.friction.sticks[p] = s.norm() == 0.;
+          }
+        add_face(1., stop, to.u);
+      }
+    space.to_cartesian(to.u, to.ghosted_u);
+    return to;
+  }
+
+
+
+  template <int dim>
+  typename NonsymmetricCorrection<dim>::Result
+  NonsymmetricCorrection<dim>::correct(const double           t,
+                                       const double           k,
+                                       const double           reduction,
+                                       const StressForStrain &z_for,
+                                       NewtonIterate<dim>    &iterate) const
+  {
+    // The solver's idea of rounding belongs to other right-hand sides.
+    const double rounding = solver.rounding_error();
+    solver.set_rounding_error(0.);
+
+    const FaceTruncation    truncation = this->truncation(iterate.friction);
+    const DistributedVector r          = residual(iterate);
+    const double            before     = dual_norm(r);
+    DistributedVector       w(r), right_side(r);
+    w = 0.;
+    if (face)
+      project(truncation, right_side);
+    Result result{0., 0};
+    if (right_side.l2_norm() > 0.)
+      {
+        const auto       flow = flow_tangents(laws, iterate, t, k);
+        ReductionControl control(100, 0., reduction);
+        try
+          {
+            SolverFGMRES<DistributedVector>(control).solve(
+              Operator{*this, flow, truncation, space.ghosted_vector()},
+              w,
+              right_side,
+              Preconditioner{*this, truncation, result.iterations});
+          }
+        catch (const SolverControl::NoConvergence &)
+          {
+            // What there is may do.
+          }
+        result.iterations = std::max(result.iterations, control.last_step());
+        for (double share = 1.; share > 0.1; share *= 0.5)
+          {
+            NewtonIterate<dim> trial = move(iterate, w, share);
+            double             after;
+            try
+              {
+                trial.z = z_for(trial.ghosted_u, iterate.z);
+                after   = dual_norm(residual(trial));
+              }
+            catch (const ExceptionBase &)
+              {
+                continue; // too far: the law has no answer there
+              }
+            if (after <= (1. - 0.1 * share) * before)
+              {
+                iterate      = std::move(trial);
+                result.share = share;
+                break;
+              }
+          }
+      }
+    solver.set_rounding_error(rounding);
+    return result;
+  }
+
+
+
+  template bool
+  have_symmetric_tangents<2>(const FlowLaws<2> &, const double);
+  template bool
+  have_symmetric_tangents<3>(const FlowLaws<3> &, const double);
+  template class NonsymmetricCorrection<2>;
+  template class NonsymmetricCorrection<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/time_stepping/step_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::string
+    sentence_on_step(const unsigned int n,
+                     const double       t,
+                     const std::string &why)
+    {
+      std::ostringstream message;
+      message << "Step " << n << " (t = " << t << "): " << why;
+      return message.str();
+    }
+
+
+
+    /// The ratio of error and allowed error that the controller aims at, so
+    /// that most steps are accepted.
+    constexpr double aim = 0.9;
+    /// How much a step may be longer or shorter than the one before.
+    constexpr double largest_growth = 2., growth_after_event = 5.,
+                     least_growth = 0.2;
+    /// Where a step could be longer by less than that, it is not worth it:
+    /// backward Euler factors a matrix for each step size.
+    constexpr double least_change = 1.2;
+    /// A ratio of nearly zero says nothing.
+    constexpr double least_ratio = 1e-4;
+    /// More steps than that up to a time of the phases are a stiff scene, not a
+    /// short step.
+    constexpr double most_divisions = 1e7;
+
+
+
+    std::vector<double>
+    read_times(const std::string &text, const double end_time)
+    {
+      std::vector<double> times;
+      for (const std::string &entry : Utilities::split_string_list(text, ','))
+        {
+          double time = 0.;
+          try
+            {
+              time = Utilities::string_to_double(entry);
+            }
+          catch (const std::exception &)
+            {
+              time = -1.; // refused below
+            }
+          std::ostringstream message;
+          message << "'Step control/Landing times': '" << excerpt(entry)
+                  << "' is not a time between 0 and " << end_time << ".";
+          AssertThrow(time > 0. && time <= end_time, ExcMessage(message.str()));
+          times.push_back(time);
+        }
+      std::sort(times.begin(), times.end());
+      return times;
+    }
+  } // namespace
+
+
+
+  StepFailure::StepFailure(const unsigned int n,
+                           const double       t,
+                           const std::string &why)
+    : std::runtime_error(sentence_on_step(n, t, why))
+  {}
+
+
+
+  StepControl::StepControl(const StepControlParameters &parameters,
+                           const std::string           &stiffness_policy,
+                           const TimeSchedule          &schedule,
+                           const unsigned int           order,
+                           const double                 output_interval)
+    : is_on(parameters.is_on())
+    , subdivides(stiffness_policy == "subdivide")
+    , passes_limit(stiffness_policy == "backward Euler")
+    , parameters(parameters)
+    , schedule(schedule)
+    , order(order)
+    , output_interval(is_on ? output_interval : 0.)
+    , landing_times(read_times(parameters.landing_times, schedule.end_time()))
+  {
+    AssertThrow(is_on || landing_times.empty(),
+                ExcMessage("'Step control/Landing times' are given, but the "
+                           "steps are those of 'Time/Phases'; give 'Step "
+                           "control/Tolerance', or put the times into the "
+                           "phases."));
+    std::ostringstream message;
+    message << "'Step control/Smallest step' = " << parameters.smallest_step
+            << " is larger than 'Step control/Largest step' = "
+            << parameters.largest_step << ".";
+    AssertThrow(parameters.largest_step == 0. ||
+                  parameters.smallest_step <= parameters.largest_step,
+                ExcMessage(message.str()));
+  }
+
+
+
+  double
+  StepControl::next_target(const double t) const
+  {
+    if (!is_on)
+      return schedule.next_time(t);
+    double     target = schedule.phase_at(t).end;
+    const auto later =
+      std::upper_bound(landing_times.begin(), landing_times.end(), t);
+    if (later != landing_times.end())
+      target = std::min(target, *later);
+    if (output_interval > 0.)
+      {
+        double next = (std::floor(t / output_interval) + 1.) * output_interval;
+        // The multiple that t itself is, up to rounding.
+        if (next - t <= 1e-9 * output_interval)
+          next += output_interval;
+        // One that rounding separates from another target is that.
+        if (next < target - 1e-9 * output_interval)
+          target = next;
+      }
+    return target;
+  }
+
+
+
+  double
+  StepControl::smallest(const double t) const
+  {
+    const auto &phase = schedule.phase_at(t);
+    return parameters.smallest_step > 0. ? parameters.smallest_step :
+                                           1e-6 * (phase.end - phase.start);
+  }
+
+
+
+  double
+  StepControl::largest(const double t) const
+  {
+    const auto &phase = schedule.phase_at(t);
+    if (parameters.largest_step > 0.)
+      return parameters.largest_step;
+    return has_estimate ? phase.end - phase.start : phase.step_size();
+  }
+
+
+
+  bool
+  StepControl::is_kink(const double t) const
+  {
+    return t == 0. || schedule.phase_ending_at(t) > 0 ||
+           std::binary_search(landing_times.begin(), landing_times.end(), t);
+  }
+
+
+
+  TimeStep
+  StepControl::propose(const unsigned int n,
+                       const double       t,
+                       const double       limit) const
+  {
+    const double target   = next_target(t);
+    const double distance = target - t;
+    double       k        = distance;
+    if (wanted > 0.)
+      k = wanted;
+    else if (is_on)
+      k = std::min(schedule.phase_at(t).step_size(), largest(t));
+    if (needs_limit())
+      {
+        std::ostringstream message;
+        message << "The stability limit 2/r = " << limit << " at t = " << t
+                << " would take " << distance / limit
+                << " steps until t = " << target
+                << "; set 'Time/Scheme' = backward Euler.";
+        AssertThrow(distance <= most_divisions * limit,
+                    ExcMessage(message.str()));
+        k = std::min(k, limit);
+      }
+    // Equal steps up to the target where few are left: no last one that is
+    // tiny.
+    const double divisions = std::ceil(distance / k * (1. - 1e-10));
+    if (divisions <= 1.)
+      return {n + 1, t, target, distance};
+    if (!is_on || divisions <= 2.)
+      k = distance / divisions;
+    const double       end = t + k;
+    std::ostringstream message;
+    message << "The time step " << k << " is too small to change the time " << t
+            << ".";
+    AssertThrow(end > t, ExcMessage(message.str()));
+    return {n + 1, t, end, end - t};
+  }
+
+
+
+  bool
+  StepControl::accepts(const TimeStep   &step,
+                       const StepErrors &errors,
+                       const bool        has_event)
+  {
+    if (!is_on)
+      {
+        // After a failed step, try that of the phase again.
+        wanted = 0.;
+        return true;
+      }
+    const double new_size = std::max(size, errors.size);
+    const double allowed =
+      parameters.tolerance *
+      std::max(new_size * step.k / schedule.end_time(), errors.change);
+    const double ratio =
+      errors.indicator > 0. ? errors.indicator / allowed : 0.;
+    const double least = smallest(step.t_old) * (1. + 1e-9);
+    const auto  &phase = schedule.phase_at(step.t_old);
+    const double event_gap =
+      std::max(least, parameters.event_tolerance * (phase.end - phase.start));
+
+    if (!(ratio <= 1.) && step.k > least)
+      {
+        ++n.rejected;
+        was_rejected = true;
+        wanted =
+          std::max(smallest(step.t_old),
+                   step.k *
+                     std::clamp(std::pow(aim / ratio, 1. / order), 0.1, 0.9));
+        return false;
+      }
+    if (has_event && parameters.resolve_events && step.k > event_gap)
+      {
+        ++n.events;
+        was_rejected = true;
+        event_before = step.t;
+        wanted       = std::max(0.5 * event_gap, 0.5 * step.k);
+        return false;
+      }
+
+    if (ratio > 1.)
+      ++n.unresolved;
+    size          = new_size;
+    double factor = largest_growth;
+    if (ratio > 0.)
+      {
+        const double present = std::max(ratio, least_ratio);
+        const double best    = std::pow(aim / present, 1. / order);
+        factor               = std::pow(aim / present, 0.3 / order);
+        if (last_ratio > 0.)
+          factor *= std::pow(last_ratio / present, 0.4 / order);
+        if (best >= 1. && best < least_change)
+          factor = 1.;
+        last_ratio = present;
+      }
+    // Up to the event, steps do not grow; behind it, they do quickly.
+    if (has_event)
+      event_before = 0.;
+    const bool is_before = step.t < event_before;
+    factor               = std::clamp(factor,
+                        least_growth,
+                        is_before || (was_rejected && !has_event) ? 1. :
+                                      has_event ? growth_after_event :
+                                                  largest_growth);
+    // A step that a time has cut short does not tell the next one.
+    const double before = was_rejected ? 0. : wanted;
+    wanted = std::min(std::max(factor * step.k, factor >= 1. ? before : 0.),
+                      largest(step.t_old));
+    was_rejected = false;
+    if (schedule.phase_ending_at(step.t) > 0)
+      {
+        // Another phase, another load.
+        wanted       = 0.;
+        last_ratio   = 0.;
+        event_before = 0.;
+      }
+    return true;
+  }
+
+
+
+  bool
+  StepControl::retries(const TimeStep &step, const bool for_stability)
+  {
+    if (!is_on && !(subdivides && for_stability))
+      return false;
+    const double shorter = (for_stability ? 0.5 : 0.25) * step.k;
+    if (shorter < smallest(step.t_old))
+      return false;
+    ++n.failed;
+    was_rejected = true;
+    wanted       = shorter;
+    return true;
+  }
+
+
+
+  double
+  StepControl::expected_steps(const unsigned int n,
+                              const double       t,
+                              const double       k) const
+  {
+    if (t >= schedule.end_time() || k <= 0.)
+      return n;
+    if (is_on)
+      return n + std::ceil((schedule.end_time() - t) / k);
+    // The steps of the phases, divided as the last one is.
+    double steps = n, from = t;
+    while (from < schedule.end_time())
+      {
+        const auto &phase = schedule.phase_at(from);
+        steps +=
+          std::round((phase.end - from) / std::min(k, phase.step_size()));
+        from = phase.end;
+      }
+    return steps;
+  }
+} // namespace Viscoplastic

@@ -492,9 +492,10 @@ namespace Viscoplastic
   void
   Recorder<dim>::print(std::ostream &out, const RunSummary<dim> *coarser) const
   {
-    out << '
-'; run.print(out, coarser); const double n = run.n_steps; out
-        << std::setprecision(3) << "Iterations per step: ";
+    out << '\n';
+    run.print(out, coarser);
+    const double n = run.n_steps;
+    out << std::setprecision(3) << "Iterations per step: ";
     if (may_be_implicit)
       out << newton_iterations / n << " of Newton's method, ";
     if (discretization->face)

@@ -7,25 +7,39 @@ import numpy as np
 from . import rates, style
 from .results import NoPicture
 
-# Columns in the order of a step, with what they are.
+# Columns in the order of a step: what they are, and their colours.  Those that
+# are not here are drawn, too, under their own names.
 PHASES = {
-    "seconds_set_up": "set-up",
-    "seconds_rate": "rate $G$",
-    "seconds_load": "loads",
-    "seconds_contact": "contact problem",
-    "seconds_balance": "balances",
-    "seconds_estimate": "error estimate",
+    "seconds_set_up": ("set-up", style.SERIES[5]),
+    "seconds_rate": ("rate $G$", style.SERIES[2]),
+    "seconds_tangent": ("tangent", "#f0e442"),
+    "seconds_load": ("loads", style.SERIES[4]),
+    "seconds_contact": ("contact problem", style.SERIES[0]),
+    "seconds_balance": ("balances", style.SERIES[3]),
+    "seconds_estimate": ("error estimate", style.SERIES[1]),
+    "seconds_checkpoint": ("checkpoints", "#8c510a"),
 }
-COLOURS = {
-    "seconds_set_up": style.SERIES[5],
-    "seconds_rate": style.SERIES[2],
-    "seconds_load": style.SERIES[4],
-    "seconds_contact": style.SERIES[0],
-    "seconds_balance": style.SERIES[3],
-    "seconds_estimate": style.SERIES[1],
-}
-REST = "#cccccc"
+OTHER = "#777777"
+REST = ("rest", "#cccccc")
+# What a study does not count as time of the run, and what is left of it.
+NO_PHASES = ("seconds_total", "seconds_output", "seconds_errors", "seconds_rest")
 MOST_RUNS = 40
+
+
+def look(name):
+    """Words and colour of a part of the time."""
+    if name == "rest":
+        return REST
+    if name in PHASES:
+        return PHASES[name]
+    return style.plain(name.removeprefix("seconds_").replace("_", " ")), OTHER
+
+
+def phases(names):
+    """Those of the columns that are seconds of a phase, in the order of a step."""
+    found = [name for name in names if name.startswith("seconds_")]
+    known = [name for name in PHASES if name in found]
+    return known + [name for name in found if name not in (*PHASES, *NO_PHASES)]
 
 
 def shares(columns, total):
@@ -37,8 +51,8 @@ def shares(columns, total):
     total = np.asarray(total, dtype=float)
     total = np.where(rates.known(total), total, np.nan)
     found = {}
-    for name in PHASES:
-        if name in columns and np.nan_to_num(columns[name]).max(initial=0.0) > 0.0:
+    for name in phases(columns):
+        if np.nan_to_num(columns[name]).max(initial=0.0) > 0.0:
             found[name] = np.nan_to_num(columns[name]) / total
     rest = 1.0 - sum(found.values(), np.zeros_like(total))
     # Clocks of phases may add up to a little more than that of the whole.
@@ -70,7 +84,7 @@ def draw(study, error=None):
     if not len(rows):
         raise NoPicture(f"no run of {study.directory} has a time")
     parts = shares(
-        {name: study[name][rows] for name in PHASES if name in study},
+        {name: study[name][rows] for name in phases(study.columns)},
         study["seconds_total"][rows],
     )
     seconds = study["seconds_total"][rows]
@@ -90,8 +104,8 @@ def draw(study, error=None):
             100 * part,
             left=100 * begin,
             height=0.8,
-            color=COLOURS.get(name, REST),
-            label=PHASES.get(name, "rest"),
+            color=look(name)[1],
+            label=look(name)[0],
         )
         begin = begin + part
     left.set_xlim(0, 100)
@@ -103,7 +117,7 @@ def draw(study, error=None):
     left.legend(
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
-        ncol=len(parts),
+        ncol=len(parts) if len(parts) <= 6 else -(-len(parts) // 2),
         frameon=False,
         columnspacing=1.2,
         handlelength=1.2,

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/results/recorder.h>
+#include <viscoplastic_contact/results/run_phases.h>
 
 #include <algorithm>
 #include <cmath>
@@ -302,21 +303,16 @@ namespace Viscoplastic
   Recorder<dim>::write_seconds()
   {
     const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
-    for (const std::string name : {"rate",
-                                   "tangent",
-                                   "load",
-                                   "contact",
-                                   "balance",
-                                   "estimate",
-                                   "output"})
+    for (const RunPhase &phase : run_phases)
       {
-        if ((name == "estimate" && !has_error_bar) ||
-            (name == "tangent" && !may_be_implicit))
+        if (!phase.is_in_statistics ||
+            (phase.name == "estimate" && !has_error_bar) ||
+            (phase.name == "tangent" && !may_be_implicit))
           continue;
-        const auto   entry = total.find(name);
+        const auto   entry = total.find(phase.name);
         const double now   = entry == total.end() ? 0. : entry->second;
-        statistics->add("wall_" + name, now - last_seconds[name]);
-        last_seconds[name] = now;
+        statistics->add("wall_" + phase.name, now - last_seconds[phase.name]);
+        last_seconds[phase.name] = now;
       }
     statistics->add("wall_total", elapsed_in_all());
   }
@@ -382,9 +378,8 @@ namespace Viscoplastic
   std::map<std::string, double>
   Recorder<dim>::seconds() const
   {
-    auto result = timer.get_summary_data(TimerOutput::total_wall_time);
-    // Further set-ups are part of the adaptation.
-    result["set-up"] = first_set_up_seconds + result["adaptation"];
+    auto result      = timer.get_summary_data(TimerOutput::total_wall_time);
+    result["set-up"] = first_set_up_seconds;
     return result;
   }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/results/run_summary.h>
 
 #include <cmath>
@@ -251,20 +252,6 @@ namespace Viscoplastic
                 const bool                           has_viscosity,
                 const bool                           has_friction)
   {
-    // In this order; phases without a text follow under their own names.
-    const std::vector<std::pair<std::string, std::string>> texts{
-      {"set-up", "spaces, matrix, factorisation or multigrid"},
-      {"rate", "viscosity: flow of the law in all cells"},
-      {"tangent", "backward Euler: matrix of the step with its set-up"},
-      {"load", "loads and prescribed displacements"},
-      {"contact",
-       has_friction ? "friction and elasticity together: all solves" :
-                      "elasticity: linear solves"},
-      {"estimate", "error estimates"},
-      {"adaptation", "adaptivity: new meshes with their set-up"},
-      {"balance", "energies, reactions, statistics.csv"},
-      {"output", "fields for ParaView"},
-      {"checkpoint", "checkpoints"}};
     std::map<std::string, double> remaining(seconds);
     double                        rest = total;
 
@@ -283,14 +270,19 @@ namespace Viscoplastic
       remaining.erase("rate");
     if (remaining.count("set-up") > 0)
       remaining["set-up"] = first_set_up;
-    for (const auto &[name, text] : texts)
+    for (const RunPhase &phase : run_phases)
       {
-        const auto phase = remaining.find(name);
-        if (phase == remaining.end())
+        const auto found = remaining.find(phase.name);
+        if (found == remaining.end())
           continue;
-        print_phase(name, phase->second, text);
-        remaining.erase(phase);
+        print_phase(phase.name,
+                    found->second,
+                    phase.name == "contact" && !has_friction ?
+                      "elasticity: linear solves" :
+                      phase.effect);
+        remaining.erase(found);
       }
+    // Those that the list lacks, under their own names.
     for (const auto &[name, time] : remaining)
       print_phase(name, time, "");
     const double others = rest;

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/study/study_report.h>
 
 #include <algorithm>
@@ -16,22 +17,23 @@ namespace Viscoplastic
 {
   namespace
   {
-    const std::vector<std::string> number_columns{"h",
-                                                  "k",
-                                                  "cells",
-                                                  "dofs",
-                                                  "steps",
-                                                  "seconds_total",
-                                                  "seconds_set_up",
-                                                  "seconds_rate",
-                                                  "seconds_load",
-                                                  "seconds_contact",
-                                                  "seconds_balance",
-                                                  "seconds_estimate",
-                                                  "seconds_output",
-                                                  "peak_memory_MB",
-                                                  "contact_iterations",
-                                                  "linear_iterations"};
+    /// Of sizes and cost.
+    std::vector<std::string>
+    number_columns()
+    {
+      std::vector<std::string> columns{
+        "h", "k", "cells", "dofs", "steps", "seconds_total"};
+      for (const RunPhase &phase : run_phases)
+        if (std::find(columns.begin(), columns.end(), phase.study_column) ==
+            columns.end())
+          columns.push_back(phase.study_column);
+      for (const char *column : {"seconds_rest",
+                                 "peak_memory_MB",
+                                 "contact_iterations",
+                                 "linear_iterations"})
+        columns.push_back(column);
+      return columns;
+    }
 
 
 
@@ -61,7 +63,7 @@ namespace Viscoplastic
     csv(const Study &study)
     {
       std::ostringstream       text;
-      std::vector<std::string> columns = number_columns;
+      std::vector<std::string> columns = number_columns();
       columns.insert(columns.end(), field_errors.begin(), field_errors.end());
       columns.insert(columns.end(),
                      estimate_parts.begin(),

@@ -16,11 +16,15 @@ PRICE = {"c": 2e-6, "a": 1.15}
 PHASES = {  # parts of the total; the rest nobody measured
     "set_up": 0.1,
     "rate": 0.05,
+    "tangent": 0.1,
     "load": 0.05,
-    "contact": 0.5,
+    "contact": 0.4,
     "balance": 0.1,
     "estimate": 0.15,
-    "output": 0.0,
+    "output": 0.05,  # no part of it
+    "errors": 0.05,
+    "checkpoint": 0.01,
+    "rest": 0.04,
 }
 ERRORS = {"energy": 1.0, "h1": 1.2, "stress": 0.8, "multiplier": 2.0}
 

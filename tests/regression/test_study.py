@@ -9,6 +9,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -18,12 +19,18 @@ import numpy as np
 
 from harness import EXECUTABLE, MPIRUN, SOURCE, TestCase, as_prm, main
 
+sys.path.insert(0, str(SOURCE / "contrib"))
+
+from plotting import cost
+from plotting.results import read_statistics
+
 MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
 VERIFICATION = SOURCE / "prm" / "verification"
 
 NUMBERS = (
-    "h,k,cells,dofs,steps,seconds_total,seconds_set_up,seconds_rate,seconds_load,"
-    "seconds_contact,seconds_balance,seconds_estimate,seconds_output,"
+    "h,k,cells,dofs,steps,seconds_total,seconds_set_up,seconds_rate,seconds_tangent,"
+    "seconds_load,seconds_contact,seconds_balance,seconds_estimate,seconds_output,"
+    "seconds_errors,seconds_checkpoint,seconds_rest,"
     "peak_memory_MB,contact_iterations,linear_iterations"
 ).split(",")
 TEXTS = "run,strategy,scheme,history,ladder".split(",")
@@ -184,15 +191,37 @@ class Ladders(TestCase):
             Study__Levels=2,
             Study__Ladders="both",
             Study__Strategies="uniform, adaptive",
+            Study__Time_schemes="backward Euler",
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
+            self.check_phases(folder)
             uniform = folder.ladder("both", strategy="uniform")[-1]
             adaptive = folder.ladder("both", strategy="adaptive")[-1]
             self.assertLess(adaptive["cells"], 1.3 * uniform["cells"])
             self.assertGreater(adaptive["cells"], 64)
             self.assertTrue(np.isfinite(adaptive["error_energy"]))
             self.assertGreater(adaptive["h"], 0.0625 / 1.2)
+
+    def check_phases(self, folder):
+        """None is lost between a run, study.csv, its picture and the manual."""
+        manual = (SOURCE / "doc" / "command_line.md").read_text()
+        rows = folder.rows()
+        columns = {name for name in rows[0] if name.startswith("seconds_")}
+        self.assertEqual(columns, {*cost.PHASES, *cost.NO_PHASES})
+        for row in rows:
+            table = read_statistics(folder.study / row["run"] / "statistics.csv")
+            walls = {name for name in table if name.startswith("wall_")}
+            self.assertIn("wall_tangent", walls)
+            for name in walls - {"wall_total"}:
+                seconds = row[f"seconds_{name.removeprefix('wall_')}"]
+                self.assertClose(seconds, table[name].sum(), 1e-9, what=name)
+            parts = sum(row[name] for name in columns - {"seconds_total"})
+            self.assertClose(parts, table["wall_total"][-1], 1e-9)
+            log = (folder.study / row["run"] / "log.txt").read_text()
+            for name in re.findall(r"^  (\S+) +\d+\.\d+ +\d+ %", log, re.M):
+                if name != "whole":
+                    self.assertIn(f"`{name}`", manual)
 
     def test_three_dimensions(self):
         with Folder(

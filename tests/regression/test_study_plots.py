@@ -144,6 +144,7 @@ class Numbers(Folder):
             "seconds_contact": np.array([2.0, 3.0, 1.0]),
             "seconds_rate": np.array([1.0, 2.0, NAN]),
             "seconds_load": np.zeros(3),
+            "seconds_output": np.ones(3),  # not part of the total
         }
         parts = cost.shares(columns, [4.0, 4.0, 0.0])
         self.assertEqual(list(parts), ["seconds_rate", "seconds_contact", "rest"])
@@ -151,6 +152,27 @@ class Numbers(Folder):
         # clocks that overlap leave no negative rest
         self.assertClose(parts["rest"][:2], [0.25, 0], absolute=1e-15)
         self.assertTrue(np.isnan(parts["rest"][2]))
+
+    def test_no_phase_is_lost(self):
+        """One that the picture has no words for is not drawn as the rest; a
+        study without the columns of later versions is drawn as it is."""
+        columns = {"seconds_tangent": [3.0], "seconds_news": [1.0], "run": ["x"]}
+        parts = cost.shares(columns, [5.0])
+        self.assertEqual(list(parts), ["seconds_tangent", "seconds_news", "rest"])
+        self.assertClose(parts["rest"], 0.2, absolute=1e-15)
+        self.assertEqual(cost.look("seconds_news")[0], "news")
+        colours = [cost.look(name)[1] for name in (*cost.PHASES, "rest")]
+        self.assertEqual(len(set(colours)), len(cost.PHASES) + 1)
+        rows = synthetic.rows(ladders=("both",))
+        new = Study(synthetic.write(self.folder / "new", rows))
+        for row in rows:
+            del row["seconds_tangent"]
+        old = Study(synthetic.write(self.folder / "old", rows))
+        for study, tangent in ((new, True), (old, False)):
+            figure = cost.draw(study)
+            self.addCleanup(plt.close, figure)
+            texts = figure.axes[0].get_legend().get_texts()
+            self.assertEqual("tangent" in [t.get_text() for t in texts], tangent)
 
     def test_labels(self):
         self.assertIn("$H^1$", error_label("error_h1"))
@@ -405,6 +427,7 @@ class Pictures(Folder):
             (header + "\n", "study.csv has no runs"),
             (text.replace("seconds_total", "minutes"), "lacks the columns seconds_total"),
             (f"{header}\n{first}\n{others[0][:50]}\n", "damaged: its run 2 has"),
+            (text.replace("dofs", "cells"), "two of its columns have the same name"),
             (text.replace(",0.125,", ",many,", 1), 'run 1 has "many" for h'),
         ):
             table.write_text(content)
@@ -414,7 +437,12 @@ class Pictures(Folder):
         table.unlink()
         self.assertIn("there is no file", self.refuse())
         table.write_text(text)
-        for content, words in (("{", "cannot be read"), ("[1]", "no JSON object")):
+        for content, words in (
+            ("{", "cannot be read"),
+            ("[1]", "no JSON object"),
+            ('{"fits": 3}', "its fits have no numbers"),
+            ('{"fits": [{"C_h": "x"}]}', "its fits have no numbers"),
+        ):
             (self.folder / "study.json").write_text(content)
             self.assertIn(words, self.refuse())
         (self.folder / "study.json").write_text(json.dumps({"fits": [None, 3]}))

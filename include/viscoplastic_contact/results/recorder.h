@@ -92,7 +92,8 @@ namespace Viscoplastic
       return run;
     }
 
-    /// Wall time of this process by phase; `set-up' is that of all meshes.
+    /// Wall time of this process by phase, as run_phases names them; `set-up'
+    /// is that of the first mesh, later ones are part of the adaptation.
     std::map<std::string, double>
     seconds() const;
 

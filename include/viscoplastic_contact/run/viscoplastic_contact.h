@@ -64,8 +64,8 @@ namespace Viscoplastic
     void
     check();
 
-    /// Wall time of a run by phase, as the timer names them; `set-up' is that
-    /// of all meshes.
+    /// Wall time of this process by phase, as run_phases names them; `set-up'
+    /// is that of the first mesh, later ones are part of the adaptation.
     std::map<std::string, double>
     seconds() const
     {

@@ -57,10 +57,6 @@ namespace Viscoplastic
     , console(console)
     , timer(timer)
     , has_error_bar(scene.parameters.error_control.error_bar)
-    , may_be_implicit(
-        scene.has_viscosity() &&
-        (scene.parameters.time.scheme == "backward Euler" ||
-         scene.parameters.time.stiffness_policy == "backward Euler"))
     , progress(console, scene.schedule.n_steps())
   {
     if (has_error_bar)
@@ -209,7 +205,7 @@ namespace Viscoplastic
       }
     if (control.may_reject())
       run.steps = control.counts();
-    if (may_be_implicit && scene.parameters.time.scheme != "backward Euler")
+    if (may_be_implicit() && scene.parameters.time.scheme != "backward Euler")
       run.implicit_steps = implicit_steps;
   }
 
@@ -245,7 +241,7 @@ namespace Viscoplastic
       row.add("tension_area", quantities.tension_area);
     if (d.laws.any_cap)
       row.add("capped_volume", step.capped_volume);
-    if (may_be_implicit)
+    if (may_be_implicit())
       row.add("newton_iterations", step.newton_iterations);
     if (d.face)
       row.add("contact_iterations", step.report.iterations);
@@ -307,7 +303,7 @@ namespace Viscoplastic
       {
         if (!phase.is_in_statistics ||
             (phase.name == "estimate" && !has_error_bar) ||
-            (phase.name == "tangent" && !may_be_implicit))
+            (phase.name == "tangent" && !may_be_implicit()))
           continue;
         const auto   entry = total.find(phase.name);
         const double now   = entry == total.end() ? 0. : entry->second;
@@ -491,7 +487,7 @@ namespace Viscoplastic
     run.print(out, coarser);
     const double n = run.n_steps;
     out << std::setprecision(3) << "Iterations per step: ";
-    if (may_be_implicit)
+    if (may_be_implicit())
       out << newton_iterations / n << " of Newton's method, ";
     if (discretization->face)
       out << contact_iterations / n << " of the active set, ";

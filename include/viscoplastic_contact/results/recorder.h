@@ -139,6 +139,17 @@ namespace Viscoplastic
     report_progress(const AcceptedStep<dim>   &step,
                     const StepQuantities<dim> &quantities);
 
+    /// Whether steps of this scene may be of backward Euler; the scene knows
+    /// when it has been held against its mesh.
+    bool
+    may_be_implicit() const
+    {
+      const TimeParameters &time = scene.parameters.time;
+      return scene.has_viscosity() &&
+             (time.scheme == "backward Euler" ||
+              time.stiffness_policy == "backward Euler");
+    }
+
     /// How far loads, reactions and friction are from adding up to zero,
     /// relative to the largest force so far.
     double
@@ -153,7 +164,7 @@ namespace Viscoplastic
     const StepControl &control;
     Console           &console;
     TimerOutput       &timer;
-    const bool         has_error_bar, may_be_implicit;
+    const bool         has_error_bar;
 
     const Discretization<dim>   *discretization = nullptr; // the present one
     std::vector<PointProbe<dim>> probes;

@@ -11,9 +11,8 @@
 
 namespace Viscoplastic
 {
-  template <int dim>
   void
-  StepSolution<dim>::note(const FlowRate &rate)
+  StepOutcome::note(const FlowRate &rate)
   {
     if (rate.relaxation_rate > 0. && 2. / rate.relaxation_rate < step_limit)
       {
@@ -280,8 +279,6 @@ namespace Viscoplastic
 
 
 
-  template struct StepSolution<2>;
-  template struct StepSolution<3>;
   template class StepSolver<2>;
   template class StepSolver<3>;
 } // namespace Viscoplastic

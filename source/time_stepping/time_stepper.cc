@@ -162,21 +162,16 @@ namespace Viscoplastic
 
     TimerOutput::Scope phase(timer, "balance");
     AcceptedStep<dim>  step;
-    step.time_step         = time_step;
-    step.end.state         = std::move(solution.state);
-    step.end.forces        = evaluate_forces(discretization.sampling,
+    static_cast<StepOutcome &>(step) = solution;
+    step.time_step                   = time_step;
+    step.end.state                   = std::move(solution.state);
+    step.end.forces                  = evaluate_forces(discretization.sampling,
                                       discretization.matrix,
                                       std::move(problem.load),
                                       step.end.state);
-    step.end.is_solution   = true;
-    step.bounds            = std::move(problem.bounds);
-    step.foundation_step   = std::move(problem.foundation_step);
-    step.report            = solution.report;
-    step.step_limit        = solution.step_limit;
-    step.critical_position = solution.critical_position;
-    step.capped_volume     = solution.capped_volume;
-    step.is_implicit       = solution.is_implicit;
-    step.newton_iterations = solution.newton_iterations;
+    step.end.is_solution             = true;
+    step.bounds                      = std::move(problem.bounds);
+    step.foundation_step             = std::move(problem.foundation_step);
     return step;
   }
 

@@ -46,11 +46,9 @@ namespace Viscoplastic
 
 
 
-  /// What a scheme makes of a StepProblem.
-  template <int dim>
-  struct StepSolution
+  /// How a step went.
+  struct StepOutcome
   {
-    State<dim>    state;
     ContactReport report;
     /// 2/r; infinite without viscosity. Backward Euler, which may pass it,
     /// reports that of the end of the step.
@@ -63,6 +61,19 @@ namespace Viscoplastic
     bool         is_implicit       = false;
     unsigned int newton_iterations = 0;
 
+    /// Take notice of G somewhere in the step.
+    void
+    note(const FlowRate &rate);
+  };
+
+
+
+  /// What a scheme makes of a StepProblem.
+  template <int dim>
+  struct StepSolution : public StepOutcome
+  {
+    State<dim> state;
+
     explicit StepSolution(const StepProblem<dim> &problem)
     {
       state.n         = problem.time_step.n;
@@ -70,9 +81,5 @@ namespace Viscoplastic
       state.k         = problem.time_step.k;
       state.initial_u = problem.old.state.initial_u;
     }
-
-    /// Take notice of G somewhere in the step.
-    void
-    note(const FlowRate &rate);
   };
 } // namespace Viscoplastic

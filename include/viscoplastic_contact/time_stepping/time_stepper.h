@@ -11,7 +11,7 @@ namespace Viscoplastic
    * A step that will do, with all that was learnt about it.
    */
   template <int dim>
-  struct AcceptedStep
+  struct AcceptedStep : public StepOutcome
   {
     TimeStep time_step;
     /// The state that the step leads to.
@@ -19,13 +19,6 @@ namespace Viscoplastic
     /// As in StepProblem.
     std::vector<double> bounds;
     Vector<double>      foundation_step;
-    /// As in StepSolution.
-    ContactReport report;
-    double        step_limit = std::numeric_limits<double>::infinity();
-    Point<3>      critical_position;
-    double        capped_volume     = 0.;
-    bool          is_implicit       = false;
-    unsigned int  newton_iterations = 0;
     /// How often a longer step has been tried.
     unsigned int n_rejections = 0;
 

@@ -6,14 +6,13 @@
 namespace Viscoplastic
 {
   bool
-  has_contact_event(const std::vector<double> &bounds,
-                    const FrictionState       &old_state,
-                    const FrictionState       &state,
-                    const bool                 from_kink)
+  has_contact_event(const FrictionState &old_state,
+                    const FrictionState &state,
+                    const bool           from_kink)
   {
     unsigned int n_points = 0, n_old = 0, n_new = 0;
-    for (unsigned int p = 0; p < bounds.size(); ++p)
-      if (bounds[p] > 0. && std::isfinite(bounds[p]))
+    for (unsigned int p = 0; p < state.n_points(); ++p)
+      if (state.bound[p] > 0. && std::isfinite(state.bound[p]))
         {
           const bool slipped = !old_state.sticks[p], slips = !state.sticks[p];
           ++n_points;

@@ -43,10 +43,9 @@ namespace Viscoplastic
     /// Update slips from the increment; a slipping point that does not move
     /// sticks.
     void
-    update_slips(const FrictionFace        &face,
-                 const std::vector<double> &bounds,
-                 const Vector<double>      &x,
-                 FrictionState             &state)
+    update_slips(const FrictionFace   &face,
+                 const Vector<double> &x,
+                 FrictionState        &state)
     {
       for (unsigned int p = 0; p < face.points.size(); ++p)
         {
@@ -54,7 +53,7 @@ namespace Viscoplastic
           if (!state.sticks[p])
             state.slip[p] =
               slip(face.points[p], face.node_values(x, face.points[p].node));
-          if (bounds[p] > 0. && state.slip[p].norm() == 0.)
+          if (state.bound[p] > 0. && state.slip[p].norm() == 0.)
             state.sticks[p] = true;
         }
     }
@@ -66,7 +65,6 @@ namespace Viscoplastic
     /// would be that of a force of the size of the bound. @p change takes part.
     void
     stop_rounding(const FrictionFace              &face,
-                  const std::vector<double>       &bounds,
                   const std::vector<Tensor<2, 3>> &diagonal,
                   const double                     rounding,
                   Vector<double>                  &x,
@@ -77,7 +75,7 @@ namespace Viscoplastic
         {
           const unsigned int p = face.first_point[node];
           if (face.n_node_points(node) != 1 || state.sticks[p] ||
-              bounds[p] == 0.)
+              state.bound[p] == 0.)
             continue;
           const Tensor<1, 3> here = face.node_values(x, node);
           const Tensor<1, 3> part =
@@ -94,8 +92,8 @@ namespace Viscoplastic
 
 
 
-    /// J(u + step w) - J(u) and its derivative to the right, without the bulk
-    /// terms: the sum over the points.
+    /// The functional of friction j(v) = sum_c rho_c |v_c| along a line:
+    /// j(s + step w) - j(s) and its derivative to the right.
     struct FrictionAlongLine
     {
       struct Term
@@ -134,16 +132,15 @@ namespace Viscoplastic
 
 
     FrictionAlongLine
-    friction_along(const FrictionFace        &face,
-                   const std::vector<double> &bounds,
-                   const FrictionState       &state,
-                   const Vector<double>      &direction)
+    friction_along(const FrictionFace   &face,
+                   const FrictionState  &state,
+                   const Vector<double> &direction)
     {
       FrictionAlongLine friction;
       for (unsigned int p = 0; p < face.points.size(); ++p)
-        if (!state.sticks[p] && bounds[p] > 0.)
+        if (!state.sticks[p] && state.bound[p] > 0.)
           friction.terms.push_back(
-            {bounds[p],
+            {state.bound[p],
              state.slip[p],
              slip(face.points[p],
                   face.node_values(direction, face.points[p].node))});
@@ -155,14 +152,14 @@ namespace Viscoplastic
     /// Whether a correction @p w makes the slip of a node change sides. At
     /// corners, where points share a node, the line search alone decides.
     bool
-    reverses(const FrictionFace        &face,
-             const std::vector<double> &bounds,
-             const FrictionState       &state,
-             const Vector<double>      &w,
-             const unsigned int         node)
+    reverses(const FrictionFace   &face,
+             const FrictionState  &state,
+             const Vector<double> &w,
+             const unsigned int    node)
     {
       const unsigned int p = face.first_point[node];
-      if (face.n_node_points(node) != 1 || state.sticks[p] || bounds[p] == 0.)
+      if (face.n_node_points(node) != 1 || state.sticks[p] ||
+          state.bound[p] == 0.)
         return false;
       const Tensor<1, 2> end =
         state.slip[p] + slip(face.points[p], face.node_values(w, node));
@@ -174,15 +171,14 @@ namespace Viscoplastic
     /// Shorten a correction @p w where a slip would change sides, so that it
     /// ends at rest instead. Returns whether there is such a slip.
     bool
-    stop_at_reversal(const FrictionFace        &face,
-                     const std::vector<double> &bounds,
-                     const FrictionState       &state,
-                     const Vector<double>      &x,
-                     Vector<double>            &w)
+    stop_at_reversal(const FrictionFace   &face,
+                     const FrictionState  &state,
+                     const Vector<double> &x,
+                     Vector<double>       &w)
     {
       bool any = false;
       for (unsigned int node = 0; node < face.n_nodes(); ++node)
-        if (reverses(face, bounds, state, w, node))
+        if (reverses(face, state, w, node))
           {
             face.set_node_values(-1. * face.node_values(x, node), node, w);
             any = true;
@@ -257,7 +253,6 @@ namespace Viscoplastic
     std::optional<RestStep>
     step_from_rest(BulkSolver                      &bulk,
                    const FrictionFace              &face,
-                   const std::vector<double>       &bounds,
                    const std::vector<Tensor<2, 3>> &inverse_diagonal,
                    const Vector<double>            &residual,
                    const Vector<double>            &w,
@@ -271,9 +266,9 @@ namespace Viscoplastic
       for (unsigned int node = 0; node < face.n_nodes(); ++node)
         {
           const unsigned int p = face.first_point[node];
-          if (!reverses(face, bounds, state, w, node))
+          if (!reverses(face, state, w, node))
             continue;
-          energy_change -= bounds[p] * state.slip[p].norm();
+          energy_change -= state.bound[p] * state.slip[p].norm();
           state.sticks[p] = true;
           state.slip[p]   = Tensor<1, 2>();
           face.set_node_values(-1. * face.node_values(x, node), node, stop);
@@ -285,18 +280,17 @@ namespace Viscoplastic
       // J is quadratic but for friction: its mean slope makes the change.
       energy_change -= 0.5 * (stop * residual + stop * new_residual);
 
-      fit_multipliers(face, bounds, new_residual, state, force);
-      bulk.set_truncation(
-        make_truncation(face, bounds, state, inverse_diagonal),
-        /* may_rebuild = */ false);
+      fit_multipliers(face, new_residual, state, force);
+      bulk.set_truncation(make_truncation(face, state, inverse_diagonal),
+                          /* may_rebuild = */ false);
       RestStep result;
       result.correction.reinit(x.size());
       result.linear_iterations =
         bulk.correct(force, loose_tolerance, result.correction);
-      stop_at_reversal(face, bounds, state, x, result.correction);
+      stop_at_reversal(face, state, x, result.correction);
       result.search =
         line_search(bulk.search_terms(result.correction),
-                    friction_along(face, bounds, state, result.correction));
+                    friction_along(face, state, result.correction));
       if (energy_change + result.search.energy_change < 0.)
         return result;
 
@@ -314,12 +308,11 @@ namespace Viscoplastic
   class ContactSolver::Iteration
   {
   public:
-    Iteration(BulkSolver                &bulk,
-              const FrictionFace        &face,
-              const std::vector<double> &bounds,
-              const double               tolerance,
-              Vector<double>            &x,
-              FrictionState             &state);
+    Iteration(BulkSolver         &bulk,
+              const FrictionFace &face,
+              const double        tolerance,
+              Vector<double>     &x,
+              FrictionState      &state);
 
     ContactReport
     solve(const unsigned int max_iterations);
@@ -359,10 +352,9 @@ namespace Viscoplastic
     void
     give_up(const unsigned int max_iterations) const;
 
-    BulkSolver                &bulk;
-    const FrictionFace        &face;
-    const std::vector<double> &bounds;
-    const double               tolerance;
+    BulkSolver         &bulk;
+    const FrictionFace &face;
+    const double        tolerance;
     /// The increment of the face, and what friction does there.
     Vector<double> &x;
     FrictionState  &state;
@@ -386,15 +378,13 @@ namespace Viscoplastic
 
 
 
-  ContactSolver::Iteration::Iteration(BulkSolver                &bulk,
-                                      const FrictionFace        &face,
-                                      const std::vector<double> &bounds,
-                                      const double               tolerance,
-                                      Vector<double>            &x,
-                                      FrictionState             &state)
+  ContactSolver::Iteration::Iteration(BulkSolver         &bulk,
+                                      const FrictionFace &face,
+                                      const double        tolerance,
+                                      Vector<double>     &x,
+                                      FrictionState      &state)
     : bulk(bulk)
     , face(face)
-    , bounds(bounds)
     , tolerance(tolerance)
     , x(x)
     , state(state)
@@ -457,10 +447,10 @@ namespace Viscoplastic
       }
     // rounding_error() is a hundred units of rounding.
     stop_rounding(
-      face, bounds, diagonal, 0.01 * bulk.rounding_error(), x, change, state);
+      face, diagonal, 0.01 * bulk.rounding_error(), x, change, state);
     bulk.move_face(change);
     bulk.face_residual(residual);
-    update_slips(face, bounds, x, state);
+    update_slips(face, x, state);
   }
 
 
@@ -469,14 +459,10 @@ namespace Viscoplastic
   ContactSolver::Iteration::relax(const unsigned int node,
                                   Vector<double>    &change)
   {
-    const Tensor<1, 3> old  = face.node_values(x, node);
-    const Tensor<1, 3> r    = face.node_values(residual, node);
-    const Tensor<1, 3> now  = relax_node(face,
-                                        node,
-                                        inverse_diagonal[node],
-                                        r + diagonal[node] * old,
-                                        bounds,
-                                        state);
+    const Tensor<1, 3> old = face.node_values(x, node);
+    const Tensor<1, 3> r   = face.node_values(residual, node);
+    const Tensor<1, 3> now = relax_node(
+      face, node, inverse_diagonal[node], r + diagonal[node] * old, state);
     const Tensor<1, 3> step = now - old;
     if (step.norm() == 0.)
       return;
@@ -504,13 +490,13 @@ namespace Viscoplastic
   bool
   ContactSolver::Iteration::is_solved()
   {
-    fit_multipliers(face, bounds, residual, state, force);
+    fit_multipliers(face, residual, state, force);
     FaceTruncation last = std::move(truncation);
-    truncation = make_truncation(face, bounds, state, inverse_diagonal);
-    same_sets  = truncation == last;
+    truncation          = make_truncation(face, state, inverse_diagonal);
+    same_sets           = truncation == last;
     bulk.set_truncation(truncation);
-    const Certificate certificate = certify(
-      face, bounds, residual, diagonal, state, force, bulk.rounding_error());
+    const Certificate certificate =
+      certify(face, residual, diagonal, state, force, bulk.rounding_error());
     size  = std::max(bulk.energy_norm(), bulk.rounding_error() / tolerance);
     error = bound(bulk.dual_norm(certificate.force), certificate);
     if (error <= tolerance * size)
@@ -565,15 +551,15 @@ namespace Viscoplastic
   {
     const auto along = [&](const Vector<double> &direction) {
       return line_search(bulk.search_terms(direction),
-                         friction_along(face, bounds, state, direction));
+                         friction_along(face, state, direction));
     };
     Vector<double> limited(w);
-    const bool any_reverses = stop_at_reversal(face, bounds, state, x, limited);
-    SearchResult result     = along(limited);
+    const bool     any_reverses = stop_at_reversal(face, state, x, limited);
+    SearchResult   result       = along(limited);
     if (!any_reverses || result.step >= least_limited_step)
       w = limited;
     else if (const auto rest = step_from_rest(
-               bulk, face, bounds, inverse_diagonal, residual, w, x, state))
+               bulk, face, inverse_diagonal, residual, w, x, state))
       {
         // When a whole zone reverses, the rest of the body must adapt to its
         // stop before J descends far.
@@ -618,17 +604,14 @@ namespace Viscoplastic
 
 
   ContactReport
-  ContactSolver::solve(BulkSolver                &bulk,
-                       const FrictionFace        &face,
-                       const std::vector<double> &bounds,
-                       const double               tolerance,
-                       Vector<double>            &x,
-                       FrictionState             &state) const
+  ContactSolver::solve(BulkSolver         &bulk,
+                       const FrictionFace &face,
+                       const double        tolerance,
+                       Vector<double>     &x,
+                       FrictionState      &state) const
   {
-    AssertDimension(bounds.size(), face.points.size());
     AssertDimension(x.size(), face.n_dofs());
-    AssertDimension(state.sticks.size(), face.points.size());
-    return Iteration(bulk, face, bounds, tolerance, x, state)
-      .solve(max_iterations);
+    AssertDimension(state.n_points(), face.points.size());
+    return Iteration(bulk, face, tolerance, x, state).solve(max_iterations);
   }
 } // namespace Viscoplastic

@@ -60,12 +60,11 @@ namespace Viscoplastic
     /// Least-norm multipliers of the sticking points of a node with several
     /// points whose forces make up for @p missing, as far as the balls allow.
     void
-    fit_node(const FrictionFace        &face,
-             const unsigned int         begin,
-             const unsigned int         end,
-             const std::vector<double> &bounds,
-             Tensor<1, 3>              &missing,
-             FrictionState             &state)
+    fit_node(const FrictionFace &face,
+             const unsigned int  begin,
+             const unsigned int  end,
+             Tensor<1, 3>       &missing,
+             FrictionState      &state)
     {
       // lambda = B (B^T B)^+ missing.
       SymmetricTensor<2, 3> gram;
@@ -85,8 +84,8 @@ namespace Viscoplastic
         if (state.sticks[p])
           {
             const Tensor<1, 2> free = slip(face.points[p], solution);
-            lambda[p - begin]       = clip(free, bounds[p]);
-            inside &= free.norm() <= bounds[p];
+            lambda[p - begin]       = clip(free, state.bound[p]);
+            inside &= free.norm() <= state.bound[p];
           }
       // Where that leaves a ball: accelerated projected gradients.
       if (!inside)
@@ -106,7 +105,7 @@ namespace Viscoplastic
                   {
                     auto &l = lambda[p - begin];
                     l = clip(z[p - begin] + slip(face.points[p], remain) / L,
-                             bounds[p]);
+                             state.bound[p]);
                     uphill += (z[p - begin] - l) * (l - old[p - begin]);
                     change += (z[p - begin] - l).norm();
                     size += l.norm();
@@ -183,12 +182,11 @@ namespace Viscoplastic
 
 
   Tensor<1, 3>
-  relax_node(const FrictionFace        &face,
-             const unsigned int         node,
-             const Tensor<2, 3>        &inverse_diagonal,
-             const Tensor<1, 3>        &force, // residual + D x
-             const std::vector<double> &bounds,
-             FrictionState             &state)
+  relax_node(const FrictionFace &face,
+             const unsigned int  node,
+             const Tensor<2, 3> &inverse_diagonal,
+             const Tensor<1, 3> &force, // residual + D x
+             FrictionState      &state)
   {
     const unsigned int     begin      = face.first_point[node];
     const unsigned int     end        = face.first_point[node + 1];
@@ -213,7 +211,7 @@ namespace Viscoplastic
               solve_friction_point(flexibility,
                                    slip(point, inverse_diagonal * remaining),
                                    point.n_tangents,
-                                   bounds[p]);
+                                   state.bound[p]);
             change += (solution.multiplier - state.multiplier[p]).norm();
             size += solution.multiplier.norm();
             state.multiplier[p] = solution.multiplier;
@@ -235,11 +233,10 @@ namespace Viscoplastic
 
 
   void
-  fit_multipliers(const FrictionFace        &face,
-                  const std::vector<double> &bounds,
-                  const Vector<double>      &residual,
-                  FrictionState             &state,
-                  Vector<double>            &force)
+  fit_multipliers(const FrictionFace   &face,
+                  const Vector<double> &residual,
+                  FrictionState        &state,
+                  Vector<double>       &force)
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
@@ -256,18 +253,18 @@ namespace Viscoplastic
               }
             else
               state.multiplier[p] =
-                slipping_multiplier(bounds[p], state.slip[p]);
+                slipping_multiplier(state.bound[p], state.slip[p]);
             missing -= node_force(face.points[p], state.multiplier[p]);
           }
         // One point of orthonormal rows: the residual, clipped.
         if (n_stick == 1 && end - begin == 1)
           {
             state.multiplier[begin] =
-              clip(slip(face.points[begin], missing), bounds[begin]);
+              clip(slip(face.points[begin], missing), state.bound[begin]);
             missing -= node_force(face.points[begin], state.multiplier[begin]);
           }
         if (n_stick > 0 && end - begin > 1)
-          fit_node(face, begin, end, bounds, missing, state);
+          fit_node(face, begin, end, missing, state);
         face.set_node_values(face.node_values(residual, node) - missing,
                              node,
                              force);
@@ -278,7 +275,6 @@ namespace Viscoplastic
 
   Certificate
   certify(const FrictionFace              &face,
-          const std::vector<double>       &bounds,
           const Vector<double>            &residual,
           const std::vector<Tensor<2, 3>> &diagonal,
           const FrictionState             &state,
@@ -292,19 +288,19 @@ namespace Viscoplastic
         const unsigned int         p     = face.first_point[node];
         const FrictionFace::Point &point = face.points[p];
         if (face.n_node_points(node) != 1 || point.n_tangents != 2 ||
-            state.sticks[p] || bounds[p] == 0.)
+            state.sticks[p] || state.bound[p] == 0.)
           continue;
         const Tensor<1, 2> here = slip(point, face.node_values(residual, node));
         const double       misses    = (here - state.multiplier[p]).norm();
         const double       stiffness = diagonal[node].norm();
         const double       size      = state.slip[p].norm();
         const double       blur      = rounding / (std::sqrt(stiffness) * size);
-        if (misses > std::max(1e-5, blur) * bounds[p] ||
+        if (misses > std::max(1e-5, blur) * state.bound[p] ||
             misses <= stiffness * size)
           continue;
-        const Tensor<1, 2> multiplier = clip(here, bounds[p]);
+        const Tensor<1, 2> multiplier = clip(here, state.bound[p]);
         result.defect += std::max(0.,
-                                  bounds[p] * state.slip[p].norm() -
+                                  state.bound[p] * state.slip[p].norm() -
                                     multiplier * state.slip[p]);
         result.replaced.emplace_back(p, multiplier);
         face.set_node_values(node_force(point, multiplier), node, result.force);
@@ -316,7 +312,6 @@ namespace Viscoplastic
 
   FaceTruncation
   make_truncation(const FrictionFace              &face,
-                  const std::vector<double>       &bounds,
                   const FrictionState             &state,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal)
   {
@@ -344,12 +339,12 @@ namespace Viscoplastic
                       projector -= outer_product(q, q);
                     }
                 }
-            else if (point.n_tangents == 2 && bounds[p] > 0.)
+            else if (point.n_tangents == 2 && state.bound[p] > 0.)
               {
                 // kappa P_e with kappa = rho/|s|, which tends to infinity as
                 // a point comes to rest; 1e10 times the diagonal is stick.
                 const double kappa =
-                  std::min(bounds[p] / state.slip[p].norm(),
+                  std::min(state.bound[p] / state.slip[p].norm(),
                            1e10 / inverse_diagonal[node].norm());
                 const Tensor<1, 2> e = state.slip[p] / state.slip[p].norm();
                 const Tensor<1, 3> across =

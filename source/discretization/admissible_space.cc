@@ -267,6 +267,17 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  AdmissibleSpace<dim>::restrict_to_unknowns(DistributedVector &in_frames) const
+  {
+    for (std::size_t i = 0; i < is_excluded.size(); ++i)
+      if (is_excluded[i])
+        in_frames.begin()[i] = 0.;
+  }
+
+
+
+  template <int dim>
   std::vector<DistributedVector>
   AdmissibleSpace<dim>::rigid_body_modes() const
   {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace Viscoplastic
 {
@@ -84,6 +85,8 @@ namespace Viscoplastic
       return false;
     });
 
+    FrictionFace                         face;
+    std::vector<types::global_dof_index> dofs;
     for (const NodeRecord<dim> &record : all)
       {
         Node node{record.first_dof, record.position, record.directions, {}};
@@ -99,7 +102,7 @@ namespace Viscoplastic
               {
                 node.components[n] = d;
                 position_of[d]     = n++;
-                global_dofs.push_back(record.first_dof + d);
+                dofs.push_back(record.first_dof + d);
               }
           }
         face.first_dof.push_back(face.first_dof.back() + n);
@@ -120,6 +123,10 @@ namespace Viscoplastic
         face.first_point.push_back(face.points.size());
         nodes.push_back(node);
       }
+    face_restriction = FaceRestriction(std::move(face),
+                                       std::move(dofs),
+                                       space.owned,
+                                       space.communicator);
   }
 
 
@@ -128,6 +135,7 @@ namespace Viscoplastic
   void
   ContactFace<dim>::make_shares()
   {
+    const FrictionFace                             &face = layout();
     std::map<types::global_dof_index, unsigned int> node_of_dof;
     for (unsigned int n = 0; n < nodes.size(); ++n)
       node_of_dof[nodes[n].first_dof] = n;
@@ -214,11 +222,13 @@ namespace Viscoplastic
   std::vector<double>
   ContactFace<dim>::bounds(const double t) const
   {
+    const FrictionFace &face = layout();
     if (!constant_bounds.empty())
       return constant_bounds;
     std::vector<double> rho(samples.size());
     for (unsigned int s = 0; s < samples.size(); ++s)
       rho[s] = samples[s].condition->bound(samples[s].x, t);
+    // rho_c = int rho phi_c, with which j_n(v) = sum_c rho_c |v_c|.
     std::vector<double> result(face.points.size(), 0.);
     for (const Share &share : shares)
       result[share.point] += share.value * rho[share.sample];
@@ -235,9 +245,10 @@ namespace Viscoplastic
   ContactFace<dim>::cartesian(const unsigned int  point,
                               const Tensor<1, 2> &multiplier) const
   {
-    const Node        &node  = nodes[face.points[point].node];
-    const Tensor<1, 3> force = node_force(face.points[point], multiplier);
-    Tensor<1, dim>     in_frame;
+    const FrictionFace &face  = layout();
+    const Node         &node  = nodes[face.points[point].node];
+    const Tensor<1, 3>  force = node_force(face.points[point], multiplier);
+    Tensor<1, dim>      in_frame;
     for (unsigned int i = 0; i < face.n_node_dofs(face.points[point].node); ++i)
       in_frame[node.components[i]] = force[i];
     return node.directions * in_frame;
@@ -249,26 +260,11 @@ namespace Viscoplastic
   Tensor<1, dim>
   ContactFace<dim>::resultant(const FrictionState &state) const
   {
-    Tensor<1, dim> sum;
+    const FrictionFace &face = layout();
+    Tensor<1, dim>      sum;
     for (unsigned int p = 0; p < face.points.size(); ++p)
       sum += cartesian(p, state.multiplier[p]);
     return sum;
-  }
-
-
-
-  template <int dim>
-  Vector<double>
-  ContactFace<dim>::face_vector(const DistributedVector &in_frames) const
-  {
-    std::vector<double> values(global_dofs.size(), 0.);
-    for (unsigned int k = 0; k < values.size(); ++k)
-      if (space.owned.is_element(global_dofs[k]))
-        values[k] =
-          in_frames.begin()[space.owned.index_within_set(global_dofs[k])];
-    // One rank contributes each entry: the sum is exact.
-    Utilities::MPI::sum(values, space.communicator, values);
-    return Vector<double>(values.begin(), values.end());
   }
 
 
@@ -299,6 +295,7 @@ namespace Viscoplastic
   Vector<double>
   ContactFace<dim>::foundation_step(const double t_old, const double t) const
   {
+    const FrictionFace &face = layout();
     if (!space.scene.has_moving_foundation())
       return {};
     const std::vector<double> weights = bounds_by_id(t);
@@ -361,6 +358,7 @@ namespace Viscoplastic
   std::vector<Tensor<1, 2>>
   ContactFace<dim>::slips(const Vector<double> &change) const
   {
+    const FrictionFace       &face = layout();
     std::vector<Tensor<1, 2>> result;
     for (const auto &point : face.points)
       result.push_back(slip(point, face.node_values(change, point.node)));
@@ -374,7 +372,7 @@ namespace Viscoplastic
   ContactFace<dim>::slips(const DistributedVector &change,
                           const Vector<double>    &foundation_step) const
   {
-    Vector<double> x = face_vector(change);
+    Vector<double> x = face_restriction.gather(change);
     if (foundation_step.size() > 0)
       x -= foundation_step;
     return slips(x);
@@ -386,8 +384,9 @@ namespace Viscoplastic
   DistributedVector
   ContactFace<dim>::density(const FrictionState &state) const
   {
-    DistributedVector values  = space.owned_vector(),
-                      ghosted = space.ghosted_vector();
+    const FrictionFace &face   = layout();
+    DistributedVector   values = space.owned_vector(),
+                      ghosted  = space.ghosted_vector();
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const auto dof = nodes[face.points[p].node].first_dof;
@@ -409,6 +408,7 @@ namespace Viscoplastic
   std::vector<Tensor<1, 2>>
   ContactFace<dim>::multipliers(const DistributedVector &ghosted_density) const
   {
+    const FrictionFace &face = layout();
     std::vector<double> values(2 * face.points.size(), 0.);
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
@@ -444,8 +444,9 @@ namespace Viscoplastic
   DistributedVector
   ContactFace<dim>::nodal_field(const std::vector<double> &point_values) const
   {
-    DistributedVector values  = space.owned_vector(),
-                      ghosted = space.ghosted_vector();
+    const FrictionFace &face   = layout();
+    DistributedVector   values = space.owned_vector(),
+                      ghosted  = space.ghosted_vector();
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const auto dof = nodes[face.points[p].node].first_dof;

@@ -124,13 +124,12 @@ namespace Viscoplastic
 
   template <int dim>
   FrictionIdentities
-  check_friction(const ContactFace<dim>    &face,
-                 const FrictionState       &old_state,
-                 const FrictionState       &state,
-                 const std::vector<double> &bounds,
-                 const DistributedVector   &change,
-                 const Vector<double>      &foundation_step,
-                 const double               max_displacement)
+  check_friction(const ContactFace<dim>  &face,
+                 const FrictionState     &old_state,
+                 const FrictionState     &state,
+                 const DistributedVector &change,
+                 const Vector<double>    &foundation_step,
+                 const double             max_displacement)
   {
     FrictionIdentities              result;
     const std::vector<Tensor<1, 2>> slips = face.slips(change, foundation_step);
@@ -146,9 +145,9 @@ namespace Viscoplastic
         const double size   = stable_norm(slips[p]);
         const double weight = face.weights()[p];
         const double force  = stable_norm(state.multiplier[p]);
-        if (bounds[p] > 0.)
+        if (state.bound[p] > 0.)
           result.max_utilisation =
-            std::max(result.max_utilisation, force / bounds[p]);
+            std::max(result.max_utilisation, force / state.bound[p]);
         if (state.sticks[p])
           {
             result.stick_area += weight;
@@ -158,12 +157,12 @@ namespace Viscoplastic
           {
             result.slip_area += weight;
             // Below this, the direction is rounding.
-            if (bounds[p] > 0. && size > 1e-7 * max_displacement)
+            if (state.bound[p] > 0. && size > 1e-7 * max_displacement)
               result.slip_misalignment =
                 std::max(result.slip_misalignment,
                          stable_norm(state.multiplier[p] -
-                                     slips[p] * (bounds[p] / size)) /
-                           bounds[p]);
+                                     slips[p] * (state.bound[p] / size)) /
+                           state.bound[p]);
             result.dissipation += state.multiplier[p] * slips[p];
           }
       }
@@ -185,7 +184,6 @@ namespace Viscoplastic
   template FrictionIdentities check_friction<dim>(const ContactFace<dim> &,    \
                                                   const FrictionState &,       \
                                                   const FrictionState &,       \
-                                                  const std::vector<double> &, \
                                                   const DistributedVector &,   \
                                                   const Vector<double> &,      \
                                                   const double);

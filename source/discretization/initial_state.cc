@@ -161,6 +161,7 @@ namespace Viscoplastic
     state.velocity = space.ghosted_vector();
     if (scene.initial_displacement)
       {
+        // (3.18): u0^h = P_Vh u0 in (eps(u), eps(v)), the form a(.,.) with
         // E = identity: Young's modulus 1, Poisson's ratio 0.
         const ElasticModuli<dim> identity(Stiffness::isotropic(1., 0.));
         DistributedMatrix        matrix;
@@ -169,9 +170,8 @@ namespace Viscoplastic
           virtual_work(space, 3, [&](const Point<dim> &x) {
             return initial_strain(scene, x);
           });
-        const FrictionFace                         no_face;
-        const std::vector<types::global_dof_index> no_dofs;
-        make_bulk_solver(make_bulk_system(space, matrix, no_face, no_dofs), {})
+        const FaceRestriction no_face;
+        make_bulk_solver(make_bulk_system(space, matrix, no_face), {})
           ->solve(load, prescribed, 1e-10);
         space.to_cartesian(prescribed, state.u);
         state.initial_u = state.u;
@@ -188,6 +188,7 @@ namespace Viscoplastic
               state.z[c * sampling.n_samples + s] =
                 -1. * sampling.moduli(c).stress(strain[s]);
           }
+        // (3.18): sigma0^h = P_Qh sigma0.
         if (scene.initial_stress)
           {
             std::size_t c = 0;
@@ -263,12 +264,7 @@ namespace Viscoplastic
                           FrictionState              &friction)
   {
     DistributedVector residual = load.values;
-    const auto restrict        = [&space](DistributedVector &v) {
-      for (std::size_t i = 0; i < space.excluded().size(); ++i)
-        if (space.excluded()[i])
-          v.begin()[i] = 0.;
-    };
-    restrict(residual);
+    space.restrict_to_unknowns(residual);
     double size = residual.l2_norm(), largest = 0.;
     if (space.scene.initial_stress)
       {
@@ -278,22 +274,20 @@ namespace Viscoplastic
             return initial_stress(space.scene, x);
           });
         largest = internal.l2_norm();
-        restrict(internal);
+        space.restrict_to_unknowns(internal);
         size = std::max(size, internal.l2_norm());
         residual -= internal;
       }
 
     if (face != nullptr)
       {
-        const Vector<double> on_face = face->face_vector(residual);
+        // (2.12): sigma0 + the subdifferential of j at 0, which are forces
+        // within the friction bounds, contains L(0).
+        const Vector<double> on_face = face->restriction().gather(residual);
         Vector<double>       force(on_face.size());
-        friction = FrictionState(face->layout().points.size());
-        fit_multipliers(
-          face->layout(), face->bounds(0.), on_face, friction, force);
-        for (unsigned int k = 0; k < force.size(); ++k)
-          if (space.owned.is_element(face->dofs()[k]))
-            residual.begin()[space.owned.index_within_set(face->dofs()[k])] -=
-              force[k];
+        friction = FrictionState(face->bounds(0.));
+        fit_multipliers(face->layout(), on_face, friction, force);
+        face->restriction().add(-1., force, residual);
       }
     // Where reactions balance the initial stress, nothing but rounding is left
     // of it.

@@ -40,7 +40,7 @@ namespace Viscoplastic
                 for (const unsigned int v : cell->vertex_indices())
                   gradients.push_back(fe_values.shape_grad(v * dim, q));
               }
-          else
+          else // P_Qh of a strain, (3.1): its mean
             {
               weights.push_back(volume);
               positions.push_back(cell->center());

@@ -71,15 +71,16 @@ namespace Viscoplastic
     if (is_direct(demand,
                   system.dim,
                   matrix.m(),
-                  system.face.n_dofs(),
+                  system.face.dofs().size(),
                   matrix.get_mpi_communicator()))
-      return std::make_unique<SchurSolver>(
-        matrix, system.excluded, system.face, system.face_dofs, system.dim);
+      return std::make_unique<SchurSolver>(matrix,
+                                           system.excluded,
+                                           system.face,
+                                           system.dim);
     return std::make_unique<KrylovSolver>(matrix,
                                           system.excluded,
                                           system.rigid_body_modes(),
                                           system.face,
-                                          system.face_dofs,
                                           system.dim);
   }
 } // namespace Viscoplastic

@@ -35,20 +35,9 @@ namespace Viscoplastic
     {
       solver.matrix.vmult(y, x);
       if (solver.has_springs)
-        for (unsigned int n = 0; n < solver.face.n_nodes(); ++n)
-          {
-            const unsigned int first = solver.face.first_dof[n];
-            if (solver.local_face_dofs[first] == numbers::invalid_unsigned_int)
-              continue;
-            const unsigned int size = solver.face.n_node_dofs(n);
-            for (unsigned int i = 0; i < size; ++i)
-              for (unsigned int j = 0; j < size; ++j)
-                y.begin()[solver.local_face_dofs[first + i]] +=
-                  solver.truncation.spring[n][i][j] *
-                  x.begin()[solver.local_face_dofs[first + j]];
-          }
+        solver.restriction.add_springs(solver.truncation, x, y);
       solver.restrict_to_unknowns(y);
-      solver.project(y);
+      solver.restriction.project(solver.truncation, y);
     }
   };
 
@@ -64,7 +53,7 @@ namespace Viscoplastic
   {
     const KrylovSolver       &solver;
     mutable DistributedVector filtered;
-    std::vector<double>       damping; // of each face entry
+    Vector<double>            damping; // of owned face entries
 
     explicit FilteredPreconditioner(const KrylovSolver &solver)
       : solver(solver)
@@ -72,28 +61,28 @@ namespace Viscoplastic
     {
       if (!solver.has_springs)
         return;
-      damping.resize(solver.face_dofs.size(), 1.);
+      damping.reinit(solver.face.n_dofs());
+      for (const auto &entry : solver.restriction.owned_entries())
+        damping[entry.k] =
+          solver.matrix.diag_element(solver.restriction.dofs()[entry.k]);
       for (unsigned int n = 0; n < solver.face.n_nodes(); ++n)
         for (unsigned int i = 0; i < solver.face.n_node_dofs(n); ++i)
           {
-            const unsigned int k = solver.face.first_dof[n] + i;
-            if (solver.local_face_dofs[k] != numbers::invalid_unsigned_int)
-              {
-                const double known =
-                  solver.face_diagonal[k] + solver.built_for.spring[n][i][i];
-                const double present =
-                  solver.face_diagonal[k] + solver.truncation.spring[n][i][i];
-                damping[k] = std::sqrt(std::min(1., known / present));
-              }
+            double &d = damping[solver.face.first_dof[n] + i];
+            if (d == 0.)
+              continue; // of another rank
+            const double known   = d + solver.built_for.spring[n][i][i],
+                         present = d + solver.truncation.spring[n][i][i];
+            d                    = std::sqrt(std::min(1., known / present));
           }
     }
 
     void
     damp(DistributedVector &v) const
     {
-      for (unsigned int k = 0; k < damping.size(); ++k)
-        if (solver.local_face_dofs[k] != numbers::invalid_unsigned_int)
-          v.begin()[solver.local_face_dofs[k]] *= damping[k];
+      if (damping.size() > 0)
+        for (const auto &entry : solver.restriction.owned_entries())
+          v.begin()[entry.i] *= damping[entry.k];
     }
 
     void
@@ -104,28 +93,24 @@ namespace Viscoplastic
       solver.precondition(y, filtered);
       damp(y);
       solver.restrict_to_unknowns(y);
-      solver.project(y);
+      solver.restriction.project(solver.truncation, y);
     }
   };
 
 
 
-  KrylovSolver::KrylovSolver(
-    const DistributedMatrix                    &matrix,
-    const std::vector<bool>                    &excluded,
-    std::vector<DistributedVector>              rigid_body_modes_,
-    const FrictionFace                         &face,
-    const std::vector<types::global_dof_index> &face_dofs,
-    const unsigned int                          dim)
+  KrylovSolver::KrylovSolver(const DistributedMatrix       &matrix,
+                             const std::vector<bool>       &excluded,
+                             std::vector<DistributedVector> rigid_body_modes_,
+                             const FaceRestriction         &restriction,
+                             const unsigned int             dim)
     : matrix(matrix)
     , excluded(excluded)
     , rigid_body_modes(std::move(rigid_body_modes_))
-    , face(face)
-    , face_dofs(face_dofs)
+    , restriction(restriction)
+    , face(restriction.face())
     , dim(dim)
     , communicator(matrix.get_mpi_communicator())
-    , local_face_dofs(face_dofs.size(), numbers::invalid_unsigned_int)
-    , face_diagonal(face_dofs.size(), 0.)
     , residual(rigid_body_modes[0])
     , w(residual)
     , product(residual)
@@ -133,13 +118,6 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < excluded.size(); ++i)
       if (excluded[i])
         excluded_entries.push_back(i);
-    const IndexSet &owned = residual.locally_owned_elements();
-    for (unsigned int k = 0; k < face_dofs.size(); ++k)
-      if (owned.is_element(face_dofs[k]))
-        {
-          local_face_dofs[k] = owned.index_within_set(face_dofs[k]);
-          face_diagonal[k]   = matrix.diag_element(face_dofs[k]);
-        }
     if (face.n_dofs() > 0)
       make_face_matrix();
   }
@@ -151,29 +129,25 @@ namespace Viscoplastic
   {
     // Rows of owned face entries, gathered on all ranks: the face is small.
     std::map<types::global_dof_index, unsigned int> face_index;
-    for (unsigned int k = 0; k < face_dofs.size(); ++k)
-      face_index[face_dofs[k]] = k;
+    for (unsigned int k = 0; k < face.n_dofs(); ++k)
+      face_index[restriction.dofs()[k]] = k;
     // Not by the iterators of the matrix, each of which fills a vector of the
     // size of the whole matrix.
     const Epetra_CrsMatrix              &K = matrix.trilinos_matrix();
     std::vector<SparseFaceMatrix::Entry> entries;
-    for (unsigned int k = 0; k < face_dofs.size(); ++k)
-      if (local_face_dofs[k] != numbers::invalid_unsigned_int)
-        {
-          int     length, *indices;
-          double *values;
-          K.ExtractMyRowView(static_cast<int>(local_face_dofs[k]),
-                             length,
-                             values,
-                             indices);
-          for (int e = 0; e < length; ++e)
-            {
-              const auto column = face_index.find(
-                static_cast<types::global_dof_index>(K.GCID(indices[e])));
-              if (column != face_index.end())
-                entries.push_back({k, column->second, values[e]});
-            }
-        }
+    for (const auto &entry : restriction.owned_entries())
+      {
+        int     length, *indices;
+        double *values;
+        K.ExtractMyRowView(static_cast<int>(entry.i), length, values, indices);
+        for (int e = 0; e < length; ++e)
+          {
+            const auto column = face_index.find(
+              static_cast<types::global_dof_index>(K.GCID(indices[e])));
+            if (column != face_index.end())
+              entries.push_back({entry.k, column->second, values[e]});
+          }
+      }
     std::vector<SparseFaceMatrix::Entry> all;
     for (const auto &part : Utilities::MPI::all_gather(communicator, entries))
       all.insert(all.end(), part.begin(), part.end());
@@ -241,63 +215,6 @@ namespace Viscoplastic
 
 
   void
-  KrylovSolver::project(DistributedVector &v) const
-  {
-    for (unsigned int n = 0; n < truncation.projector.size(); ++n)
-      {
-        const unsigned int first = face.first_dof[n];
-        if (local_face_dofs[first] == numbers::invalid_unsigned_int)
-          continue;
-        const unsigned int size = face.n_node_dofs(n);
-        Tensor<1, 3>       values;
-        for (unsigned int i = 0; i < size; ++i)
-          values[i] = v.begin()[local_face_dofs[first + i]];
-        values = truncation.projector[n] * values;
-        for (unsigned int i = 0; i < size; ++i)
-          v.begin()[local_face_dofs[first + i]] = values[i];
-      }
-  }
-
-
-
-  void
-  KrylovSolver::subtract_face(const Vector<double> &force,
-                              DistributedVector    &v) const
-  {
-    for (unsigned int k = 0; k < local_face_dofs.size(); ++k)
-      if (local_face_dofs[k] != numbers::invalid_unsigned_int)
-        v.begin()[local_face_dofs[k]] -= force[k];
-  }
-
-
-
-  void
-  KrylovSolver::to_face(const DistributedVector &v,
-                        Vector<double>          &on_face) const
-  {
-    // One rank contributes each entry, so the sum is exact and the same on all.
-    std::vector<double> values(local_face_dofs.size(), 0.);
-    for (unsigned int k = 0; k < values.size(); ++k)
-      if (local_face_dofs[k] != numbers::invalid_unsigned_int)
-        values[k] = v.begin()[local_face_dofs[k]];
-    Utilities::MPI::sum(values, communicator, values);
-    std::copy(values.begin(), values.end(), on_face.begin());
-  }
-
-
-
-  void
-  KrylovSolver::from_face(const Vector<double> &on_face,
-                          DistributedVector    &v) const
-  {
-    for (unsigned int k = 0; k < local_face_dofs.size(); ++k)
-      if (local_face_dofs[k] != numbers::invalid_unsigned_int)
-        v.begin()[local_face_dofs[k]] = on_face[k];
-  }
-
-
-
-  void
   KrylovSolver::build_preconditioner()
   {
     // Components that are cut off: excluded ones, and the face components of
@@ -306,20 +223,20 @@ namespace Viscoplastic
     Epetra_Vector           keep(K.DomainMap());
     for (std::size_t i = 0; i < excluded.size(); ++i)
       keep[i] = excluded[i] ? 0. : 1.;
+    Vector<double> cut_off(face.n_dofs());
     for (unsigned int n = 0; n < truncation.projector.size(); ++n)
-      if (truncation.projector[n].norm() == 0. ||
-          (face.n_node_dofs(n) < 3 && [&] {
-            for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
-              if (truncation.projector[n][i][i] != 0.)
-                return false;
-            return true;
-          }()))
-        for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
-          {
-            const unsigned int k = local_face_dofs[face.first_dof[n] + i];
-            if (k != numbers::invalid_unsigned_int)
-              keep[k] = 0.;
-          }
+      {
+        const unsigned int first = face.first_dof[n],
+                           end   = face.first_dof[n + 1];
+        bool sticks              = true;
+        for (unsigned int i = 0; i < end - first; ++i)
+          sticks &= truncation.projector[n][i][i] == 0.;
+        if (sticks)
+          std::fill(cut_off.begin() + first, cut_off.begin() + end, 1.);
+      }
+    for (const auto &entry : restriction.owned_entries())
+      if (cut_off[entry.k] == 1.)
+        keep[entry.i] = 0.;
     Epetra_Vector keep_column(K.ColMap());
     if (K.Importer() != nullptr)
       keep_column.Import(keep, *K.Importer(), Insert);
@@ -341,16 +258,16 @@ namespace Viscoplastic
     // The springs of slipping points, which the cut-off rows do not have.
     if (has_springs)
       {
+        const std::vector<types::global_dof_index> &dofs = restriction.dofs();
         for (unsigned int n = 0; n < face.n_nodes(); ++n)
           for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
             for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
               {
                 const unsigned int first = face.first_dof[n];
-                if (local_face_dofs[first + i] !=
-                      numbers::invalid_unsigned_int &&
+                if (masked_matrix.in_local_range(dofs[first + i]) &&
                     truncation.spring[n][i][j] != 0.)
-                  masked_matrix.add(face_dofs[first + i],
-                                    face_dofs[first + j],
+                  masked_matrix.add(dofs[first + i],
+                                    dofs[first + j],
                                     truncation.spring[n][i][j]);
               }
         masked_matrix.compress(VectorOperation::add);
@@ -480,7 +397,7 @@ namespace Viscoplastic
   void
   KrylovSolver::face_residual(Vector<double> &r)
   {
-    to_face(residual, r);
+    r = restriction.gather(residual);
   }
 
 
@@ -491,7 +408,7 @@ namespace Viscoplastic
     if (change.linfty_norm() == 0.)
       return;
     w = 0.;
-    from_face(change, w);
+    restriction.set(change, w);
     matrix.vmult(product, w);
     take_step(1.);
   }
@@ -521,7 +438,7 @@ namespace Viscoplastic
     // Not filtered by the truncation: the residual on sticking components, if
     // any, is an error, too.
     product = residual;
-    subtract_face(force, product);
+    restriction.add(-1., force, product);
     precondition(w, product);
     restrict_to_unknowns(w);
     return std::sqrt(std::max(0., w * product));
@@ -540,7 +457,7 @@ namespace Viscoplastic
     std::swap(truncation, none);
     const bool springs = std::exchange(has_springs, false);
     product            = residual;
-    subtract_face(force, product);
+    restriction.add(-1., force, product);
     w           = 0.;
     double norm = 0.;
     if (product.l2_norm() > 0.)
@@ -583,8 +500,8 @@ namespace Viscoplastic
                         Vector<double>       &face_part)
   {
     product = residual;
-    subtract_face(force, product);
-    project(product);
+    restriction.add(-1., force, product);
+    restriction.project(truncation, product);
     w                 = 0.;
     const double size = product.l2_norm();
     face_part         = 0.;
@@ -610,7 +527,7 @@ namespace Viscoplastic
                                "converge; for nearly incompressible bodies use "
                                "'Solver/Linear solver' = direct."));
       }
-    to_face(w, face_part);
+    face_part = restriction.gather(w);
 
     const double decades =
       std::log10(size / std::max(control.last_value(), 1e-16 * size));
@@ -631,7 +548,7 @@ namespace Viscoplastic
   BulkSolver::SearchTerms
   KrylovSolver::search_terms(const Vector<double> &face_part)
   {
-    from_face(face_part, w);
+    restriction.set(face_part, w);
     matrix.vmult(product, w);
     return {residual * w, product * w};
   }

@@ -174,18 +174,16 @@ namespace Viscoplastic
 
 
 
-  SchurSolver::SchurSolver(
-    const DistributedMatrix                    &matrix,
-    const std::vector<bool>                    &excluded,
-    const FrictionFace                         &face,
-    const std::vector<types::global_dof_index> &face_dofs,
-    const unsigned int                          dim)
+  SchurSolver::SchurSolver(const DistributedMatrix &matrix,
+                           const std::vector<bool> &excluded,
+                           const FaceRestriction   &restriction,
+                           const unsigned int       dim)
     : matrix(matrix)
-    , face(face)
+    , face(restriction.face())
     , factor(std::make_unique<Factor>())
   {
     AssertDimension(matrix.m(), excluded.size());
-    analyse(excluded, face_dofs, dim);
+    analyse(excluded, restriction.dofs(), dim);
     factorise();
   }
 

@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/results/output.h>
@@ -532,14 +533,14 @@ namespace Viscoplastic
         add_vector("traction");
         for (const char *name : {"bound", "utilisation", "stick"})
           output.names.push_back(name);
-        const std::vector<double> bounds = face->bounds(state.t);
-        std::vector<double>       values(bounds.size());
+        const std::vector<double> &bounds = state.friction.bound;
+        std::vector<double>        values(bounds.size());
         for (unsigned int p = 0; p < values.size(); ++p)
           values[p] = bounds[p] / face->weights()[p];
         bound = face->nodal_field(values);
         for (unsigned int p = 0; p < values.size(); ++p)
           values[p] = bounds[p] > 0. ?
-                        state.friction.multiplier[p].norm() / bounds[p] :
+                        stable_norm(state.friction.multiplier[p]) / bounds[p] :
                         0.;
         utilisation = face->nodal_field(values);
         for (unsigned int p = 0; p < values.size(); ++p)

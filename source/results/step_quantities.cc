@@ -79,14 +79,12 @@ namespace Viscoplastic
       {
         DistributedVector change = forces.u;
         change -= old.forces.u;
-        result.friction =
-          check_friction(*d.face,
-                         old.state.friction,
-                         state.friction,
-                         is_initial ? d.face->bounds(0.) : step.bounds,
-                         change,
-                         step.foundation_step,
-                         result.max_displacement);
+        result.friction       = check_friction(*d.face,
+                                         old.state.friction,
+                                         state.friction,
+                                         change,
+                                         step.foundation_step,
+                                         result.max_displacement);
         result.friction_force = d.face->resultant(state.friction);
       }
     if (d.tension)

@@ -89,8 +89,7 @@ namespace Viscoplastic
     // What record() and estimate() make anew in each step is not here.
     State<dim> &state = accepted.state;
     archive &state.n &state.t &state.k &accepted.is_solution;
-    archive &state.friction.slip &state.friction.multiplier &state.friction
-      .sticks;
+    state.friction.exchange(archive);
     control.exchange(archive);
     if (error_bar)
       accepted.errors.exchange(archive);
@@ -286,6 +285,7 @@ namespace Viscoplastic
     const unsigned int n_points = d.face ? d.face->layout().points.size() : 0;
     AssertThrow(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
                  unpack(0, checkpoint.n_ranks)) &&
+                  state.friction.bound.size() == n_points &&
                   state.friction.slip.size() == n_points &&
                   state.friction.multiplier.size() == n_points &&
                   state.friction.sticks.size() == n_points &&

@@ -71,15 +71,34 @@ namespace Viscoplastic
       begin();
 
     const SignalRequests signals;
+    const std::string    interruption = make_steps(&signals);
+    if (interruption.empty())
+      close();
+    return interruption;
+  }
+
+
+
+  template <int dim>
+  std::string
+  ViscoplasticContact<dim>::make_steps(const SignalRequests *signals)
+  {
     while (!is_finished())
       {
-        if (output->is_due(make_step()))
+        if (adaptation_is_due())
+          adapt_mesh();
+        AcceptedStep<dim> step = time_stepper->next(accepted);
+        announce_solver();
+        recorder.record(accepted, step, measure_errors(step.end.state));
+        accepted = std::move(step.end);
+        if (signals == nullptr)
+          continue;
+        if (output->is_due(step.time_step))
           write_fields();
-        const std::string interruption = keep_checkpoints(signals);
+        const std::string interruption = keep_checkpoints(*signals);
         if (!interruption.empty())
           return interruption;
       }
-    close();
     return "";
   }
 
@@ -114,8 +133,7 @@ namespace Viscoplastic
     set_initial_state();
     check_steps();
     record_initial_state();
-    while (!is_finished())
-      make_step();
+    make_steps(nullptr);
     recorder.check_sizes(/* at_end = */ true);
     return recorder.summary();
   }
@@ -161,23 +179,6 @@ namespace Viscoplastic
     initial.end       = accepted;
     initial.report    = initial_report;
     recorder.record(accepted, initial, measure_errors(accepted.state));
-  }
-
-
-
-  template <int dim>
-  TimeStep
-  ViscoplasticContact<dim>::make_step()
-  {
-    const unsigned int n = accepted.state.n;
-    if (scene.is_adaptive() && n > 0 &&
-        n % parameters.refinement.every_n_steps == 0)
-      adapt_mesh();
-    AcceptedStep<dim> step = time_stepper->next(accepted);
-    announce_solver();
-    recorder.record(accepted, step, measure_errors(step.end.state));
-    accepted = std::move(step.end);
-    return step.time_step;
   }
 
 
@@ -308,10 +309,9 @@ namespace Viscoplastic
     if (d.face)
       {
         // Sets by what the multipliers and velocities say.
-        const std::vector<double> bounds = d.face->bounds(state.t);
-        state.friction                   = FrictionState(bounds.size());
-        state.friction.multiplier =
-          d.face->multipliers(result.multiplier_density);
+        FrictionState &friction = state.friction;
+        friction                = FrictionState(d.face->bounds(state.t));
+        friction.multiplier = d.face->multipliers(result.multiplier_density);
         DistributedVector velocity = d.space.owned_vector();
         d.space.to_frames(state.velocity, velocity);
         Vector<double> carried =
@@ -320,14 +320,14 @@ namespace Viscoplastic
           carried /= state.k;
         const auto   slip_rates = d.face->slips(velocity, carried);
         const double max_speed  = velocity.linfty_norm();
-        for (unsigned int p = 0; p < bounds.size(); ++p)
+        for (unsigned int p = 0; p < friction.n_points(); ++p)
           {
-            auto        &multiplier = state.friction.multiplier[p];
+            auto        &multiplier = friction.multiplier[p];
             const double size       = stable_norm(multiplier);
-            if (size > bounds[p])
-              multiplier *= bounds[p] / size;
-            state.friction.sticks[p] =
-              size < (1. - 1e-6) * bounds[p] ||
+            if (size > friction.bound[p])
+              multiplier *= friction.bound[p] / size;
+            friction.sticks[p] =
+              size < (1. - 1e-6) * friction.bound[p] ||
               stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
           }
       }

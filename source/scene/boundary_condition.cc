@@ -266,6 +266,7 @@ namespace Viscoplastic
                 << "; it must not be negative.";
         AssertThrow(false, ExcMessage(message.str()));
       }
+    // rho = g, (5.22), or mu |S|, (5.6).
     return is_tresca ? factor : factor * std::abs(normal_stress->value(x, t));
   }
 

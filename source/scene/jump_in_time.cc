@@ -413,6 +413,7 @@ namespace Viscoplastic
           inspect((*scene.body_force)[d], places);
       }
 
+    // (2.10) excludes them.
     if (!jumps.list.empty())
       warnings.push_back(
         "Data jump in time (" + jumps.list +

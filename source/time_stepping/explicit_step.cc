@@ -139,6 +139,7 @@ namespace Viscoplastic
         return;
       }
 
+    // (3.20): u_n for the z_n that (3.19) has given.
     DistributedVector u = solver.initial_guess(problem, guess, state.friction);
     ContactReport     report =
       solver.solve(problem, right_side, problem.tolerance, u, state.friction);

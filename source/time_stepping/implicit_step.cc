@@ -352,24 +352,14 @@ namespace Viscoplastic
   {
     State<dim>        &state = solution.state;
     NewtonIterate<dim> iterate{u, state.u, state.z, state.friction};
-    const auto         correction = NonsymmetricCorrection<dim>(d.laws,
-                                                        d.matrix,
-                                                        method.solver.bulk(),
-                                                        d.slipping_face(),
-                                                        problem.load.values,
-                                                        problem.old_u(),
-                                                        problem.bounds,
-                                                        problem.foundation_step)
-                              .correct(
-                                problem.time_step.t,
-                                problem.time_step.k,
-                                std::max(0.1 * tolerance * size / error,
-                                         std::min(1e-2, error / size)),
-                                [this](const DistributedVector  &ghosted_u,
-                                       const IrreversibleStress &guess) {
-                                  return stress(ghosted_u, guess);
-                                },
-                                iterate);
+    const NonsymmetricCorrection<dim> newton(d, problem, method.solver.bulk());
+    const auto                        correction = newton.correct(
+      std::max(0.1 * tolerance * size / error, std::min(1e-2, error / size)),
+      [this](const DistributedVector  &ghosted_u,
+             const IrreversibleStress &guess) {
+        return stress(ghosted_u, guess);
+      },
+      iterate);
     solution.report.linear_iterations += correction.iterations;
     if (correction.share > 0.)
       {

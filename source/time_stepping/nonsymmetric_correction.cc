@@ -80,7 +80,7 @@ namespace Viscoplastic
     {
       const StressSampling<dim> &sampling = step.sampling;
       const unsigned int         n        = sampling.n_samples;
-      step.elastic_matrix.vmult(y, x);
+      step.d.matrix.vmult(y, x);
       step.space.to_cartesian(x, ghosted);
       IrreversibleStress                 stress(flow.size());
       std::vector<SymmetricTensor<2, 3>> strain(n);
@@ -93,20 +93,11 @@ namespace Viscoplastic
       add_irreversible_load(sampling, stress, y);
       if (step.face)
         {
-          const FrictionFace &face = step.face->layout();
-          if (truncation.has_springs())
-            {
-              Vector<double> force = step.face->face_vector(x);
-              for (unsigned int node = 0; node < face.n_nodes(); ++node)
-                face.set_node_values(truncation.spring[node] *
-                                       face.node_values(force, node),
-                                     node,
-                                     force);
-              step.add_face(1., force, y);
-            }
-          step.project(truncation, y);
+          const FaceRestriction &restriction = step.face->restriction();
+          restriction.add_springs(truncation, x, y);
+          restriction.project(truncation, y);
         }
-      step.restrict_to_unknowns(y);
+      step.space.restrict_to_unknowns(y);
     }
   };
 
@@ -147,63 +138,16 @@ namespace Viscoplastic
 
   template <int dim>
   NonsymmetricCorrection<dim>::NonsymmetricCorrection(
-    const FlowLaws<dim>       &laws,
-    const DistributedMatrix   &elastic_matrix,
-    BulkSolver                &solver,
-    const ContactFace<dim>    *face,
-    const DistributedVector   &load,
-    const DistributedVector   &old_u,
-    const std::vector<double> &bounds,
-    const Vector<double>      &foundation_step)
-    : laws(laws)
-    , sampling(laws.sampling)
-    , space(sampling.space)
-    , elastic_matrix(elastic_matrix)
+    const Discretization<dim> &discretization,
+    const StepProblem<dim>    &problem,
+    BulkSolver                &solver)
+    : d(discretization)
+    , problem(problem)
+    , sampling(d.sampling)
+    , space(d.space)
+    , face(d.slipping_face())
     , solver(solver)
-    , face(face)
-    , load(load)
-    , old_u(old_u)
-    , bounds(bounds)
-    , foundation_step(foundation_step)
   {}
-
-
-
-  template <int dim>
-  void
-  NonsymmetricCorrection<dim>::restrict_to_unknowns(DistributedVector &v) const
-  {
-    for (std::size_t i = 0; i < space.excluded().size(); ++i)
-      if (space.excluded()[i])
-        v.begin()[i] = 0.;
-  }
-
-
-
-  template <int dim>
-  void
-  NonsymmetricCorrection<dim>::add_face(const double          factor,
-                                        const Vector<double> &on_face,
-                                        DistributedVector    &v) const
-  {
-    for (unsigned int k = 0; k < on_face.size(); ++k)
-      if (space.owned.is_element(face->dofs()[k]))
-        v.begin()[space.owned.index_within_set(face->dofs()[k])] +=
-          factor * on_face[k];
-  }
-
-
-
-  template <int dim>
-  void
-  NonsymmetricCorrection<dim>::project(const FaceTruncation &truncation,
-                                       DistributedVector    &v) const
-  {
-    Vector<double> change = face->face_vector(v), projected(change);
-    truncation.project(face->layout(), projected);
-    change.sadd(-1., 1., projected);
-    add_face(1., change, v);
-  }
 
 
 
@@ -217,7 +161,7 @@ namespace Viscoplastic
     std::vector<Tensor<2, 3>> inverse(layout.n_nodes());
     for (unsigned int node = 0; node < layout.n_nodes(); ++node)
       inverse[node] = invert(solver.face_matrix().diagonal_block(node));
-    return make_truncation(layout, bounds, friction, inverse);
+    return make_truncation(layout, friction, inverse);
   }
 
 
@@ -226,20 +170,19 @@ namespace Viscoplastic
   DistributedVector
   NonsymmetricCorrection<dim>::residual(NewtonIterate<dim> &iterate) const
   {
-    DistributedVector r(load), product(load);
-    elastic_matrix.vmult(product, iterate.u);
+    DistributedVector r(problem.load.values), product(r);
+    d.matrix.vmult(product, iterate.u);
     r -= product;
     add_irreversible_load(sampling, iterate.z, r);
-    restrict_to_unknowns(r);
+    space.restrict_to_unknowns(r);
     if (face)
       {
         Vector<double> force(face->layout().n_dofs());
         fit_multipliers(face->layout(),
-                        bounds,
-                        face->face_vector(r),
+                        face->restriction().gather(r),
                         iterate.friction,
                         force);
-        add_face(-1., force, r);
+        face->restriction().add(-1., force, r);
       }
     return r;
   }
@@ -278,10 +221,10 @@ namespace Viscoplastic
       {
         const FrictionFace &layout = face->layout();
         DistributedVector   change(to.u);
-        change -= old_u;
-        Vector<double> x = face->face_vector(change);
-        if (foundation_step.size() > 0)
-          x -= foundation_step;
+        change -= problem.old_u();
+        Vector<double> x = face->restriction().gather(change);
+        if (problem.foundation_step.size() > 0)
+          x -= problem.foundation_step;
         Vector<double> stop(x.size());
         for (unsigned int p = 0; p < layout.points.size(); ++p)
           {
@@ -292,7 +235,7 @@ namespace Viscoplastic
               continue;
             const Tensor<1, 2> before = s;
             s                         = slip(point, values);
-            if (bounds[p] == 0.)
+            if (to.friction.bound[p] == 0.)
               continue;
             if (before * s <= 0. && layout.n_node_points(point.node) == 1)
               {
@@ -301,7 +244,7 @@ namespace Viscoplastic
               }
             to.friction.sticks[p] = s.norm() == 0.;
           }
-        add_face(1., stop, to.u);
+        face->restriction().add(1., stop, to.u);
       }
     space.to_cartesian(to.u, to.ghosted_u);
     return to;
@@ -311,9 +254,7 @@ namespace Viscoplastic
 
   template <int dim>
   typename NonsymmetricCorrection<dim>::Result
-  NonsymmetricCorrection<dim>::correct(const double           t,
-                                       const double           k,
-                                       const double           reduction,
+  NonsymmetricCorrection<dim>::correct(const double           reduction,
                                        const StressForStrain &z_for,
                                        NewtonIterate<dim>    &iterate) const
   {
@@ -327,11 +268,14 @@ namespace Viscoplastic
     DistributedVector       w(r), right_side(r);
     w = 0.;
     if (face)
-      project(truncation, right_side);
+      face->restriction().project(truncation, right_side);
     Result result{0., 0};
     if (right_side.l2_norm() > 0.)
       {
-        const auto       flow = flow_tangents(laws, iterate, t, k);
+        const auto       flow = flow_tangents(d.laws,
+                                        iterate,
+                                        problem.time_step.t,
+                                        problem.time_step.k);
         ReductionControl control(100, 0., reduction);
         try
           {

@@ -44,18 +44,18 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       diagonal.begin()[i] =
         matrix.diag_element(space.owned.nth_index_in_set(i));
-    const FrictionFace &face = d.friction_face();
-    const SolverDemand  demand{d.scene().parameters.solver.linear_solver,
+    const FaceRestriction &face = d.face_restriction();
+    const SolverDemand     demand{d.scene().parameters.solver.linear_solver,
                               max_poissons_ratio,
                               d.n_solves};
     if (bulk_solver &&
-        is_direct(demand, dim, matrix.m(), face.n_dofs(), space.communicator) &&
+        is_direct(
+          demand, dim, matrix.m(), face.dofs().size(), space.communicator) &&
         bulk_solver->renew(matrix))
       return;
     bulk_solver.reset(); // factors are what fills memory
     bulk_solver =
-      make_bulk_solver(make_bulk_system(space, matrix, face, d.face_dofs()),
-                       demand);
+      make_bulk_solver(make_bulk_system(space, matrix, face), demand);
   }
 
 
@@ -79,22 +79,23 @@ namespace Viscoplastic
       {
         const FrictionFace   &face            = d.face->layout();
         const Vector<double> &foundation_step = problem.foundation_step;
-        friction                              = guess.friction;
-        if (friction.sticks.size() != face.points.size())
-          friction = FrictionState(face.points.size());
+        if (guess.friction.n_points() == problem.bounds.size())
+          {
+            friction       = guess.friction;
+            friction.bound = problem.bounds;
+          }
+        else
+          friction = FrictionState(problem.bounds);
+        std::vector<bool> sticks(face.n_dofs());
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
-          if (friction.sticks[face.first_point[node]])
-            for (unsigned int i = face.first_dof[node];
-                 i < face.first_dof[node + 1];
-                 ++i)
-              if (space.owned.is_element(d.face->dofs()[i]))
-                {
-                  const auto local =
-                    space.owned.index_within_set(d.face->dofs()[i]);
-                  u.begin()[local] =
-                    old_u.begin()[local] +
-                    (foundation_step.size() > 0 ? foundation_step[i] : 0.);
-                }
+          std::fill(sticks.begin() + face.first_dof[node],
+                    sticks.begin() + face.first_dof[node + 1],
+                    friction.sticks[face.first_point[node]]);
+        for (const auto &[k, i] : d.face->restriction().owned_entries())
+          if (sticks[k])
+            u.begin()[i] =
+              old_u.begin()[i] +
+              (foundation_step.size() > 0 ? foundation_step[k] : 0.);
       }
     space.set_prescribed(problem.time_step.t, u);
     return u;
@@ -146,13 +147,10 @@ namespace Viscoplastic
             add(data.right_side.begin()[i] / root);
           }
       }
-    for (unsigned int k = 0; k < data.foundation_step.size(); ++k)
-      {
-        const auto dof = discretization.face_dofs()[k];
-        if (space.owned.is_element(dof))
-          add(std::sqrt(diagonal.begin()[space.owned.index_within_set(dof)]) *
-              data.foundation_step[k]);
-      }
+    if (data.foundation_step.size() > 0)
+      for (const auto &[k, i] :
+           discretization.face_restriction().owned_entries())
+        add(std::sqrt(diagonal.begin()[i]) * data.foundation_step[k]);
     return Utilities::MPI::max(size, space.communicator);
   }
 
@@ -173,7 +171,6 @@ namespace Viscoplastic
     const Data   data{problem.old_u(),
                     problem.load.values,
                     right_side,
-                    problem.bounds,
                     problem.foundation_step};
     const double size = size_of(data, u);
     AssertThrow(!(size > largest_size),
@@ -193,26 +190,24 @@ namespace Viscoplastic
     };
     const auto scale = [&](const double factor) {
       u *= factor;
-      for (auto *values : {&friction.slip, &friction.multiplier})
-        for (Tensor<1, 2> &value : *values)
-          value *= factor;
+      for (unsigned int p = 0; p < friction.n_points(); ++p)
+        {
+          friction.bound[p] *= factor;
+          friction.slip[p] *= factor;
+          friction.multiplier[p] *= factor;
+        }
     };
     const DistributedVector old_u            = in_unit(data.old_u),
                             load             = in_unit(data.load),
                             other_right_side = in_unit(right_side);
-    std::vector<double> bounds(data.bounds);
-    for (double &bound : bounds)
-      bound /= unit;
     Vector<double> foundation_step(data.foundation_step);
     if (foundation_step.size() > 0)
       foundation_step /= unit;
     scale(1. / unit);
-    ContactReport report =
-      solve_in_unit({old_u, load, other_right_side, bounds, foundation_step},
-                    tolerance,
-                    u,
-                    friction);
+    ContactReport report = solve_in_unit(
+      {old_u, load, other_right_side, foundation_step}, tolerance, u, friction);
     scale(unit);
+    friction.bound = problem.bounds;
     report.duality_gap *= unit * unit;
     report.error *= unit;
     bulk_solver->set_rounding_error(unit * bulk_solver->rounding_error());
@@ -234,16 +229,13 @@ namespace Viscoplastic
       {
         DistributedVector change(u);
         change -= data.old_u;
-        Vector<double> increment = d.face->face_vector(change);
+        Vector<double> increment = d.face->restriction().gather(change);
         if (data.foundation_step.size() > 0)
           increment -= data.foundation_step;
+        // (3.20): the minimum of J is its solution.
         bulk_solver->begin(data.right_side, u);
-        return contact_solver.solve(*bulk_solver,
-                                    d.face->layout(),
-                                    data.bounds,
-                                    tolerance,
-                                    increment,
-                                    friction);
+        return contact_solver.solve(
+          *bulk_solver, d.face->layout(), tolerance, increment, friction);
       }
     ContactReport report;
     report.linear_iterations =

@@ -83,6 +83,7 @@ namespace Viscoplastic
         });
         rate      = &*evaluated;
       }
+    // r is the constant of (2.8), or the larger of its parts.
     double limit = std::numeric_limits<double>::infinity();
     if (rate != nullptr && rate->relaxation_rate > 0. &&
         scene.parameters.time.scheme != "backward Euler")
@@ -100,8 +101,7 @@ namespace Viscoplastic
             const StepErrors  errors = assess(accepted, rate, step);
             const bool        has_event =
               control.is_on && discretization.face &&
-              has_contact_event(step.bounds,
-                                state.friction,
+              has_contact_event(state.friction,
                                 step.end.state.friction,
                                 control.is_kink(time_step.t_old));
             if (control.accepts(time_step, errors, has_event))
@@ -170,7 +170,6 @@ namespace Viscoplastic
                                       std::move(problem.load),
                                       step.end.state);
     step.end.is_solution             = true;
-    step.bounds                      = std::move(problem.bounds);
     step.foundation_step             = std::move(problem.foundation_step);
     return step;
   }
@@ -225,7 +224,7 @@ namespace Viscoplastic
   {
     const Discretization<dim> &d = discretization;
     if (d.face)
-      initial.state.friction = FrictionState(d.face->layout().points.size());
+      initial.state.friction = FrictionState(d.face->bounds(0.));
     const StepProblem<dim> problem =
       make_problem(initial, nullptr, {0, 0., 0., 0.});
     initial.forces =

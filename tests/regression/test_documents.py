@@ -111,6 +111,38 @@ class Documents(unittest.TestCase):
                 n_excerpts += 1
         self.assertGreater(n_excerpts, 20)
 
+    def test_equations_stand_in_the_lines_that_the_tutorial_names(self):
+        text = (SOURCE / "doc" / "tutorial.md").read_text()
+        section = text.split("### From the paper to the code", 1)[1]
+        rows = re.findall(
+            r"^\| (.*?) \| .* \| `([^`]+)` \| `([^`]+)` \|$",
+            section.split("\n### ", 1)[0],
+            re.M,
+        )
+        self.assertGreater(len(rows), 10)
+        for label, name, code in rows:
+            with self.subTest(equation=label, file=name):
+                lines = (SOURCE / name).read_text().splitlines()
+                found = [
+                    number
+                    for number in range(len(lines))
+                    if squeezed("".join(lines[number : number + 3])).find(
+                        squeezed(code)
+                    )
+                    != -1
+                ]
+                self.assertTrue(found, f"not in {name}: {code}")
+                if label.startswith("("):
+                    near = range(found[0] - 12, found[-1] + 3)
+                    self.assertTrue(
+                        any(
+                            label in lines[number]
+                            for number in near
+                            if 0 <= number < len(lines)
+                        ),
+                        f"{name} does not name {label} near that line",
+                    )
+
     def test_links_lead_somewhere(self):
         link = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
         n_links = 0

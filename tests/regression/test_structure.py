@@ -48,6 +48,30 @@ class Rooms(unittest.TestCase):
                     )
         self.assertGreater(n_includes, 300)
 
+    def test_the_figure_shows_who_uses_whom(self):
+        """Each arrow is an include, and each include an arrow or a path."""
+        text = (SOURCE / "doc" / "figures" / "rooms.dot").read_text()
+        arrows = set(re.findall(r"^  (\w+) -> (\w+);", text, re.M))
+        self.assertEqual({room for arrow in arrows for room in arrow}, set(rooms()))
+        uses = {
+            (file.relative_to(place).parts[0], other)
+            for place in (HEADERS, SOURCES)
+            for file in place.rglob("*.*")
+            for other in INCLUDE.findall(file.read_text())
+            if file.parent != SOURCES
+        }
+        uses = {(room, other) for room, other in uses if room != other}
+        reached = set(arrows)
+        for middle in reversed(rooms()):
+            reached |= {
+                (room, other)
+                for room, via in reached
+                for start, other in reached
+                if via == start == middle
+            }
+        self.assertEqual(arrows - uses, set(), "arrows without an include")
+        self.assertEqual(uses - reached, set(), "includes without an arrow")
+
 
 if __name__ == "__main__":
     unittest.main()

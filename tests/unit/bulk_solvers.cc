@@ -79,8 +79,7 @@ namespace
     {
       return std::make_unique<SchurSolver>(matrix,
                                            this->space->excluded(),
-                                           this->face->layout(),
-                                           this->face->dofs(),
+                                           this->face->restriction(),
                                            dim);
     }
 
@@ -90,8 +89,7 @@ namespace
       return std::make_unique<KrylovSolver>(matrix,
                                             this->space->excluded(),
                                             this->space->rigid_body_modes(),
-                                            this->face->layout(),
-                                            this->face->dofs(),
+                                            this->face->restriction(),
                                             dim);
     }
 
@@ -117,7 +115,7 @@ namespace
   {
     template <int dim>
     explicit Dense(const Scenario<dim> &scenario)
-      : face_dofs(scenario.face->dofs())
+      : face_dofs(scenario.face->restriction().dofs())
     {
       const unsigned int  n = scenario.dof_handler.n_dofs();
       std::vector<double> entries(n * n, 0.);
@@ -491,10 +489,10 @@ namespace
       {
         DistributedVector u(scenario.start);
         Vector<double>    increment(face.n_dofs());
-        FrictionState     state(face.points.size());
+        FrictionState     state(bounds);
         solver->begin(scenario.load, u);
-        const ContactReport report = ContactSolver(50).solve(
-          *solver, face, bounds, tolerance, increment, state);
+        const ContactReport report =
+          ContactSolver(50).solve(*solver, face, tolerance, increment, state);
         EXPECT_LE(report.relative_error, tolerance);
         EXPECT_LE(report.iterations, 20u);
 
@@ -504,7 +502,7 @@ namespace
         residual.sadd(-1., 1., scenario.load);
         scenario.set_excluded_to_zero(residual);
         const double   size    = residual.l2_norm();
-        Vector<double> on_face = scenario.face->face_vector(residual);
+        Vector<double> on_face = scenario.face->restriction().gather(residual);
         Vector<double> force(face.n_dofs());
         unsigned int   n_stick = 0;
         for (unsigned int p = 0; p < face.points.size(); ++p)
@@ -519,10 +517,7 @@ namespace
           }
         EXPECT_GT(n_stick, 0u);
         EXPECT_LT(n_stick, face.points.size());
-        for (unsigned int k = 0; k < force.size(); ++k)
-          if (scenario.space->owned.is_element(scenario.face->dofs()[k]))
-            residual.begin()[scenario.space->owned.index_within_set(
-              scenario.face->dofs()[k])] -= force[k];
+        scenario.face->restriction().add(-1., force, residual);
         EXPECT_LT(residual.l2_norm(), 1e-6 * size);
 
         // Slip belongs to the displacement.

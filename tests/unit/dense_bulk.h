@@ -305,10 +305,11 @@ namespace Viscoplastic::Testing
     bulk.start_at(start);
     Vector<double> increment(start);
     increment -= problem.u_prev;
-    increment = problem.on_face(increment);
+    increment   = problem.on_face(increment);
+    state.bound = problem.bounds;
     const ContactReport report =
       ContactSolver(max_iterations)
-        .solve(bulk, problem.face, problem.bounds, tolerance, increment, state);
+        .solve(bulk, problem.face, tolerance, increment, state);
     EXPECT_TRUE(bulk.is_finished);
     // The increment returned is that of the displacement.
     Vector<double> change(bulk.u);
@@ -327,7 +328,7 @@ namespace Viscoplastic::Testing
     return solve(problem,
                  condensed,
                  tolerance,
-                 FrictionState(problem.face.points.size()),
+                 FrictionState(problem.bounds),
                  problem.u_prev);
   }
 

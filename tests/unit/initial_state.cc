@@ -366,7 +366,7 @@ namespace
     DistributedVector internal = load.values;
     body.set_excluded_to_zero(internal);
     double      excess = 0., left = 0.;
-    const auto  on_face = body.face->face_vector(internal);
+    const auto  on_face = body.face->restriction().gather(internal);
     const auto &face    = body.face->layout();
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {

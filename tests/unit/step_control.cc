@@ -283,9 +283,10 @@ namespace
 
   /// Points with sticking given by '.', slip to the right or left by '>', '<'.
   FrictionState
-  points(const std::string &signs)
+  points(const std::string &signs, const std::vector<double> &bounds = {})
   {
-    FrictionState state(signs.size());
+    FrictionState state(bounds.empty() ? std::vector<double>(signs.size(), 1.) :
+                                         bounds);
     for (unsigned int p = 0; p < signs.size(); ++p)
       {
         state.sticks[p] = signs[p] == '.';
@@ -299,9 +300,8 @@ namespace
 
   TEST(ContactEvent, BeginCoverEndTurn)
   {
-    const std::vector<double> bounds(3, 1.);
     const auto event = [&](const std::string &from, const std::string &to) {
-      return has_contact_event(bounds, points(from), points(to), false);
+      return has_contact_event(points(from), points(to), false);
     };
     EXPECT_TRUE(event("...", "..>"));
     EXPECT_TRUE(event(".>>", ">>>"));
@@ -314,14 +314,14 @@ namespace
     EXPECT_FALSE(event(">>>", ".>>"));
     EXPECT_FALSE(event(">>>", ">>>"));
     // Behind a kink of the data, an end and a turn are no news.
-    EXPECT_FALSE(has_contact_event(bounds, points("..>"), points("..."), true));
-    EXPECT_FALSE(has_contact_event(bounds, points("..>"), points("..<"), true));
-    EXPECT_TRUE(has_contact_event(bounds, points("..."), points("..<"), true));
+    EXPECT_FALSE(has_contact_event(points("..>"), points("..."), true));
+    EXPECT_FALSE(has_contact_event(points("..>"), points("..<"), true));
+    EXPECT_TRUE(has_contact_event(points("..."), points("..<"), true));
     // Points without friction slip always, glued ones never.
-    EXPECT_FALSE(has_contact_event(
-      {0., 1., infinity}, points(">.."), points(">.."), false));
-    EXPECT_TRUE(has_contact_event(
-      {0., 1., infinity}, points(">.."), points(">>."), false));
-    EXPECT_FALSE(has_contact_event({}, points(""), points(""), false));
+    const std::vector<double> bounds{0., 1., infinity};
+    EXPECT_FALSE(
+      has_contact_event(points(">.."), points(">..", bounds), false));
+    EXPECT_TRUE(has_contact_event(points(">.."), points(">>.", bounds), false));
+    EXPECT_FALSE(has_contact_event(points(""), points(""), false));
   }
 } // namespace

@@ -45,7 +45,7 @@ namespace Viscoplastic::Testing
       accepted.state = make_initial_state(discretization->sampling, false);
       if (discretization->face)
         accepted.state.friction =
-          FrictionState(discretization->face->layout().points.size());
+          FrictionState(discretization->face->bounds(0.));
       if (error_bar)
         error_bar->begin(discretization->sampling, accepted);
       accepted.forces = evaluate_forces(discretization->sampling,

@@ -14,13 +14,11 @@ namespace Viscoplastic
    * no rest between). Points that cannot slip or that slip without friction do
    * not count.
    *
-   * @p bounds: of the points in the step. @p from_kink: slip may end in this
-   * step without being an event, since its beginning is a known kink of the
-   * data.
+   * @p from_kink: slip may end in this step without being an event, since its
+   * beginning is a known kink of the data.
    */
   bool
-  has_contact_event(const std::vector<double> &bounds,
-                    const FrictionState       &old_state,
-                    const FrictionState       &state,
-                    const bool                 from_kink);
+  has_contact_event(const FrictionState &old_state,
+                    const FrictionState &state,
+                    const bool           from_kink);
 } // namespace Viscoplastic

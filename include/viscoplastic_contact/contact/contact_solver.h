@@ -53,22 +53,20 @@ namespace Viscoplastic
     explicit ContactSolver(const unsigned int max_iterations);
 
     /**
-     * @p bounds: rho_c >= 0 of each point (infinite for glued ones);
      * @p increment: face part of u - u_prev at the start given to
-     * bulk.begin(), and of the solution on return; @p state: the sets and
-     * multipliers to start from and those of the solution; @p tolerance: the
-     * relative error at which to stop.
+     * bulk.begin(), and of the solution on return; @p state: the bounds, and
+     * the sets and multipliers to start from, which become those of the
+     * solution; @p tolerance: the relative error at which to stop.
      *
      * Throws ExcMessage when the iteration is exhausted or a value is not
      * finite: there is no unconverged result.
      */
     ContactReport
-    solve(BulkSolver                &bulk,
-          const FrictionFace        &face,
-          const std::vector<double> &bounds,
-          const double               tolerance,
-          Vector<double>            &increment,
-          FrictionState             &state) const;
+    solve(BulkSolver         &bulk,
+          const FrictionFace &face,
+          const double        tolerance,
+          Vector<double>     &increment,
+          FrictionState      &state) const;
 
   private:
     class Iteration;

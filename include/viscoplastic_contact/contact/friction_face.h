@@ -5,6 +5,7 @@
 #include <deal.II/lac/vector.h>
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace Viscoplastic
@@ -91,20 +92,43 @@ namespace Viscoplastic
 
 
   /**
-   * What friction is doing, point by point: the slip increment s of the step,
-   * the multiplier lambda (minus the tangential force on the body), and whether
-   * the point sticks.
+   * What friction does in a step, point by point. It satisfies
+   *
+   *     |lambda_c| <= rho_c,   lambda_c = rho_c s_c/|s_c| where s_c != 0.
    */
   struct FrictionState
   {
-    std::vector<Tensor<1, 2>> slip, multiplier;
-    std::vector<bool>         sticks;
+    /// The bound rho_c >= 0; infinite for glued points.
+    std::vector<double> bound;
+    /// The slip s_c: the tangential increment of the displacement relative to
+    /// the foundation.
+    std::vector<Tensor<1, 2>> slip;
+    /// The multiplier lambda_c: minus the tangential force on the body.
+    std::vector<Tensor<1, 2>> multiplier;
+    /// The active set: whether the point sticks.
+    std::vector<bool> sticks;
 
-    explicit FrictionState(const unsigned int n_points = 0)
-      : slip(n_points)
-      , multiplier(n_points)
-      , sticks(n_points, true)
+    /// All points stick and nothing pulls at them.
+    explicit FrictionState(std::vector<double> bounds = {})
+      : bound(std::move(bounds))
+      , slip(bound.size())
+      , multiplier(bound.size())
+      , sticks(bound.size(), true)
     {}
+
+    unsigned int
+    n_points() const
+    {
+      return bound.size();
+    }
+
+    /// Write to, or read from, an archive.
+    template <typename Archive>
+    void
+    exchange(Archive &archive)
+    {
+      archive &bound &slip &multiplier &sticks;
+    }
   };
 
 

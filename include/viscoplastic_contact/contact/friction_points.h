@@ -35,11 +35,10 @@ namespace Viscoplastic
    * forces, too.
    */
   void
-  fit_multipliers(const FrictionFace        &face,
-                  const std::vector<double> &bounds,
-                  const Vector<double>      &residual,
-                  FrictionState             &state,
-                  Vector<double>            &force);
+  fit_multipliers(const FrictionFace   &face,
+                  const Vector<double> &residual,
+                  FrictionState        &state,
+                  Vector<double>       &force);
 
 
   /**
@@ -48,12 +47,11 @@ namespace Viscoplastic
    * once for a single point, i.e. away from corners.
    */
   Tensor<1, 3>
-  relax_node(const FrictionFace        &face,
-             const unsigned int         node,
-             const Tensor<2, 3>        &inverse_diagonal,
-             const Tensor<1, 3>        &force, // residual + D x
-             const std::vector<double> &bounds,
-             FrictionState             &state);
+  relax_node(const FrictionFace &face,
+             const unsigned int  node,
+             const Tensor<2, 3> &inverse_diagonal,
+             const Tensor<1, 3> &force, // residual + D x
+             FrictionState      &state);
 
 
   /// Multipliers that bound the error: those of fit_multipliers() but for
@@ -76,7 +74,6 @@ namespace Viscoplastic
    */
   Certificate
   certify(const FrictionFace              &face,
-          const std::vector<double>       &bounds,
           const Vector<double>            &residual,
           const std::vector<Tensor<2, 3>> &diagonal,
           const FrictionState             &state,
@@ -91,7 +88,6 @@ namespace Viscoplastic
    */
   FaceTruncation
   make_truncation(const FrictionFace              &face,
-                  const std::vector<double>       &bounds,
                   const FrictionState             &state,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal);
 } // namespace Viscoplastic

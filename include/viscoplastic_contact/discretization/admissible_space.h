@@ -102,6 +102,10 @@ namespace Viscoplastic
       return is_excluded;
     }
 
+    /// Set the entries that are no unknowns to zero.
+    void
+    restrict_to_unknowns(DistributedVector &in_frames) const;
+
     /// A node with conditions or friction on the boundary, owned by this rank.
     struct BoundaryNode
     {

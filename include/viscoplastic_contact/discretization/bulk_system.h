@@ -9,16 +9,14 @@ namespace Viscoplastic
   /// A matrix on a space as solvers see it.
   template <int dim>
   BulkSystem
-  make_bulk_system(const AdmissibleSpace<dim>                 &space,
-                   const DistributedMatrix                    &matrix,
-                   const FrictionFace                         &face,
-                   const std::vector<types::global_dof_index> &face_dofs)
+  make_bulk_system(const AdmissibleSpace<dim> &space,
+                   const DistributedMatrix    &matrix,
+                   const FaceRestriction      &face)
   {
     return {dim,
             matrix,
             space.excluded(),
             [&space] { return space.rigid_body_modes(); },
-            face,
-            face_dofs};
+            face};
   }
 } // namespace Viscoplastic

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/friction_face.h>
 #include <viscoplastic_contact/discretization/admissible_space.h>
+#include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <set>
 #include <vector>
@@ -25,20 +25,20 @@ namespace Viscoplastic
     const FrictionFace &
     layout() const
     {
-      return face;
+      return face_restriction.face();
+    }
+
+    /// Of vectors in frames, to face vectors.
+    const FaceRestriction &
+    restriction() const
+    {
+      return face_restriction;
     }
 
     /// Frictional boundaries none of whose nodes can slip, because other
     /// conditions hold them all. The same on all ranks.
     std::set<types::boundary_id>
     held_boundaries() const;
-
-    /// Global index of each entry of a face vector.
-    const std::vector<types::global_dof_index> &
-    dofs() const
-    {
-      return global_dofs;
-    }
 
     /// rho_c of each point. Throws ExcMessage for negative bounds. Collective.
     std::vector<double>
@@ -64,11 +64,6 @@ namespace Viscoplastic
     /// sum_c lambda_c.
     Tensor<1, dim>
     resultant(const FrictionState &state) const;
-
-    /// Owned entries of a vector in frames as a face vector, the same on all
-    /// ranks. Collective.
-    Vector<double>
-    face_vector(const DistributedVector &in_frames) const;
 
     /**
      * How far the foundation slides between two times, as a face vector. At a
@@ -140,10 +135,9 @@ namespace Viscoplastic
     std::vector<double>
     bounds_by_id(const double t) const;
 
-    const AdmissibleSpace<dim>          &space;
-    FrictionFace                         face;
-    std::vector<Node>                    nodes;
-    std::vector<types::global_dof_index> global_dofs;
+    const AdmissibleSpace<dim> &space;
+    FaceRestriction             face_restriction;
+    std::vector<Node>           nodes;
     /// Boundary ids of each point.
     std::vector<std::vector<types::boundary_id>> boundary_ids;
     std::vector<Sample>                          samples;

@@ -44,18 +44,11 @@ namespace Viscoplastic
       return face && face->layout().n_dofs() > 0 ? face.get() : nullptr;
     }
 
-    /// The friction points; none without friction.
-    const FrictionFace &
-    friction_face() const
+    /// The restriction to the friction points; to none without friction.
+    const FaceRestriction &
+    face_restriction() const
     {
-      return face ? face->layout() : no_face;
-    }
-
-    /// Global index of each entry of a face vector.
-    const std::vector<types::global_dof_index> &
-    face_dofs() const
-    {
-      return face ? face->dofs() : no_dofs;
+      return face ? face->restriction() : no_face;
     }
 
     AdmissibleSpace<dim> space;
@@ -74,7 +67,6 @@ namespace Viscoplastic
     DistributedMatrix matrix;
 
   private:
-    const FrictionFace                         no_face;
-    const std::vector<types::global_dof_index> no_dofs;
+    const FaceRestriction no_face;
   };
 } // namespace Viscoplastic

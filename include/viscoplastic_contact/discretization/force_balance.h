@@ -75,11 +75,10 @@ namespace Viscoplastic
   /// foundation moved meanwhile (empty: nothing). Collective.
   template <int dim>
   FrictionIdentities
-  check_friction(const ContactFace<dim>    &face,
-                 const FrictionState       &old_state,
-                 const FrictionState       &state,
-                 const std::vector<double> &bounds,
-                 const DistributedVector   &change,
-                 const Vector<double>      &foundation_step,
-                 const double               max_displacement);
+  check_friction(const ContactFace<dim>  &face,
+                 const FrictionState     &old_state,
+                 const FrictionState     &state,
+                 const DistributedVector &change,
+                 const Vector<double>    &foundation_step,
+                 const double             max_displacement);
 } // namespace Viscoplastic

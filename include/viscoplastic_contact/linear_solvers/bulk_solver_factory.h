@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <functional>
 #include <memory>
@@ -20,10 +21,8 @@ namespace Viscoplastic
     const std::vector<bool> &excluded;
     /// The rigid body modes on owned entries, zero where excluded.
     std::function<std::vector<DistributedVector>()> rigid_body_modes;
-    /// The friction points, and the global index of each entry of a face
-    /// vector; both empty without friction.
-    const FrictionFace                         &face;
-    const std::vector<types::global_dof_index> &face_dofs;
+    /// Empty without friction.
+    const FaceRestriction &face;
   };
 
 

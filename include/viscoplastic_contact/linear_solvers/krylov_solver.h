@@ -4,6 +4,7 @@
 #include <deal.II/lac/trilinos_precondition.h>
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <memory>
 #include <vector>
@@ -28,12 +29,11 @@ namespace Viscoplastic
      * @p rigid_body_modes: on owned entries, zero where @p excluded;
      * @p dim degrees of freedom a node.
      */
-    KrylovSolver(const DistributedMatrix                    &matrix,
-                 const std::vector<bool>                    &excluded,
-                 std::vector<DistributedVector>              rigid_body_modes,
-                 const FrictionFace                         &face,
-                 const std::vector<types::global_dof_index> &face_dofs,
-                 const unsigned int                          dim);
+    KrylovSolver(const DistributedMatrix       &matrix,
+                 const std::vector<bool>       &excluded,
+                 std::vector<DistributedVector> rigid_body_modes,
+                 const FaceRestriction         &restriction,
+                 const unsigned int             dim);
 
     bool
     is_exact() const override
@@ -103,21 +103,6 @@ namespace Viscoplastic
     void
     restrict_to_unknowns(DistributedVector &v) const;
 
-    /// Apply the truncation's projectors to the owned face entries.
-    void
-    project(DistributedVector &v) const;
-
-    /// v -= the face vector @p force on owned entries.
-    void
-    subtract_face(const Vector<double> &force, DistributedVector &v) const;
-
-    /// The owned part of a distributed vector on the face, summed over ranks.
-    void
-    to_face(const DistributedVector &v, Vector<double> &on_face) const;
-
-    void
-    from_face(const Vector<double> &on_face, DistributedVector &v) const;
-
     /// Build the preconditioner for the present truncation.
     void
     build_preconditioner();
@@ -129,18 +114,14 @@ namespace Viscoplastic
     void
     make_face_matrix();
 
-    const DistributedMatrix                    &matrix;
-    const std::vector<bool>                    &excluded;
-    std::vector<std::size_t>                    excluded_entries;
-    std::vector<DistributedVector>              rigid_body_modes;
-    const FrictionFace                         &face;
-    const std::vector<types::global_dof_index> &face_dofs;
-    const unsigned int                          dim;
-    const MPI_Comm                              communicator;
-    /// Local position of each face entry, or none if another rank owns it.
-    std::vector<unsigned int> local_face_dofs;
-    /// Diagonal of the matrix at owned face entries.
-    std::vector<double>               face_diagonal;
+    const DistributedMatrix          &matrix;
+    const std::vector<bool>          &excluded;
+    std::vector<std::size_t>          excluded_entries;
+    std::vector<DistributedVector>    rigid_body_modes;
+    const FaceRestriction            &restriction;
+    const FrictionFace               &face;
+    const unsigned int                dim;
+    const MPI_Comm                    communicator;
     std::unique_ptr<SparseFaceMatrix> sparse_face_matrix;
 
     // The preconditioner, and how it is doing.

@@ -4,6 +4,7 @@
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <memory>
 #include <vector>
@@ -28,11 +29,10 @@ namespace Viscoplastic
      * reducing ordering. Throws ExcMessage if the matrix is not positive
      * definite or memory is short.
      */
-    SchurSolver(const DistributedMatrix                    &matrix,
-                const std::vector<bool>                    &excluded,
-                const FrictionFace                         &face,
-                const std::vector<types::global_dof_index> &face_dofs,
-                const unsigned int                          dim);
+    SchurSolver(const DistributedMatrix &matrix,
+                const std::vector<bool> &excluded,
+                const FaceRestriction   &face,
+                const unsigned int       dim);
     ~SchurSolver() override;
 
     /// Keeps the ordering of the unknowns.

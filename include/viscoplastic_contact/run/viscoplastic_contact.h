@@ -87,9 +87,18 @@ namespace Viscoplastic
       return accepted.state.t >= scene.schedule.end_time();
     }
 
-    /// The next step, recorded and accepted. Returns what it was.
-    TimeStep
-    make_step();
+    bool
+    adaptation_is_due() const
+    {
+      const unsigned int n = accepted.state.n;
+      return scene.is_adaptive() && n > 0 &&
+             n % parameters.refinement.every_n_steps == 0;
+    }
+
+    /// All steps up to the end. @p signals is null in a run without files.
+    /// Returns a sentence if a signal has ended the run early.
+    std::string
+    make_steps(const SignalRequests *signals);
 
     void
     make_mesh();

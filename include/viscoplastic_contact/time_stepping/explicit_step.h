@@ -8,7 +8,7 @@ namespace Viscoplastic
 {
   /**
    * Forward Euler, the scheme (3.18)-(3.20) of the paper, and Heun's method:
-   * z_n by G at known states, then (3.18) for u_n. The matrix is that of
+   * z_n by G at known states, then (3.20) for u_n. The matrix is that of
    * a(.,.), whose solver serves all steps on a mesh. Elastic bodies take this
    * way, too.
    */
@@ -35,7 +35,7 @@ namespace Viscoplastic
     solver_name() const override;
 
   private:
-    /// (3.18) for the z of @p solution, whose u, sets and report are set; the
+    /// (3.20) for the z of @p solution, whose u, sets and report are set; the
     /// start is what @p guess says of velocities and sets.
     void
     solve(const StepProblem<dim> &problem,

@@ -8,7 +8,7 @@
 namespace Viscoplastic
 {
   /**
-   * Backward Euler: z_n = z_{n-1} + k G(t_n, sigma_n, eps_n) and (3.18)
+   * Backward Euler: z_n = z_{n-1} + k G(t_n, sigma_n, eps_n) and (3.20)
    * together, by Newton's method for the bulk around the contact solver. In
    * each iteration, z(eps) is replaced by its tangent C at the strain of an
    * iterate m, or by one from before if that does as well, and friction is

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
-#include <viscoplastic_contact/discretization/contact_face.h>
-#include <viscoplastic_contact/discretization/flow_laws.h>
+#include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/time_stepping/step_problem.h>
 
 #include <functional>
 
@@ -47,17 +47,10 @@ namespace Viscoplastic
   class NonsymmetricCorrection
   {
   public:
-    /// @p elastic_matrix is that of a(.,.), @p solver that of the tangent
-    /// matrix; null @p face: no friction. The others are those of the step,
-    /// @p load without z, @p old_u in frames.
-    NonsymmetricCorrection(const FlowLaws<dim>       &laws,
-                           const DistributedMatrix   &elastic_matrix,
-                           BulkSolver                &solver,
-                           const ContactFace<dim>    *face,
-                           const DistributedVector   &load,
-                           const DistributedVector   &old_u,
-                           const std::vector<double> &bounds,
-                           const Vector<double>      &foundation_step);
+    /// @p solver is that of the tangent matrix. All arguments stay in use.
+    NonsymmetricCorrection(const Discretization<dim> &discretization,
+                           const StepProblem<dim>    &problem,
+                           BulkSolver                &solver);
 
     /// z for the strains of a ghosted displacement, from a guess. May throw
     /// ExceptionBase on all ranks if there is none.
@@ -73,12 +66,10 @@ namespace Viscoplastic
       unsigned int iterations;
     };
 
-    /// Correct @p iterate, which the contact solver has left in a step of size
-    /// k to time t; the linear system is solved to @p reduction. Collective.
+    /// Correct @p iterate, which the contact solver has left; the linear system
+    /// is solved to @p reduction. Collective.
     Result
-    correct(const double           t,
-            const double           k,
-            const double           reduction,
+    correct(const double           reduction,
             const StressForStrain &z_for,
             NewtonIterate<dim>    &iterate) const;
 
@@ -102,30 +93,14 @@ namespace Viscoplastic
          const DistributedVector  &w,
          const double              share) const;
 
-    /// Add a face vector to the owned entries.
-    void
-    add_face(const double          factor,
-             const Vector<double> &on_face,
-             DistributedVector    &v) const;
-
-    /// Hold the sticking points.
-    void
-    project(const FaceTruncation &truncation, DistributedVector &v) const;
-
-    void
-    restrict_to_unknowns(DistributedVector &v) const;
-
     FaceTruncation
     truncation(const FrictionState &friction) const;
 
-    const FlowLaws<dim>        &laws;
+    const Discretization<dim>  &d;
+    const StepProblem<dim>     &problem;
     const StressSampling<dim>  &sampling;
     const AdmissibleSpace<dim> &space;
-    const DistributedMatrix    &elastic_matrix;
+    const ContactFace<dim>     *face; // null where nothing can slip
     BulkSolver                 &solver;
-    const ContactFace<dim>     *face;
-    const DistributedVector    &load, &old_u;
-    const std::vector<double>  &bounds;
-    const Vector<double>       &foundation_step;
   };
 } // namespace Viscoplastic

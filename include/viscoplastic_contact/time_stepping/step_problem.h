@@ -12,7 +12,7 @@
 namespace Viscoplastic
 {
   /**
-   * The data of one step from t_{n-1} to t_n: what (3.18) is made of besides
+   * The data of one step from t_{n-1} to t_n: what (3.20) is made of besides
    * the form a(.,.) and the irreversible stress z_n. In total form, with
    * Delta u = u_n - u_{n-1}:
    *

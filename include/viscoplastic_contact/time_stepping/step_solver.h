@@ -11,7 +11,7 @@
 namespace Viscoplastic
 {
   /**
-   * Solves the variational inequality (3.18) of a step for u_n, the friction
+   * Solves the variational inequality (3.20) of a step for u_n, the friction
    * multipliers and the sets, with a given matrix: that of a(.,.), or of a
    * tangent. Owns the linear solver for that matrix.
    */
@@ -84,9 +84,8 @@ namespace Viscoplastic
     /// What a solve is in proportion to.
     struct Data
     {
-      const DistributedVector   &old_u, &load, &right_side;
-      const std::vector<double> &bounds;
-      const Vector<double>      &foundation_step;
+      const DistributedVector &old_u, &load, &right_side;
+      const Vector<double>    &foundation_step;
     };
 
     /// solve() in a unit of forces and displacements in which squares of them

@@ -17,8 +17,7 @@ namespace Viscoplastic
     /// The state that the step leads to.
     EvaluatedState<dim> end;
     /// As in StepProblem.
-    std::vector<double> bounds;
-    Vector<double>      foundation_step;
+    Vector<double> foundation_step;
     /// How often a longer step has been tried.
     unsigned int n_rejections = 0;
 

@@ -3,11 +3,14 @@
 #include <deal.II/numerics/data_out.h>
 
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/json_text.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/results/output.h>
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -172,35 +175,30 @@ namespace Viscoplastic
       const std::time_t now = std::time(nullptr);
       char              date[32];
       std::strftime(date, sizeof(date), "%FT%TZ", std::gmtime(&now));
-      std::ostringstream json;
-      json << "{\n  \"program\": \"viscoplastic_contact\",\n  \"version\": "
-           << std::quoted(VISCOPLASTIC_CONTACT_VERSION)
-           << ",\n  \"git_revision\": "
-           << std::quoted(VISCOPLASTIC_CONTACT_GIT_REVISION)
-           << ",\n  \"dealii_version\": "
-           << std::quoted(DEAL_II_PACKAGE_VERSION)
-           << ",\n  \"n_mpi_ranks\": " << n_ranks
-           << ",\n  \"dimension\": " << dim << ",\n  \"effects\": [";
-      const char *separator = "";
-      for (const std::string &effect : scene.effects())
-        {
-          json << separator << "\n    " << std::quoted(effect);
-          separator = ",";
-        }
-      json << "\n  ]";
+      nlohmann::ordered_json record{{"program", "viscoplastic_contact"},
+                                    {"version", VISCOPLASTIC_CONTACT_VERSION},
+                                    {"git_revision",
+                                     VISCOPLASTIC_CONTACT_GIT_REVISION},
+                                    {"dealii_version", DEAL_II_PACKAGE_VERSION},
+                                    {"n_mpi_ranks", n_ranks},
+                                    {"dimension", dim},
+                                    {"effects", scene.effects()}};
       if (errors != nullptr)
-        json << ",\n  \"estimated_error\": {\n    \"t\": " << errors->t
-             << ",\n    \"space\": " << errors->largest.space
-             << ",\n    \"time\": " << errors->largest.time
-             << ",\n    \"algebraic\": " << errors->largest.algebraic
-             << ",\n    \"initial\": " << errors->largest.initial
-             << ",\n    \"total\": " << errors->largest.total()
-             << ",\n    \"largest_energy_norm\": "
-             << errors->largest_energy_norm
-             << ",\n    \"relative\": " << errors->relative() << "\n  }";
-      json << ",\n  \"date\": " << std::quoted(date) << "\n}\n";
-      replace_file(path + "run.json", json.str());
+        record["estimated_error"] = {{"t", errors->t},
+                                     {"space", errors->largest.space},
+                                     {"time", errors->largest.time},
+                                     {"algebraic", errors->largest.algebraic},
+                                     {"initial", errors->largest.initial},
+                                     {"total", errors->largest.total()},
+                                     {"largest_energy_norm",
+                                      errors->largest_energy_norm},
+                                     {"relative", errors->relative()}};
+      record["date"] = date;
+      replace_file(path + "run.json", json_text(record));
     }
+
+
+
     /// The name of an output without its ending.
     std::string
     record_name(const std::string &series, const unsigned int n)

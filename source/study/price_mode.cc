@@ -108,27 +108,18 @@ namespace Viscoplastic
 
 
 
-    /// The error that the finished run has, in the measure of the pilots.
+    /// What the finished run has given; without numbers on ranks but the
+    /// first, which speaks.
     RunRecord
-    result_of(const StudyRuns       &runs,
-              const RunKey          &key,
+    result_of(const RunKey          &key,
               const std::string     &directory,
               const RunMeasurements &measurements)
     {
-      std::string text;
-      if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-        {
-          RunRecord record =
-            make_record(key,
-                        read_table(directory + "statistics.csv"),
-                        measurements);
-          record.name         = runs.name(key);
-          record.numbers["h"] = runs.mesh_width(record.number("cells"));
-          text                = to_json(record, {});
-        }
-      text = Utilities::MPI::broadcast(MPI_COMM_WORLD, text);
-      std::map<std::string, std::string> stamp;
-      return from_json(text, stamp);
+      if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
+        return {};
+      return make_record(key,
+                         read_table(directory + "statistics.csv"),
+                         measurements);
     }
   } // namespace
 
@@ -223,7 +214,7 @@ namespace Viscoplastic
       return interruption;
 
     const RunRecord result =
-      result_of(runs, key, results_directory(parameters), measurements);
+      result_of(key, results_directory(parameters), measurements);
     out << "\nThe prediction:\n  error    "
         << compare(price.offer->error, error_of(result, measure, nullptr))
         << "\n  seconds  "

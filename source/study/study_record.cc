@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Boost's JSON parser uses placeholders that boost says are deprecated.
-#define BOOST_BIND_GLOBAL_PLACEHOLDERS
-
 #include <deal.II/base/exceptions.h>
-#include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/json_text.h>
 #include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/study/study_record.h>
 
-#include <boost/property_tree/json_parser.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iomanip>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -227,80 +223,56 @@ namespace Viscoplastic
 
 
   std::string
-  json_number(const double value)
+  to_json(const RunRecord &record)
   {
-    if (!std::isfinite(value))
-      return "null";
-    std::ostringstream text;
-    text << std::setprecision(12) << value;
-    return text.str();
-  }
-
-
-
-  std::string
-  to_json(const RunRecord                          &record,
-          const std::map<std::string, std::string> &stamp)
-  {
-    std::ostringstream json;
-    json << "{\n  \"run\": " << std::quoted(record.name)
-         << ",\n  \"strategy\": " << std::quoted(record.key.strategy)
-         << ",\n  \"scheme\": " << std::quoted(record.key.scheme)
-         << ",\n  \"history\": " << std::quoted(record.key.history)
-         << ",\n  \"mesh_level\": " << record.key.mesh_level
-         << ",\n  \"time_level\": " << record.key.time_level
-         << ",\n  \"stamp\": {";
-    const char *separator = "";
-    for (const auto &[name, text] : stamp)
-      {
-        json << separator << "\n    " << std::quoted(name) << ": "
-             << std::quoted(text);
-        separator = ",";
-      }
-    json << "\n  },\n  \"numbers\": {";
-    separator = "";
-    for (const auto &[name, value] : record.numbers)
-      {
-        json << separator << "\n    " << std::quoted(name) << ": "
-             << json_number(value);
-        separator = ",";
-      }
-    json << "\n  },\n  \"quantities\": {";
-    separator = "";
+    nlohmann::ordered_json json{{"run", record.name},
+                                {"strategy", record.key.strategy},
+                                {"scheme", record.key.scheme},
+                                {"history", record.key.history},
+                                {"mesh_level", record.key.mesh_level},
+                                {"time_level", record.key.time_level},
+                                {"stamp", record.stamp},
+                                {"numbers", record.numbers},
+                                {"quantities", nlohmann::json::object()}};
     for (const auto &[name, value] : record.quantities)
-      {
-        json << separator << "\n    " << std::quoted(name) << ": "
-             << json_number(value);
-        separator = ",";
-      }
-    json << "\n  }\n}\n";
-    return json.str();
+      json["quantities"][name] = value;
+    return json_text(json);
   }
 
 
 
   RunRecord
-  from_json(const std::string &text, std::map<std::string, std::string> &stamp)
+  from_json(const std::string &text, const std::string &file)
   {
-    std::istringstream          in(text);
-    boost::property_tree::ptree tree;
-    boost::property_tree::read_json(in, tree);
-    RunRecord record;
-    record.name           = tree.get<std::string>("run");
-    record.key.strategy   = tree.get<std::string>("strategy");
-    record.key.scheme     = tree.get<std::string>("scheme");
-    record.key.history    = tree.get<std::string>("history");
-    record.key.mesh_level = tree.get<int>("mesh_level");
-    record.key.time_level = tree.get<int>("time_level");
-    for (const auto &[name, value] : tree.get_child("stamp"))
-      stamp[name] = value.data();
-    const auto number = [](const std::string &value) {
-      return value == "null" ? nan : Utilities::string_to_double(value);
+    using Json        = nlohmann::ordered_json;
+    const auto number = [](const Json &value) {
+      return value.is_null() ? nan : value.get<double>();
     };
-    for (const auto &[name, value] : tree.get_child("numbers"))
-      record.numbers[name] = number(value.data());
-    for (const auto &[name, value] : tree.get_child("quantities"))
-      record.quantities.emplace_back(name, number(value.data()));
+    RunRecord record;
+    try
+      {
+        const Json json = Json::parse(text);
+        json.at("run").get_to(record.name);
+        json.at("strategy").get_to(record.key.strategy);
+        json.at("scheme").get_to(record.key.scheme);
+        json.at("history").get_to(record.key.history);
+        json.at("mesh_level").get_to(record.key.mesh_level);
+        json.at("time_level").get_to(record.key.time_level);
+        json.at("stamp").get_to(record.stamp);
+        for (const auto &[name, value] :
+             json.at("numbers").get_ref<const Json::object_t &>())
+          record.numbers[name] = number(value);
+        for (const auto &[name, value] :
+             json.at("quantities").get_ref<const Json::object_t &>())
+          record.quantities.emplace_back(name, number(value));
+      }
+    catch (const Json::exception &exception)
+      {
+        AssertThrow(false,
+                    ExcMessage(
+                      "'" + file +
+                      "' is no record of a finished run: " + exception.what()));
+      }
     return record;
   }
 } // namespace Viscoplastic

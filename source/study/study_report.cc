@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <viscoplastic_contact/base/files.h>
-#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/base/json_text.h>
 #include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/study/study_report.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
-#include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
@@ -33,14 +31,6 @@ namespace Viscoplastic
                                  "linear_iterations"})
         columns.push_back(column);
       return columns;
-    }
-
-
-
-    std::string
-    kind_of_reference(const Study &study)
-    {
-      return study.has_exact_solution ? "exact" : "finest run";
     }
 
 
@@ -98,115 +88,129 @@ namespace Viscoplastic
 
     // ---------------------------------------------------------------- json
 
-    std::string
-    way_json(const RunKey &way)
+    using Json = nlohmann::ordered_json;
+
+    Json
+    to_json(const RunKey &way)
     {
-      std::ostringstream text;
-      text << "{\"strategy\": " << std::quoted(way.strategy)
-           << ", \"scheme\": " << std::quoted(way.scheme)
-           << ", \"history\": " << std::quoted(way.history);
-      return text.str();
+      return {{"strategy", way.strategy},
+              {"scheme", way.scheme},
+              {"history", way.history}};
     }
 
 
 
-    std::string
+    Json
+    fits(const Study &study, const WayResult &way)
+    {
+      std::vector<std::string> measures = field_errors;
+      measures.push_back("estimate_total");
+      for (const std::string &name : quantities(study))
+        measures.push_back(name + "_error");
+      Json result = Json::array();
+      for (const std::string &measure : measures)
+        {
+          const TwoPowers fit =
+            fit_measure(way.records, measure, study.reference());
+          if (fit.n_samples < 3)
+            continue;
+          Json entry = to_json(way.way);
+          entry.update({{"error", measure},
+                        {"C_h", fit.c_1},
+                        {"p", fit.p},
+                        {"p_is_fitted", fit.p_is_fitted},
+                        {"C_k", fit.c_2},
+                        {"q", fit.q},
+                        {"q_is_fitted", fit.q_is_fitted},
+                        {"m", fit.m},
+                        {"rms_of_log", fit.rms},
+                        {"worst_factor", fit.worst_factor},
+                        {"worst_run", way.records[fit.worst_sample]->name}});
+          result.push_back(entry);
+        }
+      return result;
+    }
+
+
+
+    Json
+    costs(const Study &study, const WayResult &way)
+    {
+      const CostModel cost  = cost_of(way.records, study.runs.scene.dimension);
+      const auto      power = [](const TwoPowers &fit) -> Json {
+        return {{"c", fit.c_1},
+                {"a", fit.p},
+                {"constant", fit.c_2},
+                {"rms_of_log", fit.rms}};
+      };
+      Json result = to_json(way.way);
+      result.update({{"seconds_per_set_up", power(cost.set_up)},
+                     {"seconds_per_step", power(cost.step)},
+                     {"c_dofs_a_steps", power(cost.simple)},
+                     {"memory_MB", power(cost.memory_model)},
+                     {"rms_of_log", cost.rms},
+                     {"worst_factor", cost.worst_factor}});
+      return result;
+    }
+
+
+
+    Json
+    prices(const WayResult &way)
+    {
+      Json result = Json::array();
+      for (const Price &price : way.prices)
+        {
+          Json entry = to_json(way.way);
+          entry.update({{"error", way.measure},
+                        {"tolerance", price.tolerance},
+                        {"in_budget", price.is_in_budget}});
+          if (price.offer)
+            entry.update({{"h", price.offer->h},
+                          {"mesh_level", price.offer->mesh_level},
+                          {"k", price.offer->k},
+                          {"steps", price.offer->steps},
+                          {"dofs", price.offer->dofs},
+                          {"predicted_error", price.offer->error},
+                          {"seconds", price.offer->seconds},
+                          {"memory_MB", price.offer->memory},
+                          {"halving_factor", price.halving}});
+          result.push_back(entry);
+        }
+      return result;
+    }
+
+
+
+    Json
     json(const Study &study, const bool is_finished)
     {
-      std::ostringstream text;
-      const Origin       from      = origin();
-      const char        *separator = "";
-      text << "{\n  \"scene\": "
-           << std::quoted(
-                std::filesystem::path(study.runs.scene.file).stem().string())
-           << ",\n  \"version\": " << std::quoted(from.program)
-           << ",\n  \"ranks\": " << from.n_ranks
-           << ",\n  \"machine\": " << std::quoted(from.machine)
-           << ",\n  \"date\": " << std::quoted(from.date)
-           << ",\n  \"finished\": " << (is_finished ? "true" : "false")
-           << ",\n  \"dimension\": " << study.runs.scene.dimension
-           << ",\n  \"reference\": " << std::quoted(kind_of_reference(study))
-           << ",\n  \"reference_run\": "
-           << std::quoted(study.reference() ? study.reference()->name : "")
-           << ",\n  \"budget\": " << json_number(study.parameters.budget)
-           << ",\n  \"fits\": [";
-      const auto ways = analyse(study);
-      for (const WayResult &way : ways)
+      const Origin                from      = origin();
+      const std::filesystem::path scene     = study.runs.scene.file;
+      const RunRecord            *reference = study.reference();
+      Json                        result{
+        {"scene", scene.stem().string()},
+        {"version", from.program},
+        {"ranks", from.n_ranks},
+        {"machine", from.machine},
+        {"date", from.date},
+        {"finished", is_finished},
+        {"dimension", study.runs.scene.dimension},
+        {"reference", study.has_exact_solution ? "exact" : "finest run"},
+        {"reference_run", reference == nullptr ? "" : reference->name},
+        {"budget", study.parameters.budget},
+        {"fits", Json::array()},
+        {"costs", Json::array()},
+        {"prices", Json::array()}};
+      for (const WayResult &way : analyse(study))
         {
-          std::vector<std::string> measures = field_errors;
-          measures.push_back("estimate_total");
-          for (const std::string &name : quantities(study))
-            measures.push_back(name + "_error");
-          for (const std::string &measure : measures)
-            {
-              const TwoPowers fit =
-                fit_measure(way.records, measure, study.reference());
-              if (fit.n_samples < 3)
-                continue;
-              text << separator << "\n    " << way_json(way.way)
-                   << ", \"error\": " << std::quoted(measure)
-                   << ", \"C_h\": " << json_number(fit.c_1)
-                   << ", \"p\": " << json_number(fit.p) << ", \"p_is_fitted\": "
-                   << (fit.p_is_fitted ? "true" : "false")
-                   << ", \"C_k\": " << json_number(fit.c_2)
-                   << ", \"q\": " << json_number(fit.q) << ", \"q_is_fitted\": "
-                   << (fit.q_is_fitted ? "true" : "false")
-                   << ", \"m\": " << json_number(fit.m)
-                   << ", \"rms_of_log\": " << json_number(fit.rms)
-                   << ", \"worst_factor\": " << json_number(fit.worst_factor)
-                   << ", \"worst_run\": "
-                   << std::quoted(way.records[fit.worst_sample]->name) << '}';
-              separator = ",";
-            }
+          for (const Json &fit : fits(study, way))
+            result["fits"].push_back(fit);
+          result["costs"].push_back(costs(study, way));
+          for (const Json &price : prices(way))
+            result["prices"].push_back(price);
         }
-      text << "\n  ],\n  \"costs\": [";
-      separator = "";
-      for (const WayResult &way : ways)
-        {
-          const CostModel cost =
-            cost_of(way.records, study.runs.scene.dimension);
-          const auto power = [](const TwoPowers &fit) {
-            return "{\"c\": " + json_number(fit.c_1) +
-                   ", \"a\": " + json_number(fit.p) +
-                   ", \"constant\": " + json_number(fit.c_2) +
-                   ", \"rms_of_log\": " + json_number(fit.rms) + '}';
-          };
-          text << separator << "\n    " << way_json(way.way)
-               << ", \"seconds_per_set_up\": " << power(cost.set_up)
-               << ", \"seconds_per_step\": " << power(cost.step)
-               << ", \"c_dofs_a_steps\": " << power(cost.simple)
-               << ", \"memory_MB\": " << power(cost.memory_model)
-               << ", \"rms_of_log\": " << json_number(cost.rms)
-               << ", \"worst_factor\": " << json_number(cost.worst_factor)
-               << '}';
-          separator = ",";
-        }
-      text << "\n  ],\n  \"prices\": [";
-      separator = "";
-      for (const WayResult &way : ways)
-        for (const Price &price : way.prices)
-          {
-            text << separator << "\n    " << way_json(way.way)
-                 << ", \"error\": " << std::quoted(way.measure)
-                 << ", \"tolerance\": " << json_number(price.tolerance)
-                 << ", \"in_budget\": "
-                 << (price.is_in_budget ? "true" : "false");
-            if (price.offer)
-              text << ", \"h\": " << json_number(price.offer->h)
-                   << ", \"mesh_level\": " << price.offer->mesh_level
-                   << ", \"k\": " << json_number(price.offer->k)
-                   << ", \"steps\": " << price.offer->steps
-                   << ", \"dofs\": " << json_number(price.offer->dofs)
-                   << ", \"predicted_error\": "
-                   << json_number(price.offer->error)
-                   << ", \"seconds\": " << json_number(price.offer->seconds)
-                   << ", \"memory_MB\": " << json_number(price.offer->memory)
-                   << ", \"halving_factor\": " << json_number(price.halving);
-            text << '}';
-            separator = ",";
-          }
-      text << "\n  ]\n}\n";
-      return text.str();
+      return result;
     }
   } // namespace
 
@@ -216,7 +220,8 @@ namespace Viscoplastic
   write_report(const Study &study, const bool is_finished)
   {
     replace_file(study.runs.directory + "study.csv", csv(study));
-    replace_file(study.runs.directory + "study.json", json(study, is_finished));
+    replace_file(study.runs.directory + "study.json",
+                 json_text(json(study, is_finished)));
     replace_file(study.runs.directory + "study.md",
                  study_as_markdown(study, is_finished));
   }

@@ -398,24 +398,24 @@ namespace Viscoplastic
   std::optional<RunRecord>
   StudyRuns::find(const RunKey &key) const
   {
-    const Parameters parameters(files, overrides_of(key));
-    const auto       expected = stamp(parameters);
-    std::string      text;
-    on_first_rank(communicator, [&] {
-      text =
-        read_file_if_any(directory + name(key) + "/result.json").value_or("");
-    });
+    const Parameters  parameters(files, overrides_of(key));
+    const auto        expected = stamp(parameters);
+    const std::string file     = directory + name(key) + "/result.json";
+    std::string       text;
+    on_first_rank(communicator,
+                  [&] { text = read_file_if_any(file).value_or(""); });
     text = Utilities::MPI::broadcast(communicator, text);
+    if (text.empty())
+      return {};
     try
       {
-        std::map<std::string, std::string> found;
-        const RunRecord                    record = from_json(text, found);
-        found.erase("overrides");
-        if (record.key == key && found == expected)
+        RunRecord record = from_json(text, file);
+        record.stamp.erase("overrides");
+        if (record.key == key && record.stamp == expected)
           return record;
       }
     catch (const std::exception &)
-      {} // no such file, or not one of ours
+      {} // the run is made again
     return {};
   }
 
@@ -426,12 +426,12 @@ namespace Viscoplastic
   {
     const std::vector<std::string> all_overrides = overrides_of(key);
     const Parameters               parameters(files, all_overrides);
-    const std::string              place = directory + name(key) + '/';
-    auto                           about = stamp(parameters);
+    const std::string              place     = directory + name(key) + '/';
+    auto                           run_stamp = stamp(parameters);
 
     // What has been left of the same run goes on, of another one goes.
     std::string begun;
-    for (const auto &[name, value] : about)
+    for (const auto &[name, value] : run_stamp)
       begun += name + ' ' + value + '\n';
     bool may_restart = false;
     on_first_rank(communicator, [&] {
@@ -467,7 +467,6 @@ namespace Viscoplastic
         AssertThrow(!all_have_failed(false, agreement), ExcInternalError());
         if (outcome.interruption.empty())
           {
-            std::string text;
             on_first_rank(communicator, [&] {
               console.check();
               RunRecord record =
@@ -476,6 +475,7 @@ namespace Viscoplastic
                             measurements,
                             reference.has_value() && !(key == *reference));
               record.name         = name(key);
+              record.stamp        = run_stamp;
               record.numbers["h"] = mesh_width(record.number("cells"));
               const double every  = parameters.refinement.strategy == "none" ?
                                       0. :
@@ -484,14 +484,18 @@ namespace Viscoplastic
                 every > 0. ?
                   std::max(1., std::ceil(record.number("steps") / every)) :
                   1.;
+              std::string &list = record.stamp["overrides"];
               for (const std::string &assignment : all_overrides)
-                about["overrides"] +=
-                  (about["overrides"].empty() ? "" : "; ") + assignment;
-              text = to_json(record, about);
-              replace_file(place + "result.json", text, /* to_disk = */ true);
+                list += (list.empty() ? "" : "; ") + assignment;
+              replace_file(place + "result.json",
+                           to_json(record),
+                           /* to_disk = */ true);
             });
-            text           = Utilities::MPI::broadcast(communicator, text);
-            outcome.record = from_json(text, about);
+            outcome.record = find(key);
+            AssertThrow(outcome.record,
+                        ExcMessage("'" + place +
+                                   "result.json' has changed since it was "
+                                   "written."));
           }
       }
     return outcome;

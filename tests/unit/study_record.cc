@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -94,5 +96,73 @@ namespace
     const RunRecord record           = make_record({}, table, measurements);
     EXPECT_EQ(record.number("seconds_tangent"), 0.);
     EXPECT_EQ(record.number("seconds_estimate"), 3.);
+  }
+
+
+
+  RunRecord
+  record_of_any_numbers()
+  {
+    RunRecord record;
+    record.name    = "a \"run\"";
+    record.key     = {"adaptive", "backward Euler", "cell means", -1, 2};
+    record.stamp   = {{"ranks", "2"}, {"scene", "17"}};
+    record.numbers = {{"h", 1. / 3.},
+                      {"steps", 12.},
+                      {"error_h1", std::nan("")},
+                      {"step_limit", std::numeric_limits<double>::infinity()}};
+    // In this order, which is not that of the alphabet.
+    record.quantities = {{"slip_area", 1e-300}, {"point0_x", -M_PI}};
+    return record;
+  }
+
+
+
+  TEST(StudyRecord, TextHasAllDigitsAndTheOrderOfQuantities)
+  {
+    const RunRecord record = record_of_any_numbers();
+    const RunRecord found  = from_json(to_json(record), "result.json");
+    EXPECT_EQ(found.name, record.name);
+    EXPECT_TRUE(found.key == record.key);
+    EXPECT_EQ(found.stamp, record.stamp);
+    EXPECT_EQ(found.quantities, record.quantities);
+    EXPECT_EQ(found.numbers.size(), record.numbers.size());
+    EXPECT_EQ(found.number("h"), 1. / 3.);
+    EXPECT_EQ(found.number("steps"), 12.);
+    // JSON has no other numbers than finite ones.
+    EXPECT_TRUE(std::isnan(found.number("error_h1")));
+    EXPECT_TRUE(std::isnan(found.number("step_limit")));
+  }
+
+
+
+  TEST(StudyRecord, OtherTextIsRefusedByTheNameOfItsFile)
+  {
+    const std::string text = to_json(record_of_any_numbers());
+    const auto        with = [&text](const std::string &what,
+                              const std::string &instead) {
+      std::string other = text;
+      return other.replace(other.find(what), what.size(), instead);
+    };
+    for (const std::string &other : {std::string(),
+                                     std::string("[1, 2]"),
+                                     text.substr(0, text.size() / 2),
+                                     with("\"mesh_level\"", "\"level\""),
+                                     with("-1", "\"one\""),
+                                     with("12.0", "true"),
+                                     with("\"17\"", "17"),
+                                     with("12.0", "1e999")})
+      try
+        {
+          from_json(other, "place/result.json");
+          ADD_FAILURE() << "was accepted:\n" << other;
+        }
+      catch (const std::exception &exception)
+        {
+          EXPECT_NE(std::string(exception.what())
+                      .find("'place/result.json' is no record"),
+                    std::string::npos)
+            << exception.what();
+        }
   }
 } // namespace

@@ -64,6 +64,9 @@ namespace Viscoplastic
   {
     RunKey      key;
     std::string name;
+    /// Of the scene and the program, by name: a record with another stamp
+    /// belongs to something else.
+    std::map<std::string, std::string> stamp;
     /// By the name of their column in study.csv.
     std::map<std::string, double> numbers;
     /// Quantities of interest at the end, by name, in the order of the table.
@@ -100,16 +103,12 @@ namespace Viscoplastic
   extern const std::vector<std::string> estimate_parts;
 
 
-  /// A record as JSON; @p stamp are further entries, texts.
+  /// The text of result.json.
   std::string
-  to_json(const RunRecord                          &record,
-          const std::map<std::string, std::string> &stamp);
+  to_json(const RunRecord &record);
 
-  /// The inverse. Throws std::exception for text that is something else.
+  /// The record in the @p text of @p file. Throws ExcMessage with a sentence
+  /// that names the file if that is something else, or damaged.
   RunRecord
-  from_json(const std::string &text, std::map<std::string, std::string> &stamp);
-
-  /// A number as JSON has it: null where it is not finite.
-  std::string
-  json_number(const double value);
+  from_json(const std::string &text, const std::string &file);
 } // namespace Viscoplastic

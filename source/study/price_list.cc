@@ -18,23 +18,17 @@ namespace Viscoplastic
     constexpr int    finest_level = 12;
     constexpr double most_steps   = 1e8;
 
-    double
-    length(const std::vector<StepsUntil> &phases, const std::size_t i)
-    {
-      const double start =
-        i == 0 ? 0. : Utilities::string_to_double(phases[i - 1].end);
-      return Utilities::string_to_double(phases[i].end) - start;
-    }
-
-
-
     /// The longest step.
     double
     largest_step(const std::vector<StepsUntil> &phases)
     {
-      double largest = 0.;
-      for (std::size_t i = 0; i < phases.size(); ++i)
-        largest = std::max(largest, length(phases, i) / phases[i].n_steps);
+      double largest = 0., start = 0.;
+      for (const StepsUntil &phase : phases)
+        {
+          const double end = Utilities::string_to_double(phase.end);
+          largest          = std::max(largest, (end - start) / phase.n_steps);
+          start            = end;
+        }
       return largest;
     }
 
@@ -42,13 +36,12 @@ namespace Viscoplastic
 
     /// The longest step that leaves the time part of the error at @p part.
     double
-    step_for(const Market &market, const double part)
+    step_for(const WorkPrecisionModel &model, const double part)
     {
-      const double k =
-        market.error.c_2 > 0. ?
-          std::pow(part / market.error.c_2, 1. / market.error.q) :
-          std::numeric_limits<double>::infinity();
-      return std::min(k, market.largest_k);
+      const double k = model.error.c_2 > 0. ?
+                         std::pow(part / model.error.c_2, 1. / model.error.q) :
+                         std::numeric_limits<double>::infinity();
+      return std::min(k, model.largest_k);
     }
   } // namespace
 
@@ -61,9 +54,9 @@ namespace Viscoplastic
     for (const std::string &phase : Utilities::split_string_list(text, ','))
       {
         const auto parts = Utilities::split_string_list(phase, ':');
-        phases.push_back(
-          {parts.at(0),
-           static_cast<unsigned int>(Utilities::string_to_int(parts.at(1)))});
+        phases.push_back({parts.at(0),
+                          static_cast<unsigned int>(Utilities::string_to_double(
+                            parts.at(1)))}); // may be 1e3
       }
     return phases;
   }
@@ -105,7 +98,7 @@ namespace Viscoplastic
 
 
   double
-  Market::dofs_at(const double mesh_width) const
+  WorkPrecisionModel::dofs_at(const double mesh_width) const
   {
     return dofs * std::pow(h / mesh_width, static_cast<double>(dim));
   }
@@ -113,54 +106,53 @@ namespace Viscoplastic
 
 
   double
-  Market::seconds(const double mesh_width, const double steps) const
+  WorkPrecisionModel::seconds(const double mesh_width, const double steps) const
   {
     return cost.seconds(dofs_at(mesh_width),
                         steps,
-                        steps_per_mesh > 0. ?
-                          std::max(1., std::ceil(steps / steps_per_mesh)) :
-                          1.);
+                        number_of_set_ups(steps, steps_per_mesh));
   }
 
 
 
-  Offer
-  offer(const Market &market, const int mesh_level, const double k)
+  PredictedRun
+  predict(const WorkPrecisionModel &model, const int mesh_level, const double k)
   {
-    Offer result;
+    PredictedRun result;
     result.mesh_level = mesh_level;
-    result.h          = market.h * std::pow(0.5, mesh_level);
+    result.h          = model.h * std::pow(0.5, mesh_level);
     result.phases =
-      scale_phases(market.phases, market.k / std::min(k, market.largest_k));
+      scale_phases(model.phases, model.k / std::min(k, model.largest_k));
     result.k       = largest_step(result.phases);
     result.steps   = n_steps(result.phases);
-    result.dofs    = market.dofs_at(result.h);
-    result.error   = market.error(result.h, result.k);
-    result.seconds = market.seconds(result.h, result.steps);
-    result.memory  = market.cost.memory(result.dofs);
-    result.is_far  = result.h < 0.49 * market.smallest_h ||
-                    result.k < 0.49 * market.smallest_k;
+    result.dofs    = model.dofs_at(result.h);
+    result.error   = model.error(result.h, result.k);
+    result.seconds = model.seconds(result.h, result.steps);
+    result.memory  = model.cost.memory(result.dofs);
+    result.is_far =
+      result.h < 0.49 * model.smallest_h || result.k < 0.49 * model.smallest_k;
     return result;
   }
 
 
 
-  std::optional<Offer>
-  cheapest(const Market &market, const double tolerance)
+  std::optional<PredictedRun>
+  cheapest(const WorkPrecisionModel &model, const double tolerance)
   {
-    std::optional<Offer> best;
-    if (market.error.n_samples == 0)
+    std::optional<PredictedRun> best;
+    if (model.error.misfit.n_samples == 0)
       return best;
-    for (int level = -market.coarsest_level; level <= finest_level; ++level)
+    for (int level = -model.coarsest_level; level <= finest_level; ++level)
       {
-        const double rest = market.error.rest(
-          tolerance, market.error.first(market.h * std::pow(0.5, level)));
+        const double rest =
+          model.error.rest(tolerance,
+                           model.error.first(model.h * std::pow(0.5, level)));
         if (rest <= 0.)
           continue;
-        const double k = step_for(market, rest);
-        if (market.k / k * n_steps(market.phases) > most_steps)
+        const double k = step_for(model, rest);
+        if (model.k / k * n_steps(model.phases) > most_steps)
           continue;
-        const Offer candidate = offer(market, level, k);
+        const PredictedRun candidate = predict(model, level, k);
         if (!best || candidate.seconds < best->seconds)
           best = candidate;
       }
@@ -169,27 +161,27 @@ namespace Viscoplastic
 
 
 
-  std::optional<Offer>
-  most_accurate(const Market &market, const double seconds)
+  std::optional<PredictedRun>
+  most_accurate(const WorkPrecisionModel &model, const double seconds)
   {
-    std::optional<Offer> best;
-    if (market.error.n_samples == 0)
+    std::optional<PredictedRun> best;
+    if (model.error.misfit.n_samples == 0)
       return best;
-    for (int level = -market.coarsest_level; level <= finest_level; ++level)
+    for (int level = -model.coarsest_level; level <= finest_level; ++level)
       {
         // Steps cost the same each, up to rounding in phases.
-        double coarse = market.largest_k, fine = market.k * 1e-6;
+        double coarse = model.largest_k, fine = model.k * 1e-6;
         if (!std::isfinite(coarse))
-          coarse = market.k * n_steps(market.phases);
-        if (offer(market, level, coarse).seconds > seconds)
+          coarse = model.k * n_steps(model.phases);
+        if (predict(model, level, coarse).seconds > seconds)
           continue;
         for (unsigned int i = 0; i < 60; ++i)
           {
             const double middle = std::sqrt(coarse * fine);
-            (offer(market, level, middle).seconds <= seconds ? coarse : fine) =
+            (predict(model, level, middle).seconds <= seconds ? coarse : fine) =
               middle;
           }
-        const Offer candidate = offer(market, level, coarse);
+        const PredictedRun candidate = predict(model, level, coarse);
         if (!best || candidate.error < best->error)
           best = candidate;
       }
@@ -199,26 +191,26 @@ namespace Viscoplastic
 
 
   double
-  ideal_seconds(const Market &market, const double tolerance)
+  ideal_seconds(const WorkPrecisionModel &model, const double tolerance)
   {
     // A scan over the part of the error that the mesh may have.
     double lowest = std::numeric_limits<double>::infinity();
     for (unsigned int i = 1; i < 400; ++i)
       {
         const double share = i / 400.;
-        const double h     = market.error.c_1 > 0. ?
-                               std::pow(share * tolerance / market.error.c_1,
-                                    1. / market.error.p) :
-                               market.h * std::pow(2., market.coarsest_level);
+        const double h =
+          model.error.c_1 > 0. ?
+            std::pow(share * tolerance / model.error.c_1, 1. / model.error.p) :
+            model.h * std::pow(2., model.coarsest_level);
         const double k =
-          step_for(market,
-                   market.error.c_1 > 0. ?
-                     market.error.rest(tolerance, share * tolerance) :
+          step_for(model,
+                   model.error.c_1 > 0. ?
+                     model.error.rest(tolerance, share * tolerance) :
                      tolerance);
         const double steps =
-          std::max<double>(market.phases.size(),
-                           n_steps(market.phases) * market.k / k);
-        lowest = std::min(lowest, market.seconds(h, steps));
+          std::max<double>(model.phases.size(),
+                           n_steps(model.phases) * model.k / k);
+        lowest = std::min(lowest, model.seconds(h, steps));
       }
     return lowest;
   }
@@ -226,7 +218,7 @@ namespace Viscoplastic
 
 
   std::vector<Price>
-  list_prices(const Market              &market,
+  list_prices(const WorkPrecisionModel  &model,
               const std::vector<double> &tolerances,
               const double               budget)
   {
@@ -235,11 +227,11 @@ namespace Viscoplastic
       {
         Price price;
         price.tolerance    = tolerance;
-        price.offer        = cheapest(market, tolerance);
-        price.is_in_budget = price.offer && price.offer->seconds <= budget;
-        if (price.offer)
-          price.halving = ideal_seconds(market, tolerance / 2.) /
-                          ideal_seconds(market, tolerance);
+        price.run          = cheapest(model, tolerance);
+        price.is_in_budget = price.run && price.run->seconds <= budget;
+        if (price.run)
+          price.halving = ideal_seconds(model, tolerance / 2.) /
+                          ideal_seconds(model, tolerance);
         prices.push_back(price);
       }
     return prices;
@@ -248,30 +240,31 @@ namespace Viscoplastic
 
 
   std::string
-  in_words(const Market &market, const Price &price, const double budget)
+  in_words(const WorkPrecisionModel &model,
+           const Price              &price,
+           const double              budget)
   {
     std::ostringstream text;
-    const auto         describe = [&text](const Offer &offer) {
-      text << "h = " << digits(offer.h) << " (mesh level " << offer.mesh_level
-           << "), " << offer.steps << " steps, " << digits(offer.dofs)
-           << " unknowns, about " << seconds_in_words(offer.seconds) << " and "
-           << digits(offer.memory, 2) << " MB";
+    const auto         describe = [&text](const PredictedRun &run) {
+      text << "h = " << digits(run.h) << " (mesh level " << run.mesh_level
+           << "), " << run.steps << " steps, " << digits(run.dofs)
+           << " unknowns, about " << seconds_in_words(run.seconds) << " and "
+           << digits(run.memory, 2) << " MB";
     };
     text << "Error " << digits(price.tolerance) << ": ";
     if (price.is_in_budget)
       {
-        describe(*price.offer);
+        describe(*price.run);
         text << "; half of it costs " << digits(price.halving, 2)
              << " times as much";
-        if (price.offer->is_far)
+        if (price.run->is_far)
           text << " (far beyond what was measured)";
         return text.str() + '.';
       }
     text << "not within " << seconds_in_words(budget);
-    if (price.offer && price.offer->seconds < 3e8)
-      text << ", it would take about "
-           << seconds_in_words(price.offer->seconds);
-    if (const auto best = most_accurate(market, budget))
+    if (price.run && price.run->seconds < 3e8)
+      text << ", it would take about " << seconds_in_words(price.run->seconds);
+    if (const auto best = most_accurate(model, budget))
       {
         text << "; the smallest error there is about " << digits(best->error)
              << ": ";
@@ -283,23 +276,23 @@ namespace Viscoplastic
 
 
   std::string
-  next_refinement(const Market &market)
+  next_refinement(const WorkPrecisionModel &model)
   {
-    const Offer        now = offer(market, 0, market.k);
+    const PredictedRun now = predict(model, 0, model.k);
     std::ostringstream text;
     text << "The scene as it is: error about " << digits(now.error) << " ("
-         << digits(market.error.first(now.h), 2) << " of the mesh, "
-         << digits(market.error.second(now.k), 2) << " of the steps), "
+         << digits(model.error.first(now.h), 2) << " of the mesh, "
+         << digits(model.error.second(now.k), 2) << " of the steps), "
          << seconds_in_words(now.seconds) << ".";
-    const auto add = [&](const std::string &what, const Offer &next) {
+    const auto add = [&](const std::string &what, const PredictedRun &next) {
       text << " Halving " << what << ": error " << digits(next.error) << " for "
            << digits(next.seconds / now.seconds, 2) << " times the seconds.";
       return std::log(now.error / next.error) /
              std::log(std::max(1.001, next.seconds / now.seconds));
     };
-    const double of_h = add("h", offer(market, 1, market.k)),
-                 of_k = add("k", offer(market, 0, market.k / 2.));
-    add("both", offer(market, 1, market.k / 2.));
+    const double of_h = add("h", predict(model, 1, model.k)),
+                 of_k = add("k", predict(model, 0, model.k / 2.));
+    add("both", predict(model, 1, model.k / 2.));
     text << " Refine "
          << (of_h > 1.2 * of_k ? "the mesh" :
              of_k > 1.2 * of_h ? "the steps" :
@@ -321,15 +314,11 @@ namespace Viscoplastic
   std::string
   digits(const double value, const unsigned int n)
   {
-    std::ostringstream text;
-    text << std::setprecision(n) << value;
     // 1.2e+05 is for programs.
     if (std::abs(value) >= std::pow(10., n) - 0.5 && std::abs(value) < 1e9)
-      {
-        std::ostringstream whole;
-        whole << std::lround(value);
-        return whole.str();
-      }
+      return std::to_string(std::lround(value));
+    std::ostringstream text;
+    text << std::setprecision(n) << value;
     return text.str();
   }
 } // namespace Viscoplastic

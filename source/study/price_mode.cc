@@ -178,28 +178,28 @@ namespace Viscoplastic
                            "runs know none: neither an error bar nor an exact "
                            "solution has given one."));
 
-    const Market market = make_market(runs, pilots.all(), measure, nullptr);
+    const WorkPrecisionModel model =
+      fit_work_precision(runs, pilots.all(), measure, nullptr);
     const double eps    = command_line.price;
     const double budget = scene.study.budget;
-    const Price  price  = list_prices(market, {eps}, budget)[0];
     out << "Prices by the " << measure_in_words(measure) << ", from pilots of "
         << seconds_in_words(pilot_seconds) << ":\n";
-    for (const Price &line :
-         list_prices(market, {2. * eps, eps, 0.5 * eps}, budget))
-      out << "  " << in_words(market, line, budget) << '\n';
-    out << next_refinement(market) << std::endl;
+    const auto prices = list_prices(model, {2. * eps, eps, 0.5 * eps}, budget);
+    for (const Price &line : prices)
+      out << "  " << in_words(model, line, budget) << '\n';
+    const Price &price = prices[1];
+    out << next_refinement(model) << std::endl;
     AssertThrow(price.is_in_budget,
-                ExcMessage(in_words(market, price, budget) +
+                ExcMessage(in_words(model, price, budget) +
                            " Raise 'Study/Budget' or take a larger error."));
     if (command_line.task == CommandLine::Task::check)
       return "";
 
     // The run that was chosen, with all output of the scene.
     RunKey key                         = runs.scene_key();
-    key.mesh_level                     = price.offer->mesh_level;
+    key.mesh_level                     = price.run->mesh_level;
     std::vector<std::string> overrides = command_line.overrides;
-    for (const std::string &text :
-         runs.discretisation(key, price.offer->phases))
+    for (const std::string &text : runs.discretization(key, price.run->phases))
       overrides.push_back(text);
     out << "Now the run with\n";
     for (std::size_t i = command_line.overrides.size(); i < overrides.size();
@@ -216,12 +216,12 @@ namespace Viscoplastic
     const RunRecord result =
       result_of(key, results_directory(parameters), measurements);
     out << "\nThe prediction:\n  error    "
-        << compare(price.offer->error, error_of(result, measure, nullptr))
+        << compare(price.run->error, error_of(result, measure, nullptr))
         << "\n  seconds  "
-        << compare(price.offer->seconds, result.number("seconds_total"))
+        << compare(price.run->seconds, result.number("seconds_total"))
         << ", without field output\n  memory   "
-        << compare(price.offer->memory, result.number("peak_memory_MB"))
-        << " MB" << std::endl;
+        << compare(price.run->memory, result.number("peak_memory_MB")) << " MB"
+        << std::endl;
     return "";
   }
 } // namespace Viscoplastic

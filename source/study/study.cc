@@ -24,6 +24,16 @@ namespace Viscoplastic
 
 
 
+  std::string
+  to_string(const Ladder ladder)
+  {
+    return ladder == Ladder::space ? "space" :
+           ladder == Ladder::time  ? "time" :
+                                     "both";
+  }
+
+
+
   Study::Study(const std::vector<std::string> &files,
                const std::vector<std::string> &overrides,
                Console                        &console)
@@ -56,14 +66,12 @@ namespace Viscoplastic
                histories = items(parameters.stress_histories,
                                  runs.scene.stress.stress_history);
 
-    const auto add = [&](const RunKey      &way,
-                         const int          mesh_level,
-                         const int          time_level,
-                         const std::string &ladder) -> PlannedRun & {
+    const auto add = [&](const MethodVariant &variant,
+                         const int            mesh_level,
+                         const int            time_level,
+                         const Ladder         ladder) -> PlannedRun & {
       PlannedRun run;
-      run.key            = way;
-      run.key.mesh_level = mesh_level;
-      run.key.time_level = time_level;
+      run.key = {variant, mesh_level, time_level};
       auto known =
         std::find_if(plan.begin(), plan.end(), [&](const auto &other) {
           return other.key == run.key;
@@ -74,36 +82,38 @@ namespace Viscoplastic
       return *known;
     };
 
-    RunKey first;
-    first.scheme  = schemes[0];
-    first.history = histories[0];
     for (const std::string &strategy : strategies)
       for (const std::string &scheme : schemes)
         for (const std::string &history : histories)
           {
-            RunKey way;
-            way.strategy = strategy;
-            way.scheme   = scheme;
-            way.history  = history;
+            const MethodVariant variant{to_mesh_strategy(strategy),
+                                        scheme,
+                                        history};
             // Names of schemes and histories are checked here, once.
-            Parameters(runs.files, runs.overrides_of(way));
-            for (const std::string &ladder : ladders)
-              for (int level = 0; level <= finest; ++level)
-                add(way,
-                    ladder == "time" ? finest : level,
-                    ladder == "space" ? finest : level,
-                    ladder);
+            Parameters(runs.files, runs.overrides_of({variant}));
+            for (const Ladder ladder : all_ladders)
+              if (std::count(ladders.begin(),
+                             ladders.end(),
+                             to_string(ladder)) > 0)
+                for (int level = 0; level <= finest; ++level)
+                  add(variant,
+                      ladder == Ladder::time ? finest : level,
+                      ladder == Ladder::space ? finest : level,
+                      ladder);
           }
     if (!has_exact_solution)
       {
+        const MethodVariant first{MeshStrategy::uniform,
+                                  schemes[0],
+                                  histories[0]};
         for (int level = finest - 1; level <= finest; ++level)
-          add(first, level, level, "both");
-        add(first, finest + 1, finest + 1, "both").is_reference = true;
+          add(first, level, level, Ladder::both);
+        add(first, finest + 1, finest + 1, Ladder::both).is_reference = true;
       }
 
     // The cheapest first: what is known early predicts the rest.
     const auto work = [&](const PlannedRun &run) {
-      return (run.key.strategy == "uniform" ? 1. : 1.5) *
+      return (run.key.variant.strategy == MeshStrategy::uniform ? 1. : 1.5) *
              std::pow(2.,
                       static_cast<double>(runs.scene.dimension) *
                           run.key.mesh_level +
@@ -138,8 +148,8 @@ namespace Viscoplastic
       {
         if (run.is_reference && run.record)
           return &*run.record;
-        if (run.record && run.key.strategy == "uniform" &&
-            run.ladders.count("both") > 0)
+        if (run.record && run.key.variant.strategy == MeshStrategy::uniform &&
+            run.ladders.count(Ladder::both) > 0)
           finest = &*run.record;
       }
     return finest;
@@ -147,16 +157,15 @@ namespace Viscoplastic
 
 
 
-  std::vector<RunKey>
-  Study::ways() const
+  std::vector<MethodVariant>
+  Study::variants() const
   {
-    std::vector<RunKey> result;
+    std::vector<MethodVariant> result;
     for (const PlannedRun &run : plan)
       if (run.record && !run.is_reference &&
-          std::none_of(result.begin(), result.end(), [&](const RunKey &way) {
-            return way.way() == run.key.way();
-          }))
-        result.push_back(run.key);
+          std::find(result.begin(), result.end(), run.key.variant) ==
+            result.end())
+        result.push_back(run.key.variant);
     return result;
   }
 
@@ -165,37 +174,36 @@ namespace Viscoplastic
   double
   Study::expected_seconds(const RunKey &key) const
   {
-    Records known = of_way(records(), key);
+    // Those of the same variant, or else as similar as there are.
+    Records known = of_variant(records(), key.variant);
     if (known.empty())
       for (const RunRecord *record : records())
-        if (record->key.strategy == key.strategy)
+        if (record->key.variant.strategy == key.variant.strategy)
           known.push_back(record);
     if (known.empty())
       known = records();
     if (known.empty())
       return std::numeric_limits<double>::quiet_NaN();
-    if (costs.count(key.way()) == 0)
-      costs.emplace(key.way(), cost_of(known, runs.scene.dimension));
-    const CostModel &cost = costs.at(key.way());
+    const double      dim  = runs.scene.dimension;
+    const std::string name = key.variant.name();
+    if (costs.count(name) == 0)
+      costs.emplace(name, cost_of(known, runs.scene.dimension));
     const RunRecord *finest =
       *std::max_element(known.begin(),
                         known.end(),
                         [](const auto *a, const auto *b) {
                           return a->key.mesh_level < b->key.mesh_level;
                         });
-    const double dofs = finest->number("dofs") *
-                        std::pow(2.,
-                                 static_cast<double>(runs.scene.dimension) *
-                                   (key.mesh_level - finest->key.mesh_level));
+    const double dofs =
+      finest->number("dofs") *
+      std::pow(2., dim * (key.mesh_level - finest->key.mesh_level));
     const unsigned int steps =
       n_steps(scale_phases(runs.phases, std::pow(2., key.time_level)));
-    double set_ups = 1.;
-    if (key.strategy == "adaptive")
-      set_ups = std::ceil(
-        steps / static_cast<double>(runs.scene.refinement.strategy == "none" ?
-                                      std::max(1u, steps / 10) :
-                                      runs.scene.refinement.every_n_steps));
-    return cost.seconds(dofs, steps, set_ups);
+    return costs.at(name).seconds(
+      dofs,
+      steps,
+      number_of_set_ups(steps,
+                        runs.steps_per_mesh(key.variant.strategy, steps)));
   }
 
 
@@ -319,7 +327,7 @@ namespace Viscoplastic
     // Coarse runs without it tell how long it takes.
     find_finished();
     for (PlannedRun &run : plan)
-      if (!run.record && run.key.way() == last.key.way() &&
+      if (!run.record && run.key.variant == last.key.variant &&
           run.key.mesh_level == run.key.time_level &&
           run.key.mesh_level + 2 < last.key.mesh_level)
         {

@@ -122,46 +122,23 @@ namespace Viscoplastic
   std::string
   measure_in_words(const std::string &measure)
   {
-    if (measure == "error_energy")
-      return "error of u in the energy norm";
-    if (measure == "error_h1")
-      return "error of u in H1";
-    if (measure == "error_stress")
-      return "error of the stress in L2";
-    if (measure == "error_multiplier")
-      return "error of the multiplier on Gamma_3";
-    if (measure == "estimate_total")
-      return "estimated error of u in the energy norm";
-    if (measure == "quantities")
-      return "largest error of all quantities of interest";
-    return measure;
+    static const std::map<std::string, std::string> words{
+      {"error_energy", "error of u in the energy norm"},
+      {"estimate_total", "estimated error of u in the energy norm"},
+      {"quantities", "largest error of all quantities of interest"}};
+    return words.at(measure);
   }
 
 
 
   Records
-  of_way(const Records &records, const RunKey &way)
+  of_variant(const Records &records, const MethodVariant &variant)
   {
     Records result;
     for (const RunRecord *record : records)
-      if (record->key.way() == way.way())
+      if (record->key.variant == variant)
         result.push_back(record);
     return result;
-  }
-
-
-
-  std::vector<Sample>
-  error_samples(const Records     &records,
-                const std::string &measure,
-                const RunRecord   *reference)
-  {
-    std::vector<Sample> samples;
-    for (const RunRecord *record : records)
-      samples.push_back({record->number("h"),
-                         record->number("k"),
-                         error_of(*record, measure, reference)});
-    return samples;
   }
 
 
@@ -171,34 +148,31 @@ namespace Viscoplastic
               const std::string &measure,
               const RunRecord   *reference)
   {
-    const auto samples = error_samples(records, measure, reference);
-    if (measure != "estimate_total")
-      {
-        const bool is_norm =
-          std::find(field_errors.begin(), field_errors.end(), measure) !=
-          field_errors.end();
-        if (reference == nullptr ||
-            (is_norm && std::none_of(records.begin(),
-                                     records.end(),
-                                     [](const auto *record) {
-                                       return record->numbers.count(
-                                                "is_difference") > 0;
-                                     })))
-          return fit_error(samples);
-        return fit_error(samples,
-                         Finer{reference->number("h"),
-                               reference->number("k"),
-                               is_norm ? 2. : 1.,
-                               1.});
-      }
+    std::vector<Sample> samples;
     std::vector<double> space, time;
+    bool                are_differences = false;
     for (const RunRecord *record : records)
       {
+        samples.push_back({record->number("h"),
+                           record->number("k"),
+                           error_of(*record, measure, reference)});
         space.push_back(record->number("estimate_space") +
                         record->number("estimate_initial"));
         time.push_back(record->number("estimate_time"));
+        are_differences |= record->numbers.count("is_difference") > 0;
       }
-    return fit_error_parts(samples, space, time);
+    if (measure == "estimate_total")
+      return fit_error_parts(samples, space, time);
+    const bool is_norm =
+      std::find(field_errors.begin(), field_errors.end(), measure) !=
+      field_errors.end();
+    if (reference == nullptr || (is_norm && !are_differences))
+      return fit_error(samples);
+    return fit_error(samples,
+                     Finer{reference->number("h"),
+                           reference->number("k"),
+                           is_norm ? 2. : 1.,
+                           1.});
   }
 
 
@@ -219,49 +193,47 @@ namespace Viscoplastic
 
 
 
-  Market
-  make_market(const StudyRuns   &runs,
-              const Records     &records,
-              const std::string &measure,
-              const RunRecord   *reference)
+  WorkPrecisionModel
+  fit_work_precision(const StudyRuns   &runs,
+                     const Records     &records,
+                     const std::string &measure,
+                     const RunRecord   *reference)
   {
-    Market market;
-    market.error      = fit_measure(records, measure, reference);
-    market.dim        = runs.scene.dimension;
-    market.cost       = cost_of(records, market.dim);
-    market.h          = runs.h;
-    market.phases     = runs.phases;
-    market.k          = TimeSchedule(runs.scene.time.phases).largest_step().k;
-    market.smallest_h = market.smallest_k =
+    WorkPrecisionModel model;
+    model.error      = fit_measure(records, measure, reference);
+    model.dim        = runs.scene.dimension;
+    model.cost       = cost_of(records, model.dim);
+    model.h          = runs.h;
+    model.phases     = runs.phases;
+    model.k          = TimeSchedule(runs.scene.time.phases).largest_step().k;
+    model.smallest_h = model.smallest_k =
       std::numeric_limits<double>::infinity();
-    int    coarsest_mesh = std::numeric_limits<int>::max();
+    model.coarsest_level = std::numeric_limits<int>::min();
     double largest_k     = 0.;
     for (const RunRecord *record : records)
       {
-        coarsest_mesh = std::min(coarsest_mesh, record->key.mesh_level);
-        largest_k     = std::max(largest_k, record->number("k"));
+        const double h = record->number("h"), k = record->number("k"),
+                     limit = record->number("step_limit");
+        // Nothing coarser than what was measured: there errors obey no law.
+        model.coarsest_level =
+          std::max(model.coarsest_level, -record->key.mesh_level);
+        largest_k        = std::max(largest_k, k);
+        model.smallest_k = std::min(model.smallest_k, k);
         // From the finest mesh, whose boundary counts least.
-        if (record->number("h") < market.smallest_h)
+        if (h < model.smallest_h)
           {
-            market.smallest_h = record->number("h");
-            market.dofs       = record->number("dofs") *
-                          std::pow(market.smallest_h / market.h,
-                                   static_cast<double>(market.dim));
+            model.smallest_h = h;
+            model.dofs       = record->number("dofs") *
+                         std::pow(h / model.h, static_cast<double>(model.dim));
           }
-        market.smallest_k  = std::min(market.smallest_k, record->number("k"));
-        const double limit = record->number("step_limit");
         // Stresses may lower it still; implicit schemes go beyond.
-        if (std::isfinite(limit) && limit >= record->number("k"))
-          market.largest_k = std::min(market.largest_k, 0.95 * limit);
+        if (std::isfinite(limit) && limit >= k)
+          model.largest_k = std::min(model.largest_k, 0.95 * limit);
       }
-    // Nothing coarser than what was measured: there errors obey no law.
-    market.coarsest_level = -coarsest_mesh;
-    market.largest_k      = std::min(market.largest_k, largest_k);
-    if (records[0]->key.strategy == "adaptive")
-      market.steps_per_mesh = runs.scene.refinement.strategy != "none" ?
-                                runs.scene.refinement.every_n_steps :
-                                std::max(1u, n_steps(runs.phases) / 10);
-    return market;
+    model.largest_k      = std::min(model.largest_k, largest_k);
+    model.steps_per_mesh = runs.steps_per_mesh(records[0]->key.variant.strategy,
+                                               n_steps(runs.phases));
+    return model;
   }
 
 
@@ -281,23 +253,18 @@ namespace Viscoplastic
                      size  = size_of(*runs[2], r.quantity);
         if (!(size > 0.))
           continue;
-        if (!(std::abs(last) > 1e-12 * size))
-          {
-            // Nothing left to converge.
-            r.order          = nan;
-            r.extrapolated   = r.values[2];
-            r.error          = 0.;
-            r.is_trustworthy = true;
-          }
+        const double ratio = first / last;
+        if (!(std::abs(last) > 1e-12 * size)) // nothing left to converge
+          r = {r.quantity, r.values, nan, r.values[2], 0., true};
         else
           {
-            r.order = first / last > 0. ? std::log2(first / last) : nan;
+            r.order          = ratio > 0. ? std::log2(ratio) : nan;
             r.is_trustworthy = r.order >= 0.5 && r.order <= 3.;
             r.extrapolated =
-              r.is_trustworthy ? r.values[2] + last / (first / last - 1.) : nan;
-            r.error = r.is_trustworthy ?
-                        std::abs(r.extrapolated - r.values[2]) / size :
-                        std::abs(last) / size;
+              r.is_trustworthy ? r.values[2] + last / (ratio - 1.) : nan;
+            r.error =
+              std::abs(r.is_trustworthy ? r.extrapolated - r.values[2] : last) /
+              size;
           }
         result.push_back(r);
       }

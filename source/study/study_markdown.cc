@@ -63,7 +63,7 @@ namespace Viscoplastic
 
 
     std::string
-    runs_table(const Study &study, const WayResult &way)
+    runs_table(const Study &study, const VariantResult &result)
     {
       const auto               measures = shown_measures(study);
       std::ostringstream       text;
@@ -71,11 +71,11 @@ namespace Viscoplastic
         "run", "h", "k", "cells", "unknowns", "steps", "seconds", "MB"};
       head.insert(head.end(), measures.begin(), measures.end());
       const bool has_effectivity =
-        std::isfinite(way.records[0]->number("effectivity"));
+        std::isfinite(result.records[0]->number("effectivity"));
       if (has_effectivity)
         head.push_back("effectivity");
       text << table_head(head);
-      for (const RunRecord *record : way.records)
+      for (const RunRecord *record : result.records)
         {
           std::vector<std::string> row{'`' + record->name + '`'};
           for (const char *name : {"h",
@@ -100,24 +100,24 @@ namespace Viscoplastic
 
     /// Orders between neighbours of each ladder.
     std::string
-    orders_table(const Study &study, const WayResult &way)
+    orders_table(const Study &study, const VariantResult &result)
     {
       const auto               measures = shown_measures(study);
       std::vector<std::string> head{"ladder", "from", "to"};
       head.insert(head.end(), measures.begin(), measures.end());
       std::string text = table_head(head);
-      for (const std::string ladder : {"space", "time", "both"})
+      for (const Ladder ladder : all_ladders)
         {
           const RunRecord *last = nullptr;
           for (const PlannedRun &run : study.plan)
             {
-              if (!run.record || run.key.way() != way.way.way() ||
+              if (!run.record || !(run.key.variant == result.variant) ||
                   run.ladders.count(ladder) == 0)
                 continue;
               if (last != nullptr)
                 {
-                  const std::string        size = ladder == "time" ? "k" : "h";
-                  std::vector<std::string> row{ladder,
+                  const std::string size = ladder == Ladder::time ? "k" : "h";
+                  std::vector<std::string> row{to_string(ladder),
                                                '`' + last->name + '`',
                                                '`' + run.record->name + '`'};
                   bool                     is_known = false;
@@ -143,12 +143,12 @@ namespace Viscoplastic
 
 
     std::string
-    fits_in_words(const WayResult &way)
+    fits_in_words(const VariantResult &result)
     {
       std::ostringstream text;
-      const TwoPowers   &error = way.market->error;
-      const CostModel   &cost  = way.market->cost;
-      text << "Fit to the " << measure_in_words(way.measure)
+      const TwoPowers   &error = result.model->error;
+      const CostModel   &cost  = result.model->cost;
+      text << "Fit to the " << measure_in_words(result.measure)
            << ", relative:\n\n    error = ";
       if (error.m == 1.)
         text << digits(error.c_1) << " h^" << digits(error.p) << " + "
@@ -167,16 +167,17 @@ namespace Viscoplastic
         if (!is_fitted)
           text << "The exponent " << name
                << " does not show in these runs and is the theoretical 1. ";
-      if (way.records[0]->numbers.count("is_difference") > 0 &&
-          way.measure.compare(0, 6, "error_") == 0)
+      if (result.records[0]->numbers.count("is_difference") > 0 &&
+          result.measure.compare(0, 6, "error_") == 0)
         text << "This is the law of the errors themselves; what was measured "
                 "are differences to the reference, whose own error the fit "
                 "subtracts. ";
-      text << "The fit misses " << error.n_samples << " runs by a factor of "
-           << digits(std::exp(error.rms), 3) << " (root mean square) and "
-           << digits(error.worst_factor, 3) << " at worst (`"
-           << way.records[error.worst_sample]->name << "`).\n";
-      const RunRecord *finest = way.records.back();
+      text << "The fit misses " << error.misfit.n_samples
+           << " runs by a factor of " << digits(std::exp(error.misfit.rms), 3)
+           << " (root mean square) and " << digits(error.misfit.worst_factor, 3)
+           << " at worst (`" << result.records[error.misfit.worst_sample]->name
+           << "`).\n";
+      const RunRecord *finest = result.records.back();
       const double     h = finest->number("h"), k = finest->number("k");
       text << "At the finest run `" << finest->name << "` the mesh has "
            << std::lround(100. * error.first(h) /
@@ -189,26 +190,28 @@ namespace Viscoplastic
         return formula;
       };
       text << "    seconds = "
-           << (way.way.strategy == "adaptive" ? "meshes" : "1") << " ("
-           << power(cost.set_up) << ")\n            + steps ("
+           << (result.variant.strategy == MeshStrategy::adaptive ? "meshes" :
+                                                                   "1")
+           << " (" << power(cost.set_up) << ")\n            + steps ("
            << power(cost.step)
            << ")\n    MB      = " << power(cost.memory_model)
-           << "\n\nThe seconds miss " << cost.n_samples
-           << " runs by a factor of " << digits(std::exp(cost.rms), 3)
-           << " (root mean square) and " << digits(cost.worst_factor, 3)
-           << " at worst (`" << way.records[cost.worst_sample]->name
-           << "`), the memory by " << digits(std::exp(cost.memory_model.rms), 3)
+           << "\n\nThe seconds miss " << cost.misfit.n_samples
+           << " runs by a factor of " << digits(std::exp(cost.misfit.rms), 3)
+           << " (root mean square) and " << digits(cost.misfit.worst_factor, 3)
+           << " at worst (`" << result.records[cost.misfit.worst_sample]->name
+           << "`), the memory by "
+           << digits(std::exp(cost.memory_model.misfit.rms), 3)
            << ". One power alone, seconds = " << digits(cost.simple.c_1)
            << " dofs^" << digits(cost.simple.p, 3) << " steps, misses by "
-           << digits(std::exp(cost.simple.rms), 3) << " and "
-           << digits(cost.simple.worst_factor, 3) << " at worst.\n";
+           << digits(std::exp(cost.simple.misfit.rms), 3) << " and "
+           << digits(cost.simple.misfit.worst_factor, 3) << " at worst.\n";
       return text.str();
     }
 
 
 
     std::string
-    prices_table(const Study &study, const WayResult &way)
+    prices_table(const Study &study, const VariantResult &result)
     {
       std::ostringstream text;
       const double       budget = study.parameters.budget;
@@ -222,29 +225,29 @@ namespace Viscoplastic
                           "MB",
                           "half the error costs"});
       std::string beyond;
-      for (const Price &price : way.prices)
+      for (const Price &price : result.prices)
         {
           if (!price.is_in_budget)
             {
-              beyond += "- " + in_words(*way.market, price, budget) + '\n';
+              beyond += "- " + in_words(*result.model, price, budget) + '\n';
               continue;
             }
-          const Offer &offer = *price.offer;
+          const PredictedRun &run = *price.run;
           text << table_row(
             {digits(price.tolerance),
-             std::to_string(offer.mesh_level) + (offer.is_far ? " (far)" : ""),
-             digits(offer.h),
-             std::to_string(offer.steps),
-             digits(offer.k),
-             digits(offer.dofs),
-             digits(offer.seconds, 2),
-             digits(offer.memory, 2),
+             std::to_string(run.mesh_level) + (run.is_far ? " (far)" : ""),
+             digits(run.h),
+             std::to_string(run.steps),
+             digits(run.k),
+             digits(run.dofs),
+             digits(run.seconds, 2),
+             digits(run.memory, 2),
              digits(price.halving, 2) + " times"});
         }
       text << '\n';
       if (!beyond.empty())
         text << beyond << '\n';
-      text << next_refinement(*way.market) << '\n';
+      text << next_refinement(*result.model) << '\n';
       return text.str();
     }
 
@@ -274,12 +277,13 @@ namespace Viscoplastic
                   "near it are too small.\n";
 
       // The finest three of the diagonal.
-      Records diagonal;
+      const MethodVariant variant{MeshStrategy::uniform,
+                                  study.plan.back().key.variant.scheme,
+                                  study.plan.back().key.variant.history};
+      Records             diagonal;
       for (const PlannedRun &run : study.plan)
-        if (run.record && run.key.strategy == "uniform" &&
-            run.key.mesh_level == run.key.time_level &&
-            run.key.scheme == study.plan.back().key.scheme &&
-            run.key.history == study.plan.back().key.history)
+        if (run.record && run.key.mesh_level == run.key.time_level &&
+            run.key.variant == variant)
           diagonal.push_back(&*run.record);
       if (diagonal.size() < 3)
         return text.str();
@@ -313,15 +317,16 @@ namespace Viscoplastic
 
 
   std::string
-  study_as_markdown(const Study &study, const bool is_finished)
+  study_as_markdown(const Study                      &study,
+                    const std::vector<VariantResult> &results,
+                    const Origin                     &origin,
+                    const bool                        is_finished)
   {
-    const Origin       from = origin();
     std::ostringstream text;
-    const auto         ways = analyse(study);
     text << "# Study of " << study.runs.scene.file << "\n\n"
          << (is_finished ? "" : "**Not finished yet.** ")
-         << "viscoplastic_contact " << from.program << ", " << from.n_ranks
-         << " MPI rank(s), " << from.machine << ", " << from.date
+         << "viscoplastic_contact " << origin.program << ", " << origin.n_ranks
+         << " MPI rank(s), " << origin.machine << ", " << origin.date
          << ".\n\nThe ladder `space` refines the mesh with the steps of the "
             "finest level of the study, `time` the steps on its finest mesh, "
             "`both` both, which share the finest run: what a ladder leaves "
@@ -329,15 +334,15 @@ namespace Viscoplastic
             "is named below. Errors are relative to the largest norm over "
             "all times. In adaptive runs, h is the width of a uniform mesh "
             "with as many cells.\n";
-    for (const WayResult &way : ways)
+    for (const VariantResult &result : results)
       {
-        text << "\n## " << way.way.way() << "\n\n"
-             << runs_table(study, way)
+        text << "\n## " << result.variant.name() << "\n\n"
+             << runs_table(study, result)
              << "\nObserved orders between neighbours:\n\n"
-             << orders_table(study, way) << '\n';
-        if (way.market)
-          text << fits_in_words(way) << "\n### Price list\n\n"
-               << prices_table(study, way);
+             << orders_table(study, result) << '\n';
+        if (result.model)
+          text << fits_in_words(result) << "\n### Price list\n\n"
+               << prices_table(study, result);
         else
           text << "No price list: the error is known of fewer than three "
                   "runs.\n";

@@ -2,6 +2,7 @@
 #include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/json_text.h>
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/study/study_record.h>
 
@@ -81,6 +82,28 @@ namespace Viscoplastic
       return size > 0. ? value / size : nan;
     }
   } // namespace
+
+
+
+  std::string
+  to_string(const MeshStrategy strategy)
+  {
+    return strategy == MeshStrategy::uniform ? "uniform" : "adaptive";
+  }
+
+
+
+  MeshStrategy
+  to_mesh_strategy(const std::string &name)
+  {
+    for (const auto strategy : {MeshStrategy::uniform, MeshStrategy::adaptive})
+      if (name == to_string(strategy))
+        return strategy;
+    AssertThrow(false,
+                ExcMessage("'" + name +
+                           "' is no strategy; it is uniform or adaptive."));
+    return {};
+  }
 
 
 
@@ -225,10 +248,11 @@ namespace Viscoplastic
   std::string
   to_json(const RunRecord &record)
   {
+    const MethodVariant   &variant = record.key.variant;
     nlohmann::ordered_json json{{"run", record.name},
-                                {"strategy", record.key.strategy},
-                                {"scheme", record.key.scheme},
-                                {"history", record.key.history},
+                                {"strategy", to_string(variant.strategy)},
+                                {"scheme", variant.scheme},
+                                {"history", variant.history},
                                 {"mesh_level", record.key.mesh_level},
                                 {"time_level", record.key.time_level},
                                 {"stamp", record.stamp},
@@ -253,9 +277,10 @@ namespace Viscoplastic
       {
         const Json json = Json::parse(text);
         json.at("run").get_to(record.name);
-        json.at("strategy").get_to(record.key.strategy);
-        json.at("scheme").get_to(record.key.scheme);
-        json.at("history").get_to(record.key.history);
+        record.key.variant.strategy =
+          to_mesh_strategy(json.at("strategy").get<std::string>());
+        json.at("scheme").get_to(record.key.variant.scheme);
+        json.at("history").get_to(record.key.variant.history);
         json.at("mesh_level").get_to(record.key.mesh_level);
         json.at("time_level").get_to(record.key.time_level);
         json.at("stamp").get_to(record.stamp);
@@ -266,12 +291,12 @@ namespace Viscoplastic
              json.at("quantities").get_ref<const Json::object_t &>())
           record.quantities.emplace_back(name, number(value));
       }
-    catch (const Json::exception &exception)
+    catch (const std::exception &exception)
       {
         AssertThrow(false,
-                    ExcMessage(
-                      "'" + file +
-                      "' is no record of a finished run: " + exception.what()));
+                    ExcMessage("'" + file +
+                               "' is no record of a finished run: " +
+                               reason(exception)));
       }
     return record;
   }

@@ -15,7 +15,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Of sizes and cost.
+    /// The columns of sizes and costs in study.csv.
     std::vector<std::string>
     number_columns()
     {
@@ -35,7 +35,7 @@ namespace Viscoplastic
 
 
 
-    /// Names of the quantities of interest.
+    /// The names of the quantities of interest.
     std::vector<std::string>
     quantities(const Study &study)
     {
@@ -47,32 +47,30 @@ namespace Viscoplastic
 
 
 
-    // ----------------------------------------------------------------- csv
-
     std::string
     csv(const Study &study)
     {
       std::ostringstream       text;
       std::vector<std::string> columns = number_columns();
-      columns.insert(columns.end(), field_errors.begin(), field_errors.end());
-      columns.insert(columns.end(),
-                     estimate_parts.begin(),
-                     estimate_parts.end());
-      columns.push_back("effectivity");
+      for (const auto &more : {field_errors,
+                               estimate_parts,
+                               std::vector<std::string>{"effectivity"}})
+        columns.insert(columns.end(), more.begin(), more.end());
       text << "run,strategy,scheme,history,ladder,mesh_level,time_level";
       for (const std::string &column : columns)
         text << ',' << column;
       for (const std::string &name : quantities(study))
         text << ',' << name << ',' << name << "_error";
       text << std::setprecision(12) << '\n';
-      for (const std::string ladder : {"space", "time", "both"})
+      for (const Ladder ladder : all_ladders)
         for (const PlannedRun &run : study.plan)
           if (run.record && run.ladders.count(ladder) > 0)
             {
-              const RunRecord &record = *run.record;
-              text << record.name << ',' << record.key.strategy << ','
-                   << record.key.scheme << ',' << record.key.history << ','
-                   << ladder << ',' << record.key.mesh_level << ','
+              const RunRecord     &record  = *run.record;
+              const MethodVariant &variant = record.key.variant;
+              text << record.name << ',' << to_string(variant.strategy) << ','
+                   << variant.scheme << ',' << variant.history << ','
+                   << to_string(ladder) << ',' << record.key.mesh_level << ','
                    << record.key.time_level;
               for (const std::string &column : columns)
                 text << ',' << record.number(column);
@@ -86,131 +84,127 @@ namespace Viscoplastic
 
 
 
-    // ---------------------------------------------------------------- json
+    // study.json
 
     using Json = nlohmann::ordered_json;
 
+    /// Of a method variant, and what there is to say of it.
     Json
-    to_json(const RunKey &way)
+    entry(const MethodVariant &variant, const Json &more)
     {
-      return {{"strategy", way.strategy},
-              {"scheme", way.scheme},
-              {"history", way.history}};
+      Json json{{"strategy", to_string(variant.strategy)},
+                {"scheme", variant.scheme},
+                {"history", variant.history}};
+      json.update(more);
+      return json;
     }
 
 
 
-    Json
-    fits(const Study &study, const WayResult &way)
+    void
+    add_fits(const Study &study, const VariantResult &result, Json &fits)
     {
       std::vector<std::string> measures = field_errors;
       measures.push_back("estimate_total");
       for (const std::string &name : quantities(study))
         measures.push_back(name + "_error");
-      Json result = Json::array();
       for (const std::string &measure : measures)
         {
           const TwoPowers fit =
-            fit_measure(way.records, measure, study.reference());
-          if (fit.n_samples < 3)
-            continue;
-          Json entry = to_json(way.way);
-          entry.update({{"error", measure},
-                        {"C_h", fit.c_1},
-                        {"p", fit.p},
-                        {"p_is_fitted", fit.p_is_fitted},
-                        {"C_k", fit.c_2},
-                        {"q", fit.q},
-                        {"q_is_fitted", fit.q_is_fitted},
-                        {"m", fit.m},
-                        {"rms_of_log", fit.rms},
-                        {"worst_factor", fit.worst_factor},
-                        {"worst_run", way.records[fit.worst_sample]->name}});
-          result.push_back(entry);
+            fit_measure(result.records, measure, study.reference());
+          if (fit.misfit.n_samples >= 3)
+            fits.push_back(entry(
+              result.variant,
+              {{"error", measure},
+               {"C_h", fit.c_1},
+               {"p", fit.p},
+               {"p_is_fitted", fit.p_is_fitted},
+               {"C_k", fit.c_2},
+               {"q", fit.q},
+               {"q_is_fitted", fit.q_is_fitted},
+               {"m", fit.m},
+               {"rms_of_log", fit.misfit.rms},
+               {"worst_factor", fit.misfit.worst_factor},
+               {"worst_run", result.records[fit.misfit.worst_sample]->name}}));
         }
-      return result;
     }
 
 
 
-    Json
-    costs(const Study &study, const WayResult &way)
+    void
+    add_cost(const Study &study, const VariantResult &result, Json &costs)
     {
-      const CostModel cost  = cost_of(way.records, study.runs.scene.dimension);
-      const auto      power = [](const TwoPowers &fit) -> Json {
+      const CostModel cost =
+        cost_of(result.records, study.runs.scene.dimension);
+      const auto power = [](const TwoPowers &fit) -> Json {
         return {{"c", fit.c_1},
                 {"a", fit.p},
                 {"constant", fit.c_2},
-                {"rms_of_log", fit.rms}};
+                {"rms_of_log", fit.misfit.rms}};
       };
-      Json result = to_json(way.way);
-      result.update({{"seconds_per_set_up", power(cost.set_up)},
-                     {"seconds_per_step", power(cost.step)},
-                     {"c_dofs_a_steps", power(cost.simple)},
-                     {"memory_MB", power(cost.memory_model)},
-                     {"rms_of_log", cost.rms},
-                     {"worst_factor", cost.worst_factor}});
-      return result;
+      costs.push_back(entry(result.variant,
+                            {{"seconds_per_set_up", power(cost.set_up)},
+                             {"seconds_per_step", power(cost.step)},
+                             {"c_dofs_a_steps", power(cost.simple)},
+                             {"memory_MB", power(cost.memory_model)},
+                             {"rms_of_log", cost.misfit.rms},
+                             {"worst_factor", cost.misfit.worst_factor}}));
     }
 
 
 
-    Json
-    prices(const WayResult &way)
+    void
+    add_prices(const VariantResult &result, Json &prices)
     {
-      Json result = Json::array();
-      for (const Price &price : way.prices)
+      for (const Price &price : result.prices)
         {
-          Json entry = to_json(way.way);
-          entry.update({{"error", way.measure},
-                        {"tolerance", price.tolerance},
-                        {"in_budget", price.is_in_budget}});
-          if (price.offer)
-            entry.update({{"h", price.offer->h},
-                          {"mesh_level", price.offer->mesh_level},
-                          {"k", price.offer->k},
-                          {"steps", price.offer->steps},
-                          {"dofs", price.offer->dofs},
-                          {"predicted_error", price.offer->error},
-                          {"seconds", price.offer->seconds},
-                          {"memory_MB", price.offer->memory},
-                          {"halving_factor", price.halving}});
-          result.push_back(entry);
+          prices.push_back(entry(result.variant,
+                                 {{"error", result.measure},
+                                  {"tolerance", price.tolerance},
+                                  {"in_budget", price.is_in_budget}}));
+          if (price.run)
+            prices.back().update({{"h", price.run->h},
+                                  {"mesh_level", price.run->mesh_level},
+                                  {"k", price.run->k},
+                                  {"steps", price.run->steps},
+                                  {"dofs", price.run->dofs},
+                                  {"predicted_error", price.run->error},
+                                  {"seconds", price.run->seconds},
+                                  {"memory_MB", price.run->memory},
+                                  {"halving_factor", price.halving}});
         }
-      return result;
     }
 
 
 
     Json
-    json(const Study &study, const bool is_finished)
+    json(const Study                      &study,
+         const std::vector<VariantResult> &results,
+         const Origin                     &origin,
+         const bool                        is_finished)
     {
-      const Origin                from      = origin();
       const std::filesystem::path scene     = study.runs.scene.file;
       const RunRecord            *reference = study.reference();
-      Json                        result{
-        {"scene", scene.stem().string()},
-        {"version", from.program},
-        {"ranks", from.n_ranks},
-        {"machine", from.machine},
-        {"date", from.date},
-        {"finished", is_finished},
-        {"dimension", study.runs.scene.dimension},
-        {"reference", study.has_exact_solution ? "exact" : "finest run"},
-        {"reference_run", reference == nullptr ? "" : reference->name},
-        {"budget", study.parameters.budget},
-        {"fits", Json::array()},
-        {"costs", Json::array()},
-        {"prices", Json::array()}};
-      for (const WayResult &way : analyse(study))
+      Json fits = Json::array(), costs = fits, prices = fits;
+      for (const VariantResult &result : results)
         {
-          for (const Json &fit : fits(study, way))
-            result["fits"].push_back(fit);
-          result["costs"].push_back(costs(study, way));
-          for (const Json &price : prices(way))
-            result["prices"].push_back(price);
+          add_fits(study, result, fits);
+          add_cost(study, result, costs);
+          add_prices(result, prices);
         }
-      return result;
+      return {{"scene", scene.stem().string()},
+              {"version", origin.program},
+              {"ranks", origin.n_ranks},
+              {"machine", origin.machine},
+              {"date", origin.date},
+              {"finished", is_finished},
+              {"dimension", study.runs.scene.dimension},
+              {"reference", study.has_exact_solution ? "exact" : "finest run"},
+              {"reference_run", reference == nullptr ? "" : reference->name},
+              {"budget", study.parameters.budget},
+              {"fits", fits},
+              {"costs", costs},
+              {"prices", prices}};
     }
   } // namespace
 
@@ -219,10 +213,13 @@ namespace Viscoplastic
   void
   write_report(const Study &study, const bool is_finished)
   {
-    replace_file(study.runs.directory + "study.csv", csv(study));
-    replace_file(study.runs.directory + "study.json",
-                 json_text(json(study, is_finished)));
-    replace_file(study.runs.directory + "study.md",
-                 study_as_markdown(study, is_finished));
+    const std::string                directory = study.runs.directory;
+    const std::vector<VariantResult> results   = analyze(study);
+    const Origin                     origin    = Viscoplastic::origin();
+    replace_file(directory + "study.csv", csv(study));
+    replace_file(directory + "study.json",
+                 json_text(json(study, results, origin, is_finished)));
+    replace_file(directory + "study.md",
+                 study_as_markdown(study, results, origin, is_finished));
   }
 } // namespace Viscoplastic

@@ -7,35 +7,33 @@
 
 #include <ctime>
 #include <fstream>
-#include <sstream>
 
 namespace Viscoplastic
 {
-  std::vector<WayResult>
-  analyse(const Study &study)
+  std::vector<VariantResult>
+  analyze(const Study &study)
   {
-    std::vector<WayResult> result;
-    for (const RunKey &way : study.ways())
+    const std::vector<double> tolerances = Utilities::string_to_double(
+      Utilities::split_string_list(study.parameters.target_errors, ','));
+    std::vector<VariantResult> results;
+    for (const MethodVariant &variant : study.variants())
       {
-        WayResult of;
-        of.way     = way;
-        of.records = of_way(study.records(), way);
-        of.measure = best_measure(of.records, study.reference());
-        if (!of.measure.empty())
+        VariantResult result;
+        result.variant = variant;
+        result.records = of_variant(study.records(), variant);
+        result.measure = best_measure(result.records, study.reference());
+        if (!result.measure.empty())
           {
-            of.market = make_market(study.runs,
-                                    of.records,
-                                    of.measure,
-                                    study.reference());
-            of.prices = list_prices(*of.market,
-                                    Utilities::string_to_double(
-                                      Utilities::split_string_list(
-                                        study.parameters.target_errors, ',')),
-                                    study.parameters.budget);
+            result.model = fit_work_precision(study.runs,
+                                              result.records,
+                                              result.measure,
+                                              study.reference());
+            result.prices =
+              list_prices(*result.model, tolerances, study.parameters.budget);
           }
-        result.push_back(of);
+        results.push_back(result);
       }
-    return result;
+    return results;
   }
 
 
@@ -43,18 +41,18 @@ namespace Viscoplastic
   std::string
   prices_in_words(const Study &study)
   {
-    std::ostringstream text;
-    for (const WayResult &way : analyse(study))
-      {
-        if (!way.market)
-          continue;
-        text << "Prices (" << way.way.way() << "), by the "
-             << measure_in_words(way.measure) << ":\n";
-        for (const Price &price : way.prices)
-          text << "  " << in_words(*way.market, price, study.parameters.budget)
-               << '\n';
-      }
-    return text.str();
+    std::string text;
+    for (const VariantResult &result : analyze(study))
+      if (result.model)
+        {
+          text += "Prices (" + result.variant.name() + "), by the " +
+                  measure_in_words(result.measure) + ":\n";
+          for (const Price &price : result.prices)
+            text += "  " +
+                    in_words(*result.model, price, study.parameters.budget) +
+                    '\n';
+        }
+    return text;
   }
 
 

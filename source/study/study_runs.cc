@@ -28,40 +28,46 @@ namespace Viscoplastic
 
 
     /// Do something on rank 0; all ranks learn whether it worked.
-    template <typename Function>
     void
-    on_first_rank(const MPI_Comm communicator, const Function &function)
+    on_first_rank(const MPI_Comm               communicator,
+                  const std::function<void()> &function)
     {
-      std::string failure;
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        {
-          try
-            {
-              function();
-            }
-          catch (const std::exception &exception)
-            {
-              failure = reason(exception);
-            }
-        }
-      failure = Utilities::MPI::broadcast(communicator, failure);
-      AssertThrow(failure.empty(), ExcMessage(failure));
+      fail_together(communicator, [&] {
+        if (Utilities::MPI::this_mpi_process(communicator) == 0)
+          function();
+      });
     }
 
 
 
-    /// Numbers of cells by direction with @p factor times as many.
+    bool
+    is_adaptive(const Parameters &scene)
+    {
+      return scene.refinement.strategy != "none";
+    }
+
+
+
+    /// Numbers of cells by direction, from the arguments of a mesh generator.
+    std::vector<int>
+    subdivisions(const std::string &arguments)
+    {
+      return Utilities::string_to_int(
+        Utilities::split_string_list(arguments.substr(0, arguments.find(':')),
+                                     ','));
+    }
+
+
+
+    /// The arguments with @p factor times as many cells in each direction.
     std::string
     scale_subdivisions(const std::string &arguments, const double factor)
     {
-      const std::size_t colon = arguments.find(':');
-      std::string       result;
-      for (const std::string &n :
-           Utilities::split_string_list(arguments.substr(0, colon), ','))
+      std::string result;
+      for (const int n : subdivisions(arguments))
         result += (result.empty() ? "" : ", ") +
-                  std::to_string(std::max<long>(
-                    1, std::lround(factor * Utilities::string_to_int(n))));
-      return result + ' ' + arguments.substr(colon);
+                  std::to_string(std::max<long>(1, std::lround(factor * n)));
+      return result + ' ' + arguments.substr(arguments.find(':'));
     }
 
 
@@ -135,22 +141,17 @@ namespace Viscoplastic
       int         ierr = MPI_Iallreduce(
         &mine, &sum, 1, MPI_INT, MPI_SUM, communicator, &request);
       AssertThrowMPI(ierr);
-      for (unsigned int i = 0; failed && i < 200; ++i)
+      int done = 0;
+      for (unsigned int i = 0; failed && done == 0; ++i)
         {
-          int done = 0;
-          ierr     = MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-          AssertThrowMPI(ierr);
-          if (done != 0)
-            break;
-          std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        }
-      if (failed)
-        {
-          int done = request == MPI_REQUEST_NULL ? 1 : 0;
-          if (done == 0)
+          if (i == 200)
             return false;
+          ierr = MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+          AssertThrowMPI(ierr);
+          if (done == 0)
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
         }
-      else
+      if (!failed)
         {
           ierr = MPI_Wait(&request, MPI_STATUS_IGNORE);
           AssertThrowMPI(ierr);
@@ -227,10 +228,22 @@ namespace Viscoplastic
   StudyRuns::scene_key() const
   {
     RunKey key;
-    key.strategy = scene.refinement.strategy == "none" ? "uniform" : "adaptive";
-    key.scheme   = scene.time.scheme;
-    key.history  = scene.stress.stress_history;
+    key.variant = {is_adaptive(scene) ? MeshStrategy::adaptive :
+                                        MeshStrategy::uniform,
+                   scene.time.scheme,
+                   scene.stress.stress_history};
     return key;
+  }
+
+
+
+  unsigned int
+  StudyRuns::steps_per_mesh(const MeshStrategy strategy,
+                            const unsigned int n_steps) const
+  {
+    return strategy == MeshStrategy::uniform ? 0 :
+           is_adaptive(scene)                ? scene.refinement.every_n_steps :
+                                               std::max(1u, n_steps / 10);
   }
 
 
@@ -242,11 +255,8 @@ namespace Viscoplastic
     if (scene.geometry.file.empty() &&
         scene.geometry.generator == generator_with_subdivisions)
       {
-        const std::string &arguments = scene.geometry.arguments;
-        int                fewest    = 1 << 20;
-        for (const std::string &cells : Utilities::split_string_list(
-               arguments.substr(0, arguments.find(':')), ','))
-          fewest = std::min(fewest, Utilities::string_to_int(cells));
+        const auto cells  = subdivisions(scene.geometry.arguments);
+        int        fewest = *std::min_element(cells.begin(), cells.end());
         for (; fewest >= 2; fewest = (fewest + 1) / 2)
           ++n;
       }
@@ -266,8 +276,9 @@ namespace Viscoplastic
           c = '_';
       return text;
     };
-    return key.strategy + add(key.scheme, scene.time.scheme) +
-           add(key.history, scene.stress.stress_history) + "_h" +
+    return to_string(key.variant.strategy) +
+           add(key.variant.scheme, scene.time.scheme) +
+           add(key.variant.history, scene.stress.stress_history) + "_h" +
            std::to_string(key.mesh_level) + "_k" +
            std::to_string(key.time_level);
   }
@@ -275,57 +286,58 @@ namespace Viscoplastic
 
 
   std::vector<std::string>
-  StudyRuns::discretisation(const RunKey                  &key,
+  StudyRuns::discretization(const RunKey                  &key,
                             const std::vector<StepsUntil> &steps) const
   {
-    const bool adaptive = key.strategy == "adaptive";
+    const bool adaptive = key.variant.strategy == MeshStrategy::adaptive;
     // Adaptive runs begin one level coarser: from a much coarser mesh,
     // refinement at singular points would leave the rest too coarse.
     const int level = adaptive && key.mesh_level > 0 ? key.mesh_level - 1 :
                                                        key.mesh_level,
-              base  = static_cast<int>(scene.geometry.global_refinements);
+              base  = static_cast<int>(scene.geometry.global_refinements),
+              refinements = std::max(0, base + level);
     AssertThrow(-level <= n_coarser_meshes(),
                 ExcMessage("The mesh of the scene cannot be made coarser by " +
                            std::to_string(-level) +
                            " levels: 'Geometry/Global refinements' = " +
                            std::to_string(base) + "."));
-    const int                refinements = std::max(0, base + level);
-    std::vector<std::string> result{"Geometry/Global refinements=" +
-                                      std::to_string(refinements),
-                                    "Time/Phases=" + write_phases(steps),
-                                    "Time/Scheme=" + key.scheme,
-                                    "Material/Stress history=" + key.history};
+    std::vector<std::string> result;
+    const auto set = [&result](const std::string &entry, const auto &value) {
+      std::ostringstream assignment;
+      assignment << entry << '=' << value;
+      result.push_back(assignment.str());
+    };
+    set("Geometry/Global refinements", refinements);
+    set("Time/Phases", write_phases(steps));
+    set("Time/Scheme", key.variant.scheme);
+    set("Material/Stress history", key.variant.history);
     // Runs have the steps that the study says, or none.
     if (scene.time.stiffness_policy == "subdivide")
-      result.emplace_back("Time/Stiffness policy=refuse");
+      set("Time/Stiffness policy", "refuse");
     if (base + level < 0)
-      result.push_back("Geometry/Arguments=" +
-                       scale_subdivisions(scene.geometry.arguments,
-                                          std::pow(2., base + level)));
-    const bool scene_is_adaptive = scene.refinement.strategy != "none";
+      set("Geometry/Arguments",
+          scale_subdivisions(scene.geometry.arguments,
+                             std::pow(2., base + level)));
     if (!adaptive)
       {
-        result.push_back("Mesh refinement/Strategy=none");
+        set("Mesh refinement/Strategy", "none");
         return result;
       }
-    if (!scene_is_adaptive)
+    if (!is_adaptive(scene))
       {
-        result.push_back("Mesh refinement/Strategy=residual");
-        result.push_back("Mesh refinement/Refinement fraction=0.6");
-        result.push_back("Mesh refinement/Coarsening fraction=0.05");
-        result.push_back("Mesh refinement/Every n steps=" +
-                         std::to_string(std::max(1u, n_steps(steps) / 10)));
+        set("Mesh refinement/Strategy", "residual");
+        set("Mesh refinement/Refinement fraction", 0.6);
+        set("Mesh refinement/Coarsening fraction", 0.05);
+        set("Mesh refinement/Every n steps",
+            steps_per_mesh(key.variant.strategy, n_steps(steps)));
       }
     const double cells =
       n_cells *
       std::pow(2., static_cast<double>(scene.dimension) * key.mesh_level);
-    result.push_back("Mesh refinement/Minimal level=" +
-                     std::to_string(std::min(refinements, base)));
-    result.push_back(
-      "Mesh refinement/Maximal level=" +
-      std::to_string(std::max(refinements, base + key.mesh_level + 2)));
-    result.push_back("Mesh refinement/Cell budget=" +
-                     std::to_string(std::max<long>(1, std::lround(cells))));
+    set("Mesh refinement/Minimal level", std::min(refinements, base));
+    set("Mesh refinement/Maximal level",
+        std::max(refinements, base + key.mesh_level + 2));
+    set("Mesh refinement/Cell budget", std::max<long>(1, std::lround(cells)));
     return result;
   }
 
@@ -334,24 +346,24 @@ namespace Viscoplastic
   std::vector<std::string>
   StudyRuns::overrides_of(const RunKey &key) const
   {
-    std::vector<std::string> result = overrides;
-    const std::string        place  = directory + name(key);
-    for (const std::string &text :
-         discretisation(key,
+    std::vector<std::string> result       = overrides;
+    const std::string        place        = directory + name(key);
+    const bool               is_reference = reference && key == *reference;
+    for (const std::string &assignment :
+         discretization(key,
                         scale_phases(phases, std::pow(2., key.time_level))))
-      result.push_back(text);
-    for (const std::string &text :
+      result.push_back(assignment);
+    for (const std::string &assignment :
          {"Output/Directory=" + place,
           std::string("Output/Fields every=0"),
           std::string("Output/Fields interval=0"),
+          std::string("Output/Reference fields=") +
+            (is_reference ? "true" : "false"),
           std::string("Checkpoint/Every n steps=0"),
           std::string("Checkpoint/Wall time interval=0"),
           "Checkpoint/Directory=" + place + "/checkpoint",
           std::string("Error control/Two-level comparison=false")})
-      result.push_back(text);
-    const bool is_reference = reference && key == *reference;
-    result.push_back(std::string("Output/Reference fields=") +
-                     (is_reference ? "true" : "false"));
+      result.push_back(assignment);
     if (reference && !is_reference)
       result.push_back("Exact solution/Reference directory=" + directory +
                        name(*reference));
@@ -444,7 +456,6 @@ namespace Viscoplastic
 
     Outcome         outcome;
     RunMeasurements measurements;
-    bool            failed = false;
     Console         console(communicator, true, place + "log.txt");
     try
       {
@@ -457,47 +468,40 @@ namespace Viscoplastic
       }
     catch (const std::exception &exception)
       {
-        outcome.failure = reason(exception);
-        failed          = true;
         if (!all_have_failed(true, agreement))
           throw;
+        outcome.failure = reason(exception);
+        return outcome;
       }
-    if (!failed)
-      {
-        AssertThrow(!all_have_failed(false, agreement), ExcInternalError());
-        if (outcome.interruption.empty())
-          {
-            on_first_rank(communicator, [&] {
-              console.check();
-              RunRecord record =
-                make_record(key,
-                            read_table(place + "statistics.csv"),
-                            measurements,
-                            reference.has_value() && !(key == *reference));
-              record.name         = name(key);
-              record.stamp        = run_stamp;
-              record.numbers["h"] = mesh_width(record.number("cells"));
-              const double every  = parameters.refinement.strategy == "none" ?
-                                      0. :
-                                      parameters.refinement.every_n_steps;
-              record.numbers["set_ups"] =
-                every > 0. ?
-                  std::max(1., std::ceil(record.number("steps") / every)) :
-                  1.;
-              std::string &list = record.stamp["overrides"];
-              for (const std::string &assignment : all_overrides)
-                list += (list.empty() ? "" : "; ") + assignment;
-              replace_file(place + "result.json",
-                           to_json(record),
-                           /* to_disk = */ true);
-            });
-            outcome.record = find(key);
-            AssertThrow(outcome.record,
-                        ExcMessage("'" + place +
-                                   "result.json' has changed since it was "
-                                   "written."));
-          }
-      }
+    AssertThrow(!all_have_failed(false, agreement), ExcInternalError());
+    if (!outcome.interruption.empty())
+      return outcome;
+    on_first_rank(communicator, [&] {
+      console.check();
+      RunRecord record    = make_record(key,
+                                     read_table(place + "statistics.csv"),
+                                     measurements,
+                                     reference && !(key == *reference));
+      record.name         = name(key);
+      record.stamp        = run_stamp;
+      record.numbers["h"] = mesh_width(record.number("cells"));
+      const double steps  = record.number("steps");
+      record.numbers["set_ups"] =
+        number_of_set_ups(steps,
+                          steps_per_mesh(key.variant.strategy,
+                                         static_cast<unsigned int>(steps)));
+      std::string &list = record.stamp["overrides"];
+      for (const std::string &assignment : all_overrides)
+        list += (list.empty() ? "" : "; ") + assignment;
+      replace_file(place + "result.json",
+                   to_json(record),
+                   /* to_disk = */ true);
+    });
+    outcome.record = find(key);
+    AssertThrow(outcome.record,
+                ExcMessage("'" + place +
+                           "result.json' has changed since it was "
+                           "written."));
     return outcome;
   }
 } // namespace Viscoplastic

@@ -71,8 +71,8 @@ namespace
         EXPECT_NEAR(fit.q, truth.q, 1e-4);
         EXPECT_NEAR(fit.c_1, truth.c_h, 1e-3 * truth.c_h);
         EXPECT_NEAR(fit.c_2, truth.c_k, 1e-3 * truth.c_k);
-        EXPECT_LT(fit.rms, 1e-5);
-        EXPECT_EQ(fit.n_samples, 10u);
+        EXPECT_LT(fit.misfit.rms, 1e-5);
+        EXPECT_EQ(fit.misfit.n_samples, 10u);
       }
   }
 
@@ -84,9 +84,9 @@ namespace
     const TwoPowers fit = fit_error(ladders(truth, 0.05));
     EXPECT_NEAR(fit.p, 1., 0.1);
     EXPECT_NEAR(fit.q, 1., 0.2);
-    EXPECT_GT(fit.rms, 0.01);
-    EXPECT_LT(fit.rms, 0.06);
-    EXPECT_LT(fit.worst_factor, 1.15);
+    EXPECT_GT(fit.misfit.rms, 0.01);
+    EXPECT_LT(fit.misfit.rms, 0.06);
+    EXPECT_LT(fit.misfit.worst_factor, 1.15);
     // One level beyond the samples.
     const double h = 0.125 / 16, k = 0.05 / 16;
     EXPECT_NEAR(fit(h, k), truth(h, k), 0.1 * truth(h, k));
@@ -102,8 +102,8 @@ namespace
     const TwoPowers fit = fit_error(samples);
     EXPECT_NEAR(fit.c_1, 2., 0.2);
     EXPECT_NEAR(fit.c_2, 3., 0.3);
-    EXPECT_EQ(fit.worst_sample, 4u);
-    EXPECT_NEAR(fit.worst_factor, 3., 0.2);
+    EXPECT_EQ(fit.misfit.worst_sample, 4u);
+    EXPECT_NEAR(fit.misfit.worst_factor, 3., 0.2);
   }
 
 
@@ -160,7 +160,7 @@ namespace
     EXPECT_NEAR(fit.q, 1., 1e-3);
     EXPECT_NEAR(fit.c_1, 2., 0.01);
     EXPECT_NEAR(fit.c_2, 3., 0.01);
-    EXPECT_LT(fit.rms, 1e-4);
+    EXPECT_LT(fit.misfit.rms, 1e-4);
     // Taken for errors, they seem to fall faster.
     EXPECT_GT(fit_error(samples).q, 1.1);
     // The finest of the ladders in its place: its steps are those of the ladder
@@ -171,7 +171,7 @@ namespace
       sample.y =
         2. * (sample.x_1 - corner.x_1) + 3. * (sample.x_2 - corner.x_2);
     const TwoPowers of_corner = fit_error(samples, corner);
-    EXPECT_EQ(of_corner.n_samples, 9u);
+    EXPECT_EQ(of_corner.misfit.n_samples, 9u);
     EXPECT_NEAR(of_corner.c_1, 2., 0.01);
     EXPECT_NEAR(of_corner.c_2, 3., 0.01);
   }
@@ -218,28 +218,28 @@ namespace
     EXPECT_NEAR(fit.c_1, 2., 1e-3);
     EXPECT_NEAR(fit.q, 2., 1e-3);
     EXPECT_NEAR(fit.c_2, 0.03, 1e-4);
-    EXPECT_LT(fit.rms, 1e-4);
+    EXPECT_LT(fit.misfit.rms, 1e-4);
     // An elastic body has no error of the steps.
     const TwoPowers elastic =
       fit_error_parts(samples, space, std::vector<double>(samples.size(), 0.));
     EXPECT_EQ(elastic.c_2, 0.);
-    EXPECT_EQ(elastic.n_samples, samples.size());
+    EXPECT_EQ(elastic.misfit.n_samples, samples.size());
   }
 
 
 
   TEST(StudyFit, UnusableSamples)
   {
-    EXPECT_EQ(fit_error({}).n_samples, 0u);
-    EXPECT_EQ(
-      fit_error({{0.1, 0.1, 0.}, {0.1, 0.2, nan}, {0.2, 0.1, 1e-15}}).n_samples,
-      0u);
+    EXPECT_EQ(fit_error({}).misfit.n_samples, 0u);
+    EXPECT_EQ(fit_error({{0.1, 0.1, 0.}, {0.1, 0.2, nan}, {0.2, 0.1, 1e-15}})
+                .misfit.n_samples,
+              0u);
     auto samples        = ladders({2., 1., 3., 1.});
     samples[1].y        = 0.;
     samples[5].y        = nan;
     samples[7].y        = std::numeric_limits<double>::infinity();
     const TwoPowers fit = fit_error(samples);
-    EXPECT_EQ(fit.n_samples, 7u);
+    EXPECT_EQ(fit.misfit.n_samples, 7u);
     EXPECT_NEAR(fit.c_1, 2., 1e-3);
     // A single one, and equal ones: no order, but a value.
     const TwoPowers one = fit_error({{0.1, 0.2, 0.05}, {0.1, 0.2, 0.05}});
@@ -282,20 +282,20 @@ namespace
                 2e-6 * std::pow(1e6, 1.2) +
                   100. * (1e-3 + 1e-6 * std::pow(1e6, 1.1)),
                 5.);
-    EXPECT_LT(model.worst_factor, 1.01);
-    EXPECT_GT(model.simple.worst_factor, 1.1);
+    EXPECT_LT(model.misfit.worst_factor, 1.01);
+    EXPECT_GT(model.simple.misfit.worst_factor, 1.1);
     // One run: what is believed of sparse solvers.
     const CostModel one = fit_cost({costs()[0]}, 3);
     EXPECT_NEAR(one.step(8e3, 1.) / one.step(1e3, 1.), 16., 1e-3);
-    EXPECT_EQ(fit_cost({}, 2).n_samples, 0u);
+    EXPECT_EQ(fit_cost({}, 2).misfit.n_samples, 0u);
   }
 
 
 
-  Market
-  market()
+  WorkPrecisionModel
+  model()
   {
-    Market result;
+    WorkPrecisionModel result;
     result.error          = fit_error(ladders({2., 1., 3., 1.}));
     result.cost           = fit_cost(costs(), 2);
     result.h              = 0.125;
@@ -318,21 +318,22 @@ namespace
     EXPECT_EQ(write_phases(scale_phases(phases, 0.25)), "1e-3: 3, 4e-3: 9");
     EXPECT_EQ(write_phases(scale_phases(phases, 1e-6)), "1e-3: 1, 4e-3: 1");
     EXPECT_EQ(n_steps(phases), 43u);
+    EXPECT_EQ(write_phases(read_phases("1: 1e3")), "1: 1000");
   }
 
 
 
   TEST(PriceList, CheapestIsCheapest)
   {
-    const Market m     = market();
-    const auto   found = cheapest(m, 0.01);
+    const WorkPrecisionModel m     = model();
+    const auto               found = cheapest(m, 0.01);
     ASSERT_TRUE(found);
     EXPECT_LE(found->error, 0.01);
     // No level and no number of steps is cheaper.
     for (int level = -2; level <= 10; ++level)
       for (double k = 0.05; k > 1e-4; k /= 1.1)
         {
-          const Offer other = offer(m, level, k);
+          const PredictedRun other = predict(m, level, k);
           if (other.error <= 0.01)
             {
               EXPECT_GE(other.seconds, 0.999 * found->seconds);
@@ -346,8 +347,8 @@ namespace
 
   TEST(PriceList, Budget)
   {
-    const Market m    = market();
-    const auto   best = most_accurate(m, 10.);
+    const WorkPrecisionModel m    = model();
+    const auto               best = most_accurate(m, 10.);
     ASSERT_TRUE(best);
     EXPECT_LE(best->seconds, 10.);
     const auto prices = list_prices(m, {0.1, 1e-4}, 10.);
@@ -368,8 +369,8 @@ namespace
 
   TEST(PriceList, StabilityLimit)
   {
-    Market m    = market();
-    m.largest_k = 0.01;
+    WorkPrecisionModel m = model();
+    m.largest_k          = 0.01;
     EXPECT_LE(cheapest(m, 0.5)->k, 0.01);
   }
 
@@ -377,8 +378,8 @@ namespace
 
   TEST(PriceList, ErrorsWithoutOnePart)
   {
-    Market m = market();
-    m.error  = fit_error(ladders({2., 1., 1e-9, 1.}));
+    WorkPrecisionModel m = model();
+    m.error              = fit_error(ladders({2., 1., 1e-9, 1.}));
     // Steps cost nothing: as few as there are phases.
     EXPECT_EQ(cheapest(m, 0.1)->steps, 2u);
     EXPECT_TRUE(std::isfinite(ideal_seconds(m, 0.1)));

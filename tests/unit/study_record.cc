@@ -105,7 +105,9 @@ namespace
   {
     RunRecord record;
     record.name    = "a \"run\"";
-    record.key     = {"adaptive", "backward Euler", "cell means", -1, 2};
+    record.key     = {{MeshStrategy::adaptive, "backward Euler", "cell means"},
+                      -1,
+                      2};
     record.stamp   = {{"ranks", "2"}, {"scene", "17"}};
     record.numbers = {{"h", 1. / 3.},
                       {"steps", 12.},
@@ -151,6 +153,7 @@ namespace
                                      with("-1", "\"one\""),
                                      with("12.0", "true"),
                                      with("\"17\"", "17"),
+                                     with("adaptive", "adoptive"),
                                      with("12.0", "1e999")})
       try
         {

@@ -16,7 +16,7 @@ namespace Viscoplastic
     unsigned int n_steps;
   };
 
-  /// Of a text that TimeSchedule accepts.
+  /// The phases of a text that TimeSchedule accepts.
   std::vector<StepsUntil>
   read_phases(const std::string &phases);
 
@@ -24,16 +24,18 @@ namespace Viscoplastic
   std::vector<StepsUntil>
   scale_phases(std::vector<StepsUntil> phases, const double factor);
 
-  /// As `Time/Phases'.
+  /// The phases as `Time/Phases' has them.
   std::string
   write_phases(const std::vector<StepsUntil> &phases);
 
+  /// The steps of all phases together.
   unsigned int
   n_steps(const std::vector<StepsUntil> &phases);
 
 
-  /// What is known of the costs and errors of a scene.
-  struct Market
+  /// What is known of the errors and costs of a scene, as functions of the mesh
+  /// width h and the longest time step k.
+  struct WorkPrecisionModel
   {
     TwoPowers    error; // of h and k
     CostModel    cost;
@@ -43,11 +45,11 @@ namespace Viscoplastic
     std::vector<StepsUntil> phases;
     /// How many levels the mesh may be coarsened.
     int coarsest_level = 0;
-    /// What was measured, or the limit of stability.
+    /// The longest step that was measured, or the limit of stability.
     double largest_k = std::numeric_limits<double>::infinity();
     /// Steps between new meshes; 0 for a mesh that stays.
     double steps_per_mesh = 0.;
-    /// The ranges of h and k that have been measured, to tell extrapolations.
+    /// The smallest h and k that have been measured, to tell extrapolations.
     double smallest_h = 0., smallest_k = 0.;
 
     double
@@ -58,8 +60,8 @@ namespace Viscoplastic
   };
 
 
-  /// A run that can be ordered, and what it is expected to give.
-  struct Offer
+  /// A run that could be made, and what it is expected to give and to cost.
+  struct PredictedRun
   {
     int                     mesh_level = 0;
     std::vector<StepsUntil> phases;
@@ -71,57 +73,62 @@ namespace Viscoplastic
   };
 
 
-  /// A run on mesh level @p mesh_level with steps of at most @p k.
-  Offer
-  offer(const Market &market, const int mesh_level, const double k);
+  /// The run on mesh level @p mesh_level with steps of at most @p k.
+  PredictedRun
+  predict(const WorkPrecisionModel &model,
+          const int                 mesh_level,
+          const double              k);
 
   /**
    * The cheapest run with an error of at most @p tolerance. Mesh widths halve
    * from level to level, steps are whole in every phase. Nothing if no mesh
    * level up to 12 is fine enough or the model has no samples.
    */
-  std::optional<Offer>
-  cheapest(const Market &market, const double tolerance);
+  std::optional<PredictedRun>
+  cheapest(const WorkPrecisionModel &model, const double tolerance);
 
   /// The run of the smallest error within @p seconds, if any.
-  std::optional<Offer>
-  most_accurate(const Market &market, const double seconds);
+  std::optional<PredictedRun>
+  most_accurate(const WorkPrecisionModel &model, const double seconds);
 
   /// Seconds for an error of exactly @p tolerance if h and k could have any
-  /// value: the smooth curve below all offers.
+  /// value: a smooth curve below those of all runs.
   double
-  ideal_seconds(const Market &market, const double tolerance);
+  ideal_seconds(const WorkPrecisionModel &model, const double tolerance);
 
 
   /// What a tolerance costs.
   struct Price
   {
     double tolerance;
-    /// Absent if no mesh is fine enough.
-    std::optional<Offer> offer;
-    bool                 is_in_budget = false;
-    /// Factor of seconds for half of the error, on the ideal curve.
+    /// The cheapest run; absent if no mesh is fine enough.
+    std::optional<PredictedRun> run;
+    bool                        is_in_budget = false;
+    /// By which factor the ideal seconds grow for half of the error.
     double halving = std::numeric_limits<double>::quiet_NaN();
   };
 
   std::vector<Price>
-  list_prices(const Market              &market,
+  list_prices(const WorkPrecisionModel  &model,
               const std::vector<double> &tolerances,
               const double               budget);
 
   /// One price as a sentence.
   std::string
-  in_words(const Market &market, const Price &price, const double budget);
+  in_words(const WorkPrecisionModel &model,
+           const Price              &price,
+           const double              budget);
 
   /// What halving h, k, or both does to the scene as it is, in sentences.
   std::string
-  next_refinement(const Market &market);
+  next_refinement(const WorkPrecisionModel &model);
 
   /// Seconds for people, small ones with two digits.
   std::string
   seconds_in_words(const double seconds);
 
-  /// Three significant digits, as in 0.0123 or 1.2e-5.
+  /// A number with @p n significant digits, as in 0.0123 or 1.2e-5; large ones
+  /// with all digits before the point.
   std::string
   digits(const double value, const unsigned int n = 3);
 } // namespace Viscoplastic

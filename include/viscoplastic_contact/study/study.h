@@ -6,20 +6,38 @@
 
 #include <viscoplastic_contact/study/study_analysis.h>
 
+#include <array>
 #include <set>
 
 namespace Viscoplastic
 {
+  /// What a sequence of runs refines step by step: the mesh, the time steps, or
+  /// both.
+  enum class Ladder
+  {
+    space,
+    time,
+    both
+  };
+
+  constexpr std::array<Ladder, 3> all_ladders{
+    {Ladder::space, Ladder::time, Ladder::both}};
+
+  /// As `Study/Ladders' and the files of a study have it.
+  std::string
+  to_string(const Ladder ladder);
+
+
   /// A run of a study, made or not.
   struct PlannedRun
   {
     RunKey key;
-    /// Of space, time, both: ladders share runs.
-    std::set<std::string> ladders;
-    bool                  is_reference = false;
-    /// Absent until it is finished.
+    /// Those that the run belongs to: ladders share runs.
+    std::set<Ladder> ladders;
+    bool             is_reference = false;
+    /// Absent until the run is finished.
     std::optional<RunRecord> record;
-    /// Why there is none.
+    /// Why there is no record and will be none.
     std::string skipped;
   };
 
@@ -50,12 +68,13 @@ namespace Viscoplastic
 
     StudyRuns             runs;
     const StudyParameters parameters;
-    /// Or fields of a reference of the user's.
+    /// Whether the scene knows what errors are, from an exact solution or the
+    /// fields of a reference of the user's.
     const bool has_exact_solution;
 
     std::vector<PlannedRun> plan;
 
-    /// Finished ones.
+    /// The records of finished runs, from cheap to expensive.
     Records
     records() const;
 
@@ -64,9 +83,10 @@ namespace Viscoplastic
     const RunRecord *
     reference() const;
 
-    /// The ways to compute of which there are runs, in the order of the plan.
-    std::vector<RunKey>
-    ways() const;
+    /// The method variants of which there are finished runs, in the order of
+    /// the plan.
+    std::vector<MethodVariant>
+    variants() const;
 
   private:
     void
@@ -90,16 +110,17 @@ namespace Viscoplastic
     double
     expected_seconds(const RunKey &key) const;
 
-    /// Write the files, and study.md with @p is_finished in its headline.
+    /// Write the files, which say whether the study @p is_finished.
     void
     report(const bool is_finished) const;
 
+    /// Print what a finished run has given and how long the others will take.
     void
     announce(const PlannedRun &run, const double elapsed) const;
 
-    /// Of the ways, from the present records.
+    /// By the name of the method variant, as the present records have it.
     mutable std::map<std::string, CostModel> costs;
-    /// Seconds since the study began.
+    /// When the last report was written, in seconds since the study began.
     double last_report = 0.;
 
     Console           &console;

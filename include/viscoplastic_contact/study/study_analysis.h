@@ -39,47 +39,44 @@ namespace Viscoplastic
   std::string
   measure_in_words(const std::string &measure);
 
-  /// Those of one way to compute.
+  /// The records of one method variant.
   Records
-  of_way(const Records &records, const RunKey &way);
+  of_variant(const Records &records, const MethodVariant &variant);
 
-  /// Errors by h and k, for fit_error().
-  std::vector<Sample>
-  error_samples(const Records     &records,
-                const std::string &measure,
-                const RunRecord   *reference);
-
-  /// The fit of errors; that of estimates is by their parts.
+  /// The fit of the errors in a measure; that of estimates is by their parts.
   TwoPowers
   fit_measure(const Records     &records,
               const std::string &measure,
               const RunRecord   *reference);
 
+  /// The fit of seconds and memory.
   CostModel
   cost_of(const Records &records, const unsigned int dim);
 
-  /// Fits to runs of one way. There must be a run.
-  Market
-  make_market(const StudyRuns   &runs,
-              const Records     &records,
-              const std::string &measure,
-              const RunRecord   *reference);
+  /// All that follows from runs of one method variant. There must be a run.
+  WorkPrecisionModel
+  fit_work_precision(const StudyRuns   &runs,
+                     const Records     &records,
+                     const std::string &measure,
+                     const RunRecord   *reference);
 
 
-  /// Three values on meshes and with steps that halve each time.
+  /// Richardson extrapolation of three values, on meshes and with steps that
+  /// halve each time.
   struct Richardson
   {
     std::string           quantity;
     std::array<double, 3> values;
     double                order, extrapolated;
-    /// Of the last value, relative to the size of the quantity.
+    /// That of the last value, relative to the size of the quantity.
     double error;
     /// Whether the differences shrink with an order between 1/2 and 3, so that
     /// the last value can serve as a reference.
     bool is_trustworthy;
   };
 
-  /// For every quantity of interest, of runs from coarse to fine.
+  /// The extrapolation of every quantity of interest, of runs from coarse to
+  /// fine.
   std::vector<Richardson>
   extrapolate(const std::array<const RunRecord *, 3> &runs);
 

@@ -3,19 +3,18 @@
 
 #include <viscoplastic_contact/study/study_fit.h>
 
-#include <limits>
 #include <vector>
 
 namespace Viscoplastic
 {
-  // What a ladder of runs says of cost: powers of the number of unknowns in
+  // What the runs of a study say of cost: powers of the number of unknowns in
   // seconds and memory. Pure functions of numbers.
 
   /// What one run has cost.
   struct CostSample
   {
     double dofs, steps, n_set_ups;
-    /// Of all set-ups, and of all.
+    /// Of all set-ups together, and of the whole run.
     double set_up_seconds, seconds;
     double memory; // MB
   };
@@ -30,11 +29,8 @@ namespace Viscoplastic
     TwoPowers set_up, step, memory_model;
     /// seconds = c dofs^a steps, for comparison.
     TwoPowers simple;
-    /// Of log(predicted/measured seconds), and the largest factor between.
-    double       rms          = std::numeric_limits<double>::quiet_NaN();
-    double       worst_factor = 1.;
-    unsigned int worst_sample = 0;
-    unsigned int n_samples    = 0;
+    /// That of the seconds.
+    Misfit misfit;
 
     double
     seconds(const double dofs,
@@ -52,4 +48,9 @@ namespace Viscoplastic
   /// in 2D, dofs^(4/3) in 3D.
   CostModel
   fit_cost(const std::vector<CostSample> &samples, const unsigned int dim);
+
+  /// How often a run of @p steps is set up, once for each of its meshes: there
+  /// is a new one after @p steps_per_mesh, or never if that is 0.
+  double
+  number_of_set_ups(const double steps, const double steps_per_mesh);
 } // namespace Viscoplastic

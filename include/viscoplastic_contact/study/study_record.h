@@ -8,25 +8,57 @@
 
 namespace Viscoplastic
 {
+  /// How the mesh of a run comes about: it is refined everywhere, or where the
+  /// error estimator says.
+  enum class MeshStrategy
+  {
+    uniform,
+    adaptive
+  };
+
+  /// As `Study/Strategies' and the files of a study have it.
+  std::string
+  to_string(const MeshStrategy strategy);
+
+  /// The inverse. Throws ExcMessage for any other text.
+  MeshStrategy
+  to_mesh_strategy(const std::string &name);
+
+
+  /// How a run is computed, whatever its mesh width and its time steps.
+  struct MethodVariant
+  {
+    MeshStrategy strategy = MeshStrategy::uniform;
+    /// Values of `Time/Scheme' and `Material/Stress history'.
+    std::string scheme, history;
+
+    /// All three as text.
+    std::string
+    name() const
+    {
+      return to_string(strategy) + ", " + scheme + ", " + history;
+    }
+
+    bool
+    operator==(const MethodVariant &other) const
+    {
+      return strategy == other.strategy && scheme == other.scheme &&
+             history == other.history;
+    }
+  };
+
+
   /// Which run of a study.
   struct RunKey
   {
-    std::string strategy = "uniform"; // or adaptive
-    std::string scheme, history;
+    MethodVariant variant;
     /// Halvings of h and k from those of the scene; negative: doublings.
     int mesh_level = 0, time_level = 0;
-
-    /// The way to compute, without the levels.
-    std::string
-    way() const
-    {
-      return strategy + ", " + scheme + ", " + history;
-    }
 
     bool
     operator==(const RunKey &other) const
     {
-      return way() == other.way() && mesh_level == other.mesh_level &&
+      return variant == other.variant && mesh_level == other.mesh_level &&
              time_level == other.time_level;
     }
   };
@@ -84,10 +116,9 @@ namespace Viscoplastic
   /**
    * The numbers of a finished run. Errors are relative: the largest of all
    * steps over the largest norm of the exact solution; estimates are relative
-   * to the largest energy norm. With @p is_difference they are differences to
+   * to the largest energy norm. With @p is_difference errors are differences to
    * another run, at few times: then the largest norms of the run itself count,
-   * too. Numbers of unknowns and cells are means over
-   * the steps.
+   * too. Numbers of unknowns and cells are means over the steps.
    */
   RunRecord
   make_record(const RunKey          &key,
@@ -96,10 +127,10 @@ namespace Viscoplastic
               const bool             is_difference = false);
 
 
-  /// The errors of a run as norms of fields, relative to the largest norms.
+  /// The columns of errors of fields, relative to the largest norms.
   extern const std::vector<std::string> field_errors;
 
-  /// The parts of the error bar.
+  /// The columns of the estimated error and its parts.
   extern const std::vector<std::string> estimate_parts;
 
 

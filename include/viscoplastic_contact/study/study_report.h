@@ -13,28 +13,27 @@ namespace Viscoplastic
   void
   write_report(const Study &study, const bool is_finished);
 
-  /// The contents of study.md.
-  std::string
-  study_as_markdown(const Study &study, const bool is_finished);
-
   /// The price lists as sentences, one a line.
   std::string
   prices_in_words(const Study &study);
 
 
-  /// What the finished runs of a way to compute say; without a known error
-  /// there is no market.
-  struct WayResult
+  // The parts of write_report():
+
+  /// What the finished runs of a method variant say; without a known error
+  /// there is neither a model nor a price.
+  struct VariantResult
   {
-    RunKey                way;
-    Records               records;
-    std::string           measure;
-    std::optional<Market> market;
-    std::vector<Price>    prices;
+    MethodVariant                     variant;
+    Records                           records;
+    std::string                       measure;
+    std::optional<WorkPrecisionModel> model;
+    std::vector<Price>                prices;
   };
 
-  std::vector<WayResult>
-  analyse(const Study &study);
+  /// The results of all method variants.
+  std::vector<VariantResult>
+  analyze(const Study &study);
 
 
   /// Where and when numbers were made.
@@ -44,6 +43,15 @@ namespace Viscoplastic
     unsigned int n_ranks;
   };
 
+  /// The origin of numbers that are made here and now.
   Origin
   origin();
+
+
+  /// The contents of study.md.
+  std::string
+  study_as_markdown(const Study                      &study,
+                    const std::vector<VariantResult> &results,
+                    const Origin                     &origin,
+                    const bool                        is_finished);
 } // namespace Viscoplastic

@@ -24,7 +24,8 @@ namespace Viscoplastic
   class StudyRuns
   {
   public:
-    /// @p overrides of all runs, as for Parameters. Throws ExcMessage.
+    /// The runs of the scene that @p files and @p overrides give, as for
+    /// Parameters. Throws ExcMessage.
     StudyRuns(const std::vector<std::string> &files,
               const std::vector<std::string> &overrides,
               const MPI_Comm                  communicator);
@@ -39,7 +40,7 @@ namespace Viscoplastic
     const Parameters               scene;
     /// `study/' in the directory of results.
     const std::string directory;
-    /// Steps of the scene.
+    /// The time steps of the scene.
     const std::vector<StepsUntil> phases;
 
     /// Cells and mesh width of the scene as it is: the largest diameter of a
@@ -56,14 +57,21 @@ namespace Viscoplastic
     void
     lock_directory();
 
-    /// The scene as it is.
+    /// The run of the scene as it is.
     RunKey
     scene_key() const;
+
+    /// After how many of its steps a run has a new mesh: as the scene says if
+    /// that is adaptive, else ten times in all; 0 for uniform meshes.
+    unsigned int
+    steps_per_mesh(const MeshStrategy strategy,
+                   const unsigned int n_steps) const;
 
     /// How often the mesh can be made coarser by halving.
     int
     n_coarser_meshes() const;
 
+    /// The name of a run and of its directory.
     std::string
     name(const RunKey &key) const;
 
@@ -72,12 +80,14 @@ namespace Viscoplastic
     std::vector<std::string>
     overrides_of(const RunKey &key) const;
 
-    /// What overrides_of() says of mesh and steps, for steps of any number.
+    /// Those of the overrides that choose mesh, steps and method, for steps of
+    /// any number.
     std::vector<std::string>
-    discretisation(const RunKey                  &key,
+    discretization(const RunKey                  &key,
                    const std::vector<StepsUntil> &steps) const;
 
-    /// The record of a finished run.
+    /// The record of a run that is finished. One that is damaged or belongs
+    /// to something else does not count.
     std::optional<RunRecord>
     find(const RunKey &key) const;
 
@@ -94,11 +104,12 @@ namespace Viscoplastic
     Outcome
     make(const RunKey &key) const;
 
-    /// Mean number of cells to the mesh width that a uniform mesh would have.
+    /// The width that a uniform mesh with so many cells would have.
     double
     mesh_width(const double n_cells) const;
 
   private:
+    /// What tells a run from those of other scenes and programs.
     std::map<std::string, std::string>
     stamp(const Parameters &parameters) const;
 

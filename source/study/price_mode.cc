@@ -38,11 +38,11 @@ namespace Viscoplastic
 
 
 
-    /// The pilot runs of a scene, finished.
+    /// The pilot runs of a scene, or why there are not all of them.
     struct Pilots
     {
       std::vector<RunRecord> records;
-      std::string            interruption;
+      std::string            failure, interruption;
 
       Records
       all() const
@@ -56,54 +56,31 @@ namespace Viscoplastic
 
 
 
-    /**
-     * Four runs around the levels below @p mesh_level and @p time_level.
-     * Coarse steps may be unstable or fail otherwise: then finer ones follow.
-     */
+    /// Four runs: @p finest, and with h and k each doubled alone and both.
     Pilots
-    make_pilots(const StudyRuns &runs,
-                const int        mesh_level,
-                const int        finest_time_level,
-                Console         &console)
+    make_pilots(const StudyRuns &runs, const RunKey &finest, Console &console)
     {
-      std::string failure;
-      for (int time_level = finest_time_level; time_level <= 1; ++time_level)
+      Pilots pilots;
+      for (const auto &[m, t] : {std::make_pair(-1, -1),
+                                 std::make_pair(-1, 0),
+                                 std::make_pair(0, -1),
+                                 std::make_pair(0, 0)})
         {
-          Pilots pilots;
-          failure.clear();
-          for (const auto &[m, t] : {std::make_pair(-1, -1),
-                                     std::make_pair(-1, 0),
-                                     std::make_pair(0, -1),
-                                     std::make_pair(0, 0)})
+          const RunKey       key{finest.variant,
+                           finest.mesh_level + m,
+                           finest.time_level + t};
+          StudyRuns::Outcome outcome;
+          outcome.record = runs.find(key);
+          if (!outcome.record)
             {
-              RunKey key     = runs.scene_key();
-              key.mesh_level = mesh_level + m;
-              key.time_level = time_level + t;
-              auto record    = runs.find(key);
-              if (!record)
-                {
-                  console.show_status("Pilot run " + runs.name(key));
-                  StudyRuns::Outcome outcome = runs.make(key);
-                  if (!outcome.interruption.empty())
-                    {
-                      pilots.interruption = outcome.interruption;
-                      return pilots;
-                    }
-                  if (!outcome.record)
-                    {
-                      failure = outcome.failure;
-                      break;
-                    }
-                  record = std::move(outcome.record);
-                }
-              pilots.records.push_back(*record);
+              console.show_status("Pilot run " + runs.name(key));
+              outcome = runs.make(key);
             }
-          if (failure.empty())
-            return pilots;
+          if (!outcome.record)
+            return {{}, outcome.failure, outcome.interruption};
+          pilots.records.push_back(*outcome.record);
         }
-      AssertThrow(false,
-                  ExcMessage("The pilot runs for --price fail: " + failure));
-      return Pilots();
+      return pilots;
     }
 
 
@@ -150,17 +127,22 @@ namespace Viscoplastic
                   std::to_string(scene.geometry.global_refinements) +
                   "; give a mesh twice or four times as coarse and refine it "
                   "once or twice globally."));
-    // Where the finer pilots are.
-    const int          mesh_level = is_small ? 1 : n_coarser >= 2 ? -1 : 0;
-    const unsigned int n          = n_steps(runs.phases);
-    const int          time_level = n >= 8 * runs.phases.size() ? -1 :
-                                    n >= 4 * runs.phases.size() ? 0 :
-                                                                  1;
+    RunKey             finest   = runs.scene_key();
+    const unsigned int n        = n_steps(runs.phases);
+    const std::size_t  n_phases = runs.phases.size();
+    finest.mesh_level           = is_small ? 1 : n_coarser >= 2 ? -1 : 0;
+    finest.time_level = n >= 8 * n_phases ? -1 : n >= 4 * n_phases ? 0 : 1;
 
     runs.lock_directory();
-    const Pilots pilots = make_pilots(runs, mesh_level, time_level, console);
+    Pilots pilots = make_pilots(runs, finest, console);
+    // Long steps may be unstable or fail otherwise: then shorter ones follow.
+    while (!pilots.failure.empty() && ++finest.time_level <= 1)
+      pilots = make_pilots(runs, finest, console);
     if (!pilots.interruption.empty())
       return pilots.interruption;
+    AssertThrow(pilots.failure.empty(),
+                ExcMessage("The pilot runs for --price fail: " +
+                           pilots.failure));
     double pilot_seconds = 0.;
     out << "Pilot runs:\n";
     const std::string measure = best_measure(pilots.all(), nullptr);
@@ -209,7 +191,7 @@ namespace Viscoplastic
     const Parameters  parameters(command_line.files, overrides);
     RunMeasurements   measurements;
     const std::string interruption =
-      run_scene(parameters, console, command_line.restart, &measurements);
+      run_scene(parameters, console, command_line.restart, measurements);
     if (!interruption.empty())
       return interruption;
 

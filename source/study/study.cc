@@ -208,10 +208,17 @@ namespace Viscoplastic
 
 
 
-  void
-  Study::announce(const PlannedRun &run, const double elapsed) const
+  double
+  Study::elapsed() const
   {
-    const RunRecord   &record = *run.record;
+    return Utilities::MPI::broadcast(MPI_COMM_WORLD, timer.wall_time());
+  }
+
+
+
+  void
+  Study::announce(const RunRecord &record) const
+  {
     std::ostringstream text;
     text << std::setprecision(3) << record.name << ": "
          << std::lround(record.number("cells")) << " cells, "
@@ -234,10 +241,10 @@ namespace Viscoplastic
         }
     if (n_left > 0)
       {
+        const double in_budget = std::max(0., parameters.budget - elapsed());
         text << "; " << n_left << " left, about " << seconds_in_words(seconds);
-        if (elapsed + seconds > parameters.budget)
-          text << " of which "
-               << seconds_in_words(std::max(0., parameters.budget - elapsed))
+        if (seconds > in_budget)
+          text << " of which " << seconds_in_words(in_budget)
                << " are in the budget";
       }
     out << text.str() << std::endl;
@@ -245,35 +252,28 @@ namespace Viscoplastic
 
 
 
-  unsigned int
+  void
   Study::find_finished()
   {
-    unsigned int n = 0;
     for (PlannedRun &run : plan)
-      {
-        run.record = runs.find(run.key);
-        costs.clear();
-        n += run.record ? 1 : 0;
-      }
-    return n;
+      run.record = runs.find(run.key);
+    costs.clear();
   }
 
 
 
   std::string
-  Study::make(PlannedRun &run, const Timer &timer)
+  Study::make(PlannedRun &run)
   {
-    const auto elapsed = [&timer] {
-      return Utilities::MPI::broadcast(MPI_COMM_WORLD, timer.wall_time());
-    };
-    const std::string name   = runs.name(run.key);
-    const double      before = elapsed(), seconds = expected_seconds(run.key);
-    const bool        is_known = std::isfinite(seconds);
-    if (before + (is_known ? seconds : 0.) > parameters.budget)
+    const std::string name      = runs.name(run.key);
+    const double      seconds   = expected_seconds(run.key);
+    const bool        is_known  = std::isfinite(seconds);
+    const double      in_budget = parameters.budget - elapsed();
+    if ((is_known ? seconds : 0.) > in_budget)
       {
         run.skipped =
           "would take about " + seconds_in_words(seconds) + ", and " +
-          seconds_in_words(std::max(0., parameters.budget - before)) +
+          seconds_in_words(std::max(0., in_budget)) +
           " of 'Study/Budget' = " + seconds_in_words(parameters.budget) +
           " were left";
         out << name << ": left out, it " << run.skipped << std::endl;
@@ -299,10 +299,9 @@ namespace Viscoplastic
       }
     run.record = std::move(outcome.record);
     costs.clear();
-    announce(run, elapsed());
+    announce(*run.record);
     // The fits of a large study take as long as a small run.
-    const double now = elapsed();
-    if (now - last_report > 10.)
+    if (elapsed() - last_report > 10.)
       {
         report(false);
         last_report = elapsed();
@@ -313,13 +312,11 @@ namespace Viscoplastic
 
 
   std::string
-  Study::make_reference(const Timer &timer)
+  Study::make_reference()
   {
-    const auto is_reference = [](const PlannedRun &run) {
-      return run.is_reference;
-    };
-    PlannedRun &last = *std::find_if(plan.begin(), plan.end(), is_reference);
-    runs.reference   = last.key;
+    PlannedRun &last = plan.back(); // nothing costs more
+    Assert(last.is_reference, ExcInternalError());
+    runs.reference = last.key;
     if (runs.find(last.key))
       return "";
     runs.reference.reset();
@@ -331,12 +328,12 @@ namespace Viscoplastic
           run.key.mesh_level == run.key.time_level &&
           run.key.mesh_level + 2 < last.key.mesh_level)
         {
-          const std::string interruption = make(run, timer);
+          const std::string interruption = make(run);
           if (!interruption.empty())
             return interruption;
         }
     runs.reference                 = last.key;
-    const std::string interruption = make(last, timer);
+    const std::string interruption = make(last);
     if (!last.record)
       {
         runs.reference.reset();
@@ -350,23 +347,22 @@ namespace Viscoplastic
   std::string
   Study::run()
   {
-    Timer timer;
     runs.lock_directory();
     out << "Study of " << runs.scene.file << ": " << plan.size() << " runs"
         << std::endl;
     if (!has_exact_solution)
       {
-        const std::string interruption = make_reference(timer);
+        const std::string interruption = make_reference();
         if (!interruption.empty())
           return interruption;
       }
-    const unsigned int n_found = find_finished();
-    if (n_found > 0)
-      out << "Finished already: " << n_found << std::endl;
+    find_finished();
+    if (!records().empty())
+      out << "Finished already: " << records().size() << std::endl;
     for (PlannedRun &run : plan)
       if (!run.record && run.skipped.empty())
         {
-          const std::string interruption = make(run, timer);
+          const std::string interruption = make(run);
           if (!interruption.empty())
             return interruption;
         }

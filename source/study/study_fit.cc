@@ -26,9 +26,8 @@ namespace Viscoplastic
     /// Which of them the samples determine.
     using Choice = std::array<bool, 4>;
 
-    /// Below this a term is not there.
-    constexpr double   log_of_nothing = -60.;
-    constexpr Unknowns smallest_value{{log_of_nothing, 0.25, -60., 0.25}};
+    /// Their ranges. A coefficient of e^-60 means that the term is not there.
+    constexpr Unknowns smallest_value{{-60., 0.25, -60., 0.25}};
     constexpr Unknowns largest_value{{60., 5., 60., 5.}};
     /// Below this share of every sample a term does not show.
     constexpr double invisible_share = 1e-4;
@@ -48,12 +47,13 @@ namespace Viscoplastic
 
 
 
+    /// What a fit goes by, in logarithms.
     struct Problem
     {
-      /// Logarithms of x_1, x_2 (both with the mean 0) and y.
+      /// Those of x_1, x_2 (both with the mean 0) and y.
       std::vector<std::array<double, 3>> samples;
       Prior                              prior;
-      /// Its logarithms in the same way.
+      /// With x_1 and x_2 like those of the samples.
       std::optional<Finer> finer;
 
       /// The residual of a sample is log(fit/sample).
@@ -86,7 +86,8 @@ namespace Viscoplastic
           {{share, share * slope[0], 1. - share, (1. - share) * slope[1]}}};
       }
 
-      /// Those of all samples, with Huber's weights, and two for the prior.
+      /// The equations of all samples, with Huber's weights, and two for the
+      /// prior.
       std::vector<Equation>
       equations(const Unknowns &x) const
       {
@@ -206,10 +207,12 @@ namespace Viscoplastic
         for (const double q : guesses(3))
           for (const double share : {0.05, 0.5, 0.95})
             {
-              Unknowns     x{{mean + std::log(share),
-                              p,
-                          choice[2] ? mean + std::log(1. - share) : fixed[2],
-                              q}};
+              Unknowns x = fixed;
+              x[0]       = mean + std::log(share);
+              x[1]       = p;
+              x[3]       = q;
+              if (choice[2])
+                x[2] = mean + std::log(1. - share);
               const double value = minimize(problem, choice, x);
               if (value < lowest)
                 {
@@ -245,39 +248,6 @@ namespace Viscoplastic
         std::max(1., 1. * equations.size() - n_chosen(choice));
       const double square = sum_of_squares(equations, equations) / n_excess;
       return std::sqrt(std::max(1e-4, square) * std::max(0., variance));
-    }
-
-
-
-    /// Whether the samples have more than one value of a coordinate.
-    bool
-    varies(const Problem &problem, const unsigned int coordinate)
-    {
-      return std::any_of(problem.samples.begin(),
-                         problem.samples.end(),
-                         [&](const auto &sample) {
-                           return std::abs(sample[coordinate] -
-                                           problem.samples[0][coordinate]) >=
-                                  same;
-                         });
-    }
-
-
-
-    /// d log x_2 / d log x_1 if one coordinate follows from the other.
-    std::optional<double>
-    slope_of_path(const Problem &problem)
-    {
-      double s_11 = 0., s_12 = 0., s_22 = 0.;
-      for (const auto &sample : problem.samples) // of the mean 0
-        {
-          s_11 += sample[0] * sample[0];
-          s_12 += sample[0] * sample[1];
-          s_22 += sample[1] * sample[1];
-        }
-      if (!(s_11 > 0.) || !(s_22 > 0.) || s_12 * s_12 < 0.998 * s_11 * s_22)
-        return {};
-      return s_12 / s_11;
     }
   } // namespace
 
@@ -392,18 +362,26 @@ namespace Viscoplastic
         problem.finer->x_2 = std::log(finer->x_2) - center[1];
       }
 
-    const bool varies_1 = varies(problem, 0), varies_2 = varies(problem, 1);
-    Unknowns   x{{0., prior.p, log_of_nothing, prior.q}};
-    const std::optional<double> slope = slope_of_path(problem);
-    if (!prior.is_one_term && varies_1 && varies_2 && slope)
+    double s_11 = 0., s_12 = 0., s_22 = 0.;
+    for (const auto &sample : problem.samples)
       {
+        s_11 += sample[0] * sample[0];
+        s_12 += sample[0] * sample[1];
+        s_22 += sample[1] * sample[1];
+      }
+    const bool varies_1 = s_11 > same * same, varies_2 = s_22 > same * same;
+    Unknowns   x{{0., prior.p, smallest_value[2], prior.q}};
+    if (!prior.is_one_term && varies_1 && varies_2 &&
+        s_12 * s_12 >= 0.998 * s_11 * s_22)
+      {
+        // One coordinate follows from the other.
         // Half of one power each: this is all that the samples say.
         result.is_separable = false;
         result.p_is_fitted = result.q_is_fitted = true;
         x = best_fit(problem, {{true, true, false, false}}, x);
         x[0] -= std::log(2.);
         x[2] = x[0];
-        x[3] = x[1] / *slope;
+        x[3] = x[1] * s_11 / s_12;
       }
     else
       {

@@ -65,40 +65,45 @@ namespace Viscoplastic
     std::string
     runs_table(const Study &study, const VariantResult &result)
     {
-      const auto               measures = shown_measures(study);
-      std::ostringstream       text;
-      std::vector<std::string> head{
-        "run", "h", "k", "cells", "unknowns", "steps", "seconds", "MB"};
-      head.insert(head.end(), measures.begin(), measures.end());
-      const bool has_effectivity =
-        std::isfinite(result.records[0]->number("effectivity"));
-      if (has_effectivity)
-        head.push_back("effectivity");
-      text << table_head(head);
+      std::vector<std::string> columns{
+        "h", "k", "cells", "dofs", "steps", "seconds_total", "peak_memory_MB"},
+        head{"run", "h", "k", "cells", "unknowns", "steps", "seconds", "MB"},
+        more = shown_measures(study);
+      if (std::isfinite(result.records[0]->number("effectivity")))
+        more.push_back("effectivity");
+      columns.insert(columns.end(), more.begin(), more.end());
+      head.insert(head.end(), more.begin(), more.end());
+      std::string text = table_head(head);
       for (const RunRecord *record : result.records)
         {
           std::vector<std::string> row{'`' + record->name + '`'};
-          for (const char *name : {"h",
-                                   "k",
-                                   "cells",
-                                   "dofs",
-                                   "steps",
-                                   "seconds_total",
-                                   "peak_memory_MB"})
-            row.push_back(number_or_dash(record->number(name)));
-          for (const std::string &measure : measures)
+          for (const std::string &column : columns)
             row.push_back(
-              number_or_dash(error_of(*record, measure, study.reference())));
-          if (has_effectivity)
-            row.push_back(number_or_dash(record->number("effectivity")));
-          text << table_row(row);
+              number_or_dash(error_of(*record, column, study.reference())));
+          text += table_row(row);
         }
-      return text.str();
+      return text;
     }
 
 
 
-    /// Orders between neighbours of each ladder.
+    /// The finished runs of a method variant in a ladder, the coarsest first.
+    Records
+    runs_of(const Study         &study,
+            const MethodVariant &variant,
+            const Ladder         ladder)
+    {
+      Records result;
+      for (const PlannedRun &run : study.plan)
+        if (run.record && run.key.variant == variant &&
+            run.ladders.count(ladder) > 0)
+          result.push_back(&*run.record);
+      return result;
+    }
+
+
+
+    /// Orders between neighbors of each ladder.
     std::string
     orders_table(const Study &study, const VariantResult &result)
     {
@@ -108,33 +113,26 @@ namespace Viscoplastic
       std::string text = table_head(head);
       for (const Ladder ladder : all_ladders)
         {
-          const RunRecord *last = nullptr;
-          for (const PlannedRun &run : study.plan)
+          const std::string size = ladder == Ladder::time ? "k" : "h";
+          const Records     runs = runs_of(study, result.variant, ladder);
+          for (std::size_t i = 1; i < runs.size(); ++i)
             {
-              if (!run.record || !(run.key.variant == result.variant) ||
-                  run.ladders.count(ladder) == 0)
-                continue;
-              if (last != nullptr)
+              const RunRecord         &from = *runs[i - 1], &to = *runs[i];
+              std::vector<std::string> row{to_string(ladder),
+                                           '`' + from.name + '`',
+                                           '`' + to.name + '`'};
+              bool                     is_known = false;
+              for (const std::string &measure : measures)
                 {
-                  const std::string size = ladder == Ladder::time ? "k" : "h";
-                  std::vector<std::string> row{to_string(ladder),
-                                               '`' + last->name + '`',
-                                               '`' + run.record->name + '`'};
-                  bool                     is_known = false;
-                  for (const std::string &measure : measures)
-                    {
-                      const double order =
-                        std::log(
-                          error_of(*last, measure, study.reference()) /
-                          error_of(*run.record, measure, study.reference())) /
-                        std::log(last->number(size) / run.record->number(size));
-                      row.push_back(number_or_dash(order));
-                      is_known |= std::isfinite(order);
-                    }
-                  if (is_known)
-                    text += table_row(row);
+                  const double order =
+                    std::log(error_of(from, measure, study.reference()) /
+                             error_of(to, measure, study.reference())) /
+                    std::log(from.number(size) / to.number(size));
+                  row.push_back(number_or_dash(order));
+                  is_known |= std::isfinite(order);
                 }
-              last = &*run.record;
+              if (is_known)
+                text += table_row(row);
             }
         }
       return text;
@@ -276,15 +274,12 @@ namespace Viscoplastic
                << ". The finest run there is has taken its place, and errors "
                   "near it are too small.\n";
 
-      // The finest three of the diagonal.
-      const MethodVariant variant{MeshStrategy::uniform,
-                                  study.plan.back().key.variant.scheme,
-                                  study.plan.back().key.variant.history};
-      Records             diagonal;
-      for (const PlannedRun &run : study.plan)
-        if (run.record && run.key.mesh_level == run.key.time_level &&
-            run.key.variant == variant)
-          diagonal.push_back(&*run.record);
+      // The finest three of those with equal levels.
+      const MethodVariant &last = study.plan.back().key.variant;
+      const Records        diagonal =
+        runs_of(study,
+                {MeshStrategy::uniform, last.scheme, last.history},
+                Ladder::both);
       if (diagonal.size() < 3)
         return text.str();
       const std::size_t n = diagonal.size();
@@ -309,9 +304,6 @@ namespace Viscoplastic
                            r.is_trustworthy ? "good" : "not to be trusted"});
       return text.str();
     }
-
-
-
   } // namespace
 
 

@@ -93,12 +93,11 @@ namespace Viscoplastic
     run_scene_in(const Parameters          &parameters,
                  Console                   &console,
                  const CommandLine::Restart restart,
-                 RunMeasurements           *measurements)
+                 RunMeasurements           &measurements)
     {
       ViscoplasticContact<dim> problem(parameters, console);
       const std::string        interruption = problem.run(restart);
-      if (measurements != nullptr)
-        measurements->seconds = problem.seconds();
+      measurements.seconds                  = problem.seconds();
       return interruption;
     }
 
@@ -167,15 +166,14 @@ namespace Viscoplastic
   run_scene(const Parameters          &parameters,
             Console                   &console,
             const CommandLine::Restart restart,
-            RunMeasurements           *measurements)
+            RunMeasurements           &measurements)
   {
     reset_peak_memory();
     const std::string interruption =
       parameters.dimension == 2 ?
         run_scene_in<2>(parameters, console, restart, measurements) :
         run_scene_in<3>(parameters, console, restart, measurements);
-    if (measurements != nullptr)
-      measurements->peak_memory = peak_memory(MPI_COMM_WORLD);
+    measurements.peak_memory = peak_memory(MPI_COMM_WORLD);
     return interruption;
   }
 
@@ -464,7 +462,7 @@ namespace Viscoplastic
                     console,
                     may_restart ? CommandLine::Restart::automatic :
                                   CommandLine::Restart::no,
-                    &measurements);
+                    measurements);
       }
     catch (const std::exception &exception)
       {

@@ -56,7 +56,8 @@ namespace Viscoplastic
   class Study
   {
   public:
-    /// Throws ExcMessage.
+    /// The study that the scene in @p files with @p overrides asks for. Throws
+    /// ExcMessage.
     Study(const std::vector<std::string> &files,
           const std::vector<std::string> &overrides,
           Console                        &console);
@@ -72,9 +73,10 @@ namespace Viscoplastic
     /// fields of a reference of the user's.
     const bool has_exact_solution;
 
+    /// All runs, the cheapest first.
     std::vector<PlannedRun> plan;
 
-    /// The records of finished runs, from cheap to expensive.
+    /// The records of finished runs, the cheapest first.
     Records
     records() const;
 
@@ -89,21 +91,26 @@ namespace Viscoplastic
     variants() const;
 
   private:
+    /// Decide which runs there are. Throws ExcMessage.
     void
     make_plan();
 
-    /// Make a run unless it is too long; @p timer runs since the study began.
-    /// Returns the sentence of a signal.
+    /// Make a run unless it takes too long. Returns the sentence of a signal.
     std::string
-    make(PlannedRun &run, const Timer &timer);
+    make(PlannedRun &run);
 
-    /// Make the reference run, if there is time for it.
+    /// Make the reference run, if there is time for it. Returns the sentence of
+    /// a signal.
     std::string
-    make_reference(const Timer &timer);
+    make_reference();
 
-    /// Look for records of finished runs; returns how many there are.
-    unsigned int
+    /// Look for records of finished runs.
+    void
     find_finished();
+
+    /// Seconds since the study began, the same on all ranks.
+    double
+    elapsed() const;
 
     /// What a run will take, from those that are finished; not a number if that
     /// cannot be known yet.
@@ -116,11 +123,13 @@ namespace Viscoplastic
 
     /// Print what a finished run has given and how long the others will take.
     void
-    announce(const PlannedRun &run, const double elapsed) const;
+    announce(const RunRecord &record) const;
 
-    /// By the name of the method variant, as the present records have it.
+    /// Fits to the present records, by the name of the method variant.
     mutable std::map<std::string, CostModel> costs;
-    /// When the last report was written, in seconds since the study began.
+    /// Runs since the study began.
+    Timer timer;
+    /// When the last report was written.
     double last_report = 0.;
 
     Console           &console;

@@ -77,7 +77,7 @@ namespace Viscoplastic
     }
   };
 
-  /// Throws ExcMessage if there is no table in @p file.
+  /// The table in @p file. Throws ExcMessage if there is none.
   Table
   read_table(const std::string &file);
 
@@ -96,18 +96,19 @@ namespace Viscoplastic
   {
     RunKey      key;
     std::string name;
-    /// Of the scene and the program, by name: a record with another stamp
-    /// belongs to something else.
+    /// What identifies the scene and the program, by name: a record with
+    /// another stamp belongs to something else.
     std::map<std::string, std::string> stamp;
-    /// By the name of their column in study.csv.
+    /// Sizes, costs and errors, by the name of their column in study.csv.
     std::map<std::string, double> numbers;
     /// Quantities of interest at the end, by name, in the order of the table.
     std::vector<std::pair<std::string, double>> quantities;
 
-    /// Not a number if there is none of this name.
+    /// The number of this name; not a number if there is none.
     double
     number(const std::string &column) const;
 
+    /// The quantity of interest of this name; not a number if there is none.
     double
     quantity(const std::string &column) const;
   };

@@ -119,13 +119,13 @@ namespace Viscoplastic
 
 
   /**
-   * Run a scene. Returns the sentence of a signal, if one has ended it early;
-   * @p measurements may be null. Collective.
+   * Run a scene and measure it. Returns the sentence of a signal, if one has
+   * ended the run early. Collective.
    */
   std::string
   run_scene(const Parameters          &parameters,
             Console                   &console,
             const CommandLine::Restart restart,
-            RunMeasurements           *measurements);
+            RunMeasurements           &measurements);
 
 } // namespace Viscoplastic

@@ -2,7 +2,9 @@
 """Meshes from files: a scene gives the same results as with the generator,
 whatever the format, and no file makes the program crash or hang."""
 
+import os
 import random
+import re
 import runpy
 import shutil
 import subprocess
@@ -122,6 +124,156 @@ class Same(TestCase):
             self.assertTrue((Path(work) / "results" / "statistics.csv").exists())
 
 
+class Converted(TestCase):
+    """contrib/convert_mesh by itself: what it refuses, and how."""
+
+    SCRIPT = runpy.run_path(SOURCE / "contrib" / "convert_mesh")
+
+    @staticmethod
+    def text(suffix, dimension=2):
+        return (MESHES / f"two_materials{'_3d' * (dimension == 3)}{suffix}").read_text()
+
+    def convert(self, text, suffix):
+        with tempfile.NamedTemporaryFile("w", suffix=suffix) as file:
+            file.write(text)
+            file.flush()
+            return self.SCRIPT["convert"](Path(file.name))
+
+    def refused(self, text, suffix, reason):
+        with self.assertRaises(self.SCRIPT["Refused"]) as refused:
+            self.convert(text, suffix)
+        self.assertIn(reason, str(refused.exception))
+
+    def damaged(self, suffix, old, new, reason):
+        text = self.text(suffix)
+        self.assertIn(old, text)
+        self.refused(text.replace(old, new, 1), suffix, reason)
+
+    def test_formats_agree(self):
+        for dimension in 2, 3:
+            ucd, vtk, abaqus = (
+                self.convert(self.text(suffix, dimension), suffix)
+                for suffix in (".ucd", ".vtk", ".inp")
+            )
+            for mesh in vtk, abaqus:
+                self.assertEqual(mesh.points.tolist(), ucd.points.tolist())
+
+            def cells(mesh, dimension=dimension):
+                kind = "quad" if dimension == 2 else "hexahedron"
+                ids = mesh.get_cell_data("gmsh:physical", kind)
+                return mesh.get_cells_type(kind).tolist(), ids.tolist()
+
+            self.assertEqual(cells(vtk), cells(ucd))
+            self.assertEqual(cells(abaqus), cells(ucd))
+
+    def test_other_dialects(self):
+        """Words in lower case, line ends of Windows, pixels and voxels."""
+        for suffix in ".ucd", ".vtk", ".inp":
+            text = self.text(suffix)
+            changed = text.replace("\n", "\r\n")
+            changed = changed.lower() if suffix == ".inp" else changed
+            expected, mesh = self.convert(text, suffix), self.convert(changed, suffix)
+            self.assertEqual(mesh.points.tolist(), expected.points.tolist())
+            for block, other in zip(mesh.cells, expected.cells):
+                self.assertEqual(block.data.tolist(), other.data.tolist())
+        for dimension, kind, nodes in (
+            (2, 8, [0, 1, 3, 2]),
+            (3, 11, [0, 1, 3, 2, 4, 5, 7, 6]),
+        ):
+            n = 2**dimension
+            text = "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+            text += f"POINTS {n} float\n"
+            for i in range(n):
+                text += f"{i % 2 / 10} {i // 2 % 2 / 10} {i // 4 / 10}\n"
+            text += f"CELLS 1 {n + 1}\n{n} {' '.join(map(str, range(n)))}\n"
+            mesh = self.convert(f"{text}CELL_TYPES 1\n{kind}\n", ".vtk")
+            self.assertEqual([block.data.tolist() for block in mesh.cells], [[nodes]])
+            # of single precision, but as it is written
+            self.assertEqual(mesh.points.max(), 0.1)
+
+    def test_other_cells(self):
+        self.refused(
+            "*NODE\n1, 0, 0\n2, 1, 0\n3, 0, 1\n*ELEMENT, TYPE=CPE3\n1, 1, 2, 3\n",
+            ".inp",
+            "as abaqus: line 6: this element is a CPE3; only quadrilaterals and hexahedra",
+        )
+        self.damaged(".inp", "CPE4", "CAX4R", "this element is a CAX4R, which is axisymmetric")
+
+    def test_numbers_beyond_measure(self):
+        for number in (
+            "-99999999999999999999999",
+            "99999999999999999999999",
+            "1000000000001",
+        ):
+            reason = f"expected the number of a node, found '{number}"
+            self.damaged(".inp", "\n1, 0.0", f"\n{number}, 0.0", reason)
+            # meshio takes any number for that of a node
+            self.damaged(".ucd", "\n1 0.0", f"\n{number} 0.0", "as ucd: there is no node 1")
+
+    def test_contradictions(self):
+        inp = self.text(".inp")
+        loop = "*ELSET, ELSET=B\n1\n" + 8 * ("B" + 30 * ",B" + "\n")
+        self.refused(inp + loop, ".inp", "the set 'B' contains itself")
+        self.damaged(".inp", "1, S4", "1, S7", "elements and one of their faces S1, S2")
+        self.damaged(".inp", "1, S4", "1, S5", "a cell has no face 5")
+        self.damaged(".inp", "\n1, 2, 3, 4\n", "\n1, 2, 3, 400\n", "there is no element 400")
+        self.damaged(".inp", "1, 4, 5, 2", "1, 4, 5, 99", "there is no node 99")
+        self.damaged(".inp", "\n2, 0.0", "\n1, 0.0", "line 6: the node 1 is there twice")
+        self.damaged(".ucd", "quad 1 4 5 2", "quad 1 4 5 99", "there is no node 99")
+        self.damaged(".ucd", "1 1 line", "1 -1 line", "the id -1 is not between 0 and 999999999")
+        self.damaged(".vtk", "ASCII", "BINARY", "as vtk: meshio refuses it")
+        self.damaged(".vtk", "4 0 3 4 1", "4 0 3 4 77", "there is no node 77")
+        self.damaged(".vtk", "4 0 3 4 1", "3 0 3 4", "as vtk: meshio refuses it")
+        self.damaged(".vtk", "CELLS 20", "CELLS 21", "20 cells, but line CELLS says 21")
+
+    def test_files_that_end_too_early(self):
+        """Wherever a file is cut, it is refused or has all its cells; ABAQUS files
+        are complete before their sets."""
+        for suffix in ".ucd", ".vtk", ".inp":
+            text = self.text(suffix)
+            n = len(self.convert(text, suffix).get_cells_type("quad"))
+            for size in range(1, len(text), 3):
+                with self.subTest(f"{suffix} cut at {size}"):
+                    try:
+                        mesh = self.convert(text[:size], suffix)
+                    except self.SCRIPT["Refused"]:
+                        continue
+                    if suffix != ".inp":
+                        self.assertEqual(len(mesh.get_cells_type("quad")), n)
+                        self.assertGreater(size, len(text) / 2)
+
+    def test_memory(self):
+        """A count beyond all measure takes no memory."""
+        with tempfile.TemporaryDirectory() as work:
+            file = Path(work) / "mesh.vtk"
+            size = "99999999999999"
+            file.write_text(re.sub(r"(CELLS 20) \d+", rf"\1 {size}", self.text(".vtk")))
+            result = subprocess.run(
+                [SOURCE / "contrib" / "convert_mesh", file], capture_output=True, text=True
+            )
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"^\S+mesh.vtk: cannot be read as vtk: [^\n]*\n$")
+        self.assertEqual(result.stdout, "")
+
+    def test_python_without_meshio(self):
+        with tempfile.TemporaryDirectory() as work:
+            (Path(work) / "meshio.py").write_text("import no_such_module\n")
+            file = MESHES / "two_materials.vtk"
+            overrides = {"Geometry/File": file, "Geometry/Boundary ids": IDS[2]}
+            environment = {**os.environ, "PYTHONPATH": work}
+            (Path(work) / "overrides.prm").write_text(as_prm(overrides))
+            result = subprocess.run(
+                [EXECUTABLE, "--check", scene_file("slab"), f"{work}/overrides.prm"],
+                env=environment,
+                capture_output=True,
+                text=True,
+            )
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertIn(f"The mesh file '{file}' cannot be converted", result.stderr)
+        self.assertIn("run contrib/convert_mesh", result.stderr)
+
+
 class Refused(TestCase):
     """Files that are no meshes: exit code 1 and one sentence."""
 
@@ -161,12 +313,12 @@ class Refused(TestCase):
                     "the file ends where .EndPhysicalNames should be",
                     ranks=ranks,
                 )
-        self.refused("# a comment", ".ucd", "the file ends where")
+        self.refused("# a comment", ".ucd", "as ucd: meshio refuses it")
         self.refused(
             good[".vtk"].replace("4 0 3 4 1", "4 0 3 4000000 1"), ".vtk", "no node 4000000"
         )
         triangle = "3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 0 tri 1 2 3\n"
-        self.refused(triangle, ".inp", "line 5: .* triangle", ranks=2)
+        self.refused(triangle, ".inp", "line 12: .* triangle", ranks=2)
         # copies of itself, which double with each
         loop = "*ELSET, ELSET=B\n1\n" + 8 * ("B" + 30 * ",B" + "\n")
         self.refused(good[".inp"] + loop, ".inp", "the set 'B' contains itself")

@@ -168,9 +168,9 @@ TEST(PieceNormals, ResolveTinyAngles)
   // A step of 1e-9 in the middle of the lower side: an arc cosine of the
   // normals gives zero.
   const TemporaryFile file(
-    "6 4 0 0 0\n1 0 0 0\n2 1 -1e-9 0\n3 2 0 0\n4 2 1 0\n5 1 1 0\n6 0 1 0\n"
-    "1 0 quad 1 2 5 6\n2 0 quad 2 3 4 5\n3 7 line 1 2\n4 7 line 2 3\n",
-    ".ucd");
+    msh("1 0 0 0\n2 1 -1e-9 0\n3 2 0 0\n4 2 1 0\n5 1 1 0\n6 0 1 0\n",
+        "1 3 0 1 2 5 6\n2 3 0 2 3 4 5\n3 1 1 7 1 2\n4 1 1 7 2 3\n"),
+    ".msh");
   const auto mesh = make<2>(from_file(file.name));
   EXPECT_NEAR(piece_normal(*mesh, 7).deviation * numbers::PI / 180.,
               1e-9,
@@ -182,11 +182,11 @@ TEST(PieceNormals, ResolveTinyAngles)
 TEST(MeshChecks, InvertedAndDegenerateCells)
 {
   const auto quadrilateral = [](const std::string &third) {
-    return "4 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 " + third +
-           " 0\n4 0 1 0\n1 0 quad 1 2 3 4\n";
+    return msh("1 0 0 0\n2 1 0 0\n3 " + third + " 0\n4 0 1 0\n",
+               "1 3 0 1 2 3 4\n");
   };
   const auto refused = [&](const std::string &third) {
-    const TemporaryFile file(quadrilateral(third), ".ucd");
+    const TemporaryFile file(quadrilateral(third), ".msh");
     expect_mesh_refused<2>(from_file(file.name), "is inverted or degenerate");
   };
   refused("0.4 0.4"); // not convex
@@ -198,7 +198,7 @@ TEST(MeshChecks, InvertedAndDegenerateCells)
         replaced(quadrilateral("1 1"), "1 2 3 4", "4 3 2 1"),
         replaced(quadrilateral("1 1e-5"), "4 0 1", "4 0 1e-5")})
     {
-      const TemporaryFile file(text, ".ucd");
+      const TemporaryFile file(text, ".msh");
       EXPECT_EQ(make<2>(from_file(file.name))->n_global_active_cells(), 1u);
     }
 }
@@ -222,10 +222,10 @@ TEST(MeshChecks, LengthsWhoseCubesVanish)
 TEST(MeshChecks, BodyInParts)
 {
   // Two squares that meet in nodes that are there twice.
-  const TemporaryFile file("8 2 0 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n"
-                           "5 1 0 0\n6 2 0 0\n7 2 1 0\n8 1 1 0\n"
-                           "1 0 quad 1 2 3 4\n2 0 quad 5 6 7 8\n",
-                           ".ucd");
+  const TemporaryFile file(msh("1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n"
+                               "5 1 0 0\n6 2 0 0\n7 2 1 0\n8 1 1 0\n",
+                               "1 3 0 1 2 3 4\n2 3 0 5 6 7 8\n"),
+                           ".msh");
   expect_mesh_refused<2>(from_file(file.name),
                          "The mesh consists of 2 parts that share no faces, "
                          "e.g. the cells with the centres (0.5 0.5) and (1.5 "

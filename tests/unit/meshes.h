@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 
+#include <algorithm>
 #include <map>
 
 namespace Viscoplastic::Testing
@@ -42,6 +43,21 @@ namespace Viscoplastic::Testing
     const std::size_t at = text.find(what);
     EXPECT_NE(at, std::string::npos) << what;
     return text.replace(at, what.size(), by);
+  }
+
+
+
+  /// A mesh file of Gmsh with these lines of nodes and elements.
+  inline std::string
+  msh(const std::string &nodes, const std::string &elements)
+  {
+    const auto section = [](const std::string &name, const std::string &lines) {
+      return "$" + name + "\n" +
+             std::to_string(std::count(lines.begin(), lines.end(), '\n')) +
+             "\n" + lines + "$End" + name + "\n";
+    };
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + section("Nodes", nodes) +
+           section("Elements", elements);
   }
 
 

@@ -2,6 +2,7 @@
 #include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/mesh/files/mesh_converter.h>
 #include <viscoplastic_contact/mesh/files/mesh_file.h>
 #include <viscoplastic_contact/mesh/files/mesh_reader.h>
 
@@ -41,27 +42,18 @@ namespace Viscoplastic
 
 
 
-    std::string
-    format_of(const std::string &name, const std::string &text)
+    /// The nodes of the faces of a cell, as indices into Element::nodes.
+    std::vector<std::vector<unsigned int>>
+    faces_of_cell(const unsigned int dim)
     {
-      std::string suffix = std::filesystem::path(name).extension();
-      std::transform(suffix.begin(), suffix.end(), suffix.begin(), ::tolower);
-      if (suffix == ".msh")
-        return "msh";
-      if (suffix == ".vtk")
-        return "vtk";
-      if (suffix == ".ucd" || suffix == ".avs")
-        return "ucd";
-      // A suffix of two formats: keywords of ABAQUS begin with a star.
-      if (suffix == ".inp")
-        return text[text.find_first_not_of(" \t\r\n")] == '*' ? "abaqus" :
-                                                                "ucd";
-      AssertThrow(false,
-                  ExcMessage("The format of the mesh file '" + name +
-                             "' cannot be told from its name; set "
-                             "'Geometry/File format' to msh, ucd, vtk or "
-                             "abaqus."));
-      return {};
+      if (dim == 2)
+        return {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+      return {{0, 1, 2, 3},
+              {4, 5, 6, 7},
+              {0, 1, 5, 4},
+              {1, 2, 6, 5},
+              {2, 3, 7, 6},
+              {3, 0, 4, 7}};
     }
 
 
@@ -192,26 +184,22 @@ namespace Viscoplastic
 
   MeshFile
   read_mesh_file(const std::string &name,
-                 const std::string &file_format,
-                 const unsigned int dim)
+                 const std::string &format,
+                 const unsigned int dim,
+                 const MPI_Comm     communicator)
   {
-    std::string       text = content(name);
-    const std::string format =
-      file_format == "automatic" ? format_of(name, text) : file_format;
-    const std::map<std::string, void (*)(MeshReader &)> readers{
-      {"msh", read_msh},
-      {"ucd", read_ucd},
-      {"vtk", read_vtk},
-      {"abaqus", read_abaqus}};
-    const auto read = readers.find(format);
-    AssertThrow(read != readers.end(),
-                ExcMessage("'Geometry/File format' = " + format +
-                           " is none of automatic, msh, ucd, vtk, abaqus."));
+    std::string text   = content(name);
+    std::string suffix = std::filesystem::path(name).extension();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(), ::tolower);
+    const bool is_msh =
+      format == "msh" || (format == "automatic" && suffix == ".msh");
+    if (!is_msh)
+      text = convert_mesh_file(name, format, communicator);
 
     MeshReader reader(std::move(text), dim);
     try
       {
-        read->second(reader);
+        read_msh(reader);
         if (reader.mesh.cells.empty())
           throw std::runtime_error(
             std::string("it has no ") +
@@ -220,10 +208,9 @@ namespace Viscoplastic
                std::string(" but ") +
                  (dim == 2 ? "hexahedra" : "quadrilaterals") +
                  ", and 'Dimension' is " + std::to_string(dim) :
-             format == "msh" ?
-               "; once there are physical groups, Gmsh writes nothing but "
-               "their elements" :
-               ""));
+             is_msh ? "; once there are physical groups, Gmsh writes nothing "
+                      "but their elements" :
+                      ""));
         if (dim == 2 && reader.has_dimension[3])
           throw std::runtime_error("it has hexahedra, and 'Dimension' is 2");
         if (dim == 2)
@@ -236,10 +223,14 @@ namespace Viscoplastic
       }
     catch (const std::exception &exception)
       {
+        // Lines are those of what has been read.
         AssertThrow(false,
                     ExcMessage("The mesh file '" + name +
-                               "' cannot be read as " + format + ": " +
-                               reason(exception) + "."));
+                               "' cannot be read as " +
+                               (is_msh ? "msh" :
+                                         "what contrib/convert_mesh makes of "
+                                         "it") +
+                               ": " + reason(exception) + "."));
       }
     return std::move(reader.mesh);
   }

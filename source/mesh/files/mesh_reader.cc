@@ -65,35 +65,6 @@ namespace Viscoplastic
 
 
 
-  std::string
-  MeshReader::rest_of_line()
-  {
-    const std::size_t end   = std::min(text.find('\n', position), text.size());
-    std::size_t       begin = position, last = end;
-    while (begin < last && is_space(text[begin]))
-      ++begin;
-    while (last > begin && is_space(text[last - 1]))
-      --last;
-    position = end;
-    return text.substr(begin, last - begin);
-  }
-
-
-
-  bool
-  MeshReader::next_line(std::string &result)
-  {
-    position = std::min(text.find('\n', position), text.size());
-    if (position + 1 >= text.size())
-      return false;
-    ++position;
-    ++line;
-    result = rest_of_line();
-    return true;
-  }
-
-
-
   void
   MeshReader::expect(const std::string &keyword)
   {
@@ -105,37 +76,18 @@ namespace Viscoplastic
 
 
   long
-  MeshReader::to_integer(const std::string &word, const std::string &what) const
+  MeshReader::integer(const std::string &what)
   {
     // Ids and numbers of nodes that anyone uses are far below; and signs can
     // be changed and differences taken without a second look.
-    constexpr long largest = 1000000000000;
-    char          *end     = nullptr;
+    constexpr long    largest = 1000000000000;
+    const std::string text    = word(what);
+    char             *end     = nullptr;
     // Beyond its range, this is one end of it.
-    const long value = std::strtol(word.c_str(), &end, 10);
-    if (word.empty() || *end != '\0' || value < -largest || value > largest)
-      fail("expected " + what + ", found " + quoted(word));
+    const long value = std::strtol(text.c_str(), &end, 10);
+    if (*end != '\0' || value < -largest || value > largest)
+      fail("expected " + what + ", found " + quoted(text));
     return value;
-  }
-
-
-
-  double
-  MeshReader::to_number(const std::string &word, const std::string &what) const
-  {
-    char        *end   = nullptr;
-    const double value = std::strtod(word.c_str(), &end);
-    if (word.empty() || *end != '\0' || !std::isfinite(value))
-      fail("expected " + what + ", found " + quoted(word));
-    return value;
-  }
-
-
-
-  long
-  MeshReader::integer(const std::string &what)
-  {
-    return to_integer(word(what), what);
   }
 
 
@@ -143,7 +95,12 @@ namespace Viscoplastic
   double
   MeshReader::number(const std::string &what)
   {
-    return to_number(word(what), what);
+    const std::string text  = word(what);
+    char             *end   = nullptr;
+    const double      value = std::strtod(text.c_str(), &end);
+    if (*end != '\0' || !std::isfinite(value))
+      fail("expected " + what + ", found " + quoted(text));
+    return value;
   }
 
 
@@ -207,21 +164,6 @@ namespace Viscoplastic
         element.nodes[n] = index->second;
       }
     (dimension == dim ? mesh.cells : mesh.faces).push_back(element);
-  }
-
-
-
-  std::vector<std::vector<unsigned int>>
-  faces_of_cell(const unsigned int dim)
-  {
-    if (dim == 2)
-      return {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
-    return {{0, 1, 2, 3},
-            {4, 5, 6, 7},
-            {0, 1, 5, 4},
-            {1, 2, 6, 5},
-            {2, 3, 7, 6},
-            {3, 0, 4, 7}};
   }
 
 

@@ -37,14 +37,6 @@ namespace Viscoplastic
     std::string
     word(const std::string &what);
 
-    /// Up to the end of this line, without blanks at its ends.
-    std::string
-    rest_of_line();
-
-    /// The same of the line after this one; false if there is none.
-    bool
-    next_line(std::string &result);
-
     void
     expect(const std::string &keyword);
 
@@ -60,12 +52,6 @@ namespace Viscoplastic
     /// being a word.
     unsigned long
     count(const std::string &what);
-
-    /// The same of a word that was read before.
-    long
-    to_integer(const std::string &word, const std::string &what) const;
-    double
-    to_number(const std::string &word, const std::string &what) const;
 
     /// The next word as a key of @p shapes.
     const Shape &
@@ -110,29 +96,7 @@ namespace Viscoplastic
   };
 
 
-  /// The nodes of the faces of a cell, as indices into Element::nodes, in the
-  /// order in which ABAQUS numbers faces.
-  std::vector<std::vector<unsigned int>>
-  faces_of_cell(const unsigned int dim);
-
-
-  // One function a format.
-
-  /// Gmsh, version 2 and 4: the id is that of the physical group.
+  /// Read a file of Gmsh, version 2 or 4: the id is that of the physical group.
   void
   read_msh(MeshReader &reader);
-
-  /// AVS UCD: the id is the material.
-  void
-  read_ucd(MeshReader &reader);
-
-  /// VTK's old format: the id is the cell data MaterialID, gmsh:physical or
-  /// CellEntityIds.
-  void
-  read_vtk(MeshReader &reader);
-
-  /// ABAQUS: ids are the numbers at the end of names of surfaces, materials and
-  /// sets of elements.
-  void
-  read_abaqus(MeshReader &reader);
 } // namespace Viscoplastic

@@ -14,37 +14,11 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Levels for which the way down fits into 64 bits; p4est has no more.
+    /// The number of refinement levels that p4est, and therefore CellId, has.
     constexpr unsigned int
     max_level(const unsigned int dim)
     {
       return dim == 2 ? 29 : 18;
-    }
-
-
-
-    /// Where the cell begins along the curve through its coarse cell, and its
-    /// length there.
-    template <int dim>
-    std::uint64_t
-    length(const CellAddress &address)
-    {
-      return std::uint64_t(1) << (dim * (max_level(dim) - address.level));
-    }
-
-    template <int dim>
-    std::uint64_t
-    start(const CellAddress &address)
-    {
-      return address.children * length<dim>(address);
-    }
-
-    template <int dim>
-    bool
-    is_before(const CellAddress &a, const CellAddress &b)
-    {
-      return std::make_pair(a.coarse_cell, start<dim>(a)) <
-             std::make_pair(b.coarse_cell, start<dim>(b));
     }
 
 
@@ -59,22 +33,27 @@ namespace Viscoplastic
 
 
     template <int dim>
-    std::vector<CellAddress>
+    std::vector<CellId>
     unpack_mesh(const std::string &bytes, const unsigned int n_coarse_cells)
     {
-      BinaryReader  archive(bytes);
-      std::uint64_t n;
-      archive      &n;
-      require(n <= bytes.size() / 16);
-      std::vector<CellAddress> cells(n);
-      for (CellAddress &cell : cells)
+      BinaryReader              archive(bytes);
+      std::vector<unsigned int> words;
+      archive                  &words;
+      CellId::binary_type       binary;
+      require(archive.is_at_end() && words.size() % binary.size() == 0);
+      std::vector<CellId> cells;
+      cells.reserve(words.size() / binary.size());
+      for (auto word = words.begin(); word != words.end();
+           word += binary.size())
         {
-          archive &cell.coarse_cell &cell.level &cell.children;
-          require(cell.coarse_cell < n_coarse_cells &&
-                  cell.level <= max_level(dim) &&
-                  cell.children >> (dim * cell.level) == 0);
+          std::copy_n(word, binary.size(), binary.begin());
+          // CellId takes for granted what it reads: coarse cell, level and
+          // dimension, children.
+          require(binary[0] < n_coarse_cells && binary[1] % 4 == dim &&
+                  binary[1] / 4 <= max_level(dim));
+          cells.emplace_back(binary);
+          require(cells.back().template to_binary<dim>() == binary);
         }
-      require(archive.is_at_end());
       return cells;
     }
 
@@ -93,35 +72,18 @@ namespace Viscoplastic
 
 
   template <int dim>
-  CellAddress
-  CellAddress::of(const typename Triangulation<dim>::cell_iterator &cell)
-  {
-    const CellId id = cell->id();
-    CellAddress  address;
-    address.coarse_cell = id.get_coarse_cell_id();
-    for (const std::uint8_t child : id.get_child_indices())
-      {
-        ++address.level;
-        address.children = (address.children << dim) | child;
-      }
-    return address;
-  }
-
-
-
-  template <int dim>
   std::string
   pack_mesh(const parallel::distributed::Triangulation<dim> &triangulation)
   {
-    BinaryWriter archive;
-    archive &static_cast<std::uint64_t>(
-      triangulation.n_locally_owned_active_cells());
+    std::vector<unsigned int> words;
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const CellAddress address = CellAddress::of<dim>(cell);
-          archive &address.coarse_cell &address.level &address.children;
+          const auto binary = cell->id().template to_binary<dim>();
+          words.insert(words.end(), binary.begin(), binary.end());
         }
+    BinaryWriter archive;
+    archive     &words;
     return archive.bytes();
   }
 
@@ -132,57 +94,46 @@ namespace Viscoplastic
   restore_mesh(const std::vector<std::string>            &parts,
                parallel::distributed::Triangulation<dim> &triangulation)
   {
-    const unsigned int       n_coarse = triangulation.n_cells(0);
-    std::vector<CellAddress> leaves;
+    std::vector<CellId> leaves;
     for (const std::string &part : parts)
       {
-        const auto cells = unpack_mesh<dim>(part, n_coarse);
+        const auto cells = unpack_mesh<dim>(part, triangulation.n_cells(0));
         leaves.insert(leaves.end(), cells.begin(), cells.end());
       }
-    std::sort(leaves.begin(), leaves.end(), is_before<dim>);
-
-    // They must fill each coarse cell, one after the other.
-    std::uint64_t end = length<dim>(CellAddress());
-    unsigned int  n   = 0;
-    for (const CellAddress &leaf : leaves)
-      {
-        if (end == length<dim>(CellAddress()))
-          {
-            require(leaf.coarse_cell == n);
-            ++n;
-            end = 0;
-          }
-        require(leaf.coarse_cell + 1 == n && start<dim>(leaf) == end);
-        end += length<dim>(leaf);
-      }
-    require(n == n_coarse && end == length<dim>(CellAddress()));
+    // A cell comes before its descendants, and these before the next cell.
+    std::sort(leaves.begin(), leaves.end());
 
     const MPI_Comm communicator = triangulation.get_communicator();
     for (unsigned int pass = 0; pass < 3 * max_level(dim); ++pass)
       {
-        bool differs = false;
+        bool differs = false, contradicts = false;
         for (const auto &cell : triangulation.active_cell_iterators())
           if (cell->is_locally_owned())
             {
-              // The leaf in which this cell begins is the cell itself, or part
-              // of it, or contains it.
-              const CellAddress address = CellAddress::of<dim>(cell);
-              const auto        leaf    = std::upper_bound(leaves.begin(),
-                                                 leaves.end(),
-                                                 address,
-                                                 is_before<dim>) -
-                                1;
-              if (leaf->level > address.level)
+              // The leaf before `next' is the cell itself, or contains it, or
+              // ends where the cell begins.
+              const CellId id = cell->id();
+              const auto   next =
+                std::upper_bound(leaves.begin(), leaves.end(), id);
+              if (next != leaves.begin() && *(next - 1) == id)
+                continue;
+              differs = true;
+              if (next != leaves.end() && id.is_ancestor_of(*next))
                 cell->set_refine_flag();
-              else if (leaf->level < address.level)
+              else if (next != leaves.begin() && (next - 1)->is_ancestor_of(id))
                 cell->set_coarsen_flag();
-              differs |= leaf->level != address.level;
+              else
+                contradicts = true;
             }
-        if (Utilities::MPI::max(differs ? 1 : 0, communicator) == 0)
-          return;
+        require(!Utilities::MPI::logical_or(contradicts, communicator));
+        if (!Utilities::MPI::logical_or(differs, communicator))
+          {
+            require(triangulation.n_global_active_cells() == leaves.size());
+            return;
+          }
         triangulation.execute_coarsening_and_refinement();
       }
-    require(false); // neighbours differ by more than one level
+    require(false); // neighbors differ by more than one level
   }
 
 
@@ -265,7 +216,7 @@ namespace Viscoplastic
     // Vertices of owned cells are vertices of owned or ghost cells elsewhere.
     struct LocalCell
     {
-      CellAddress address;
+      CellId      id;
       Cell        cell;
       std::size_t owned_index;
     };
@@ -273,13 +224,12 @@ namespace Viscoplastic
     std::size_t            n_owned = 0;
     for (const auto &cell : space.dof_handler.active_cell_iterators())
       if (!cell->is_artificial())
-        cells.push_back({CellAddress::of<dim>(cell),
-                         cell,
-                         cell->is_locally_owned() ? n_owned++ : 0});
+        cells.push_back(
+          {cell->id(), cell, cell->is_locally_owned() ? n_owned++ : 0});
     std::sort(cells.begin(),
               cells.end(),
               [](const LocalCell &a, const LocalCell &b) {
-                return is_before<dim>(a.address, b.address);
+                return a.id < b.id;
               });
 
     std::vector<DistributedVector> values(n_fields, space.owned_vector());
@@ -290,27 +240,26 @@ namespace Viscoplastic
     std::size_t n_values = 0, n_cells = 0;
     for (std::size_t part = 0; part < meshes.size(); ++part)
       {
-        const auto addresses =
+        const std::vector<CellId> ids =
           unpack_mesh<dim>(meshes[part], triangulation.n_cells(0));
         std::vector<std::uint8_t>          vertices;
         std::vector<double>                nodal, samples, estimate;
         BinaryReader                       archive(fields[part]);
         archive &vertices &nodal &samples &estimate;
-        require(archive.is_at_end() && vertices.size() == addresses.size() &&
-                samples.size() == sampled.size() * n_z * addresses.size() &&
-                estimate.size() == (has_estimate ? addresses.size() : 0));
+        require(archive.is_at_end() && vertices.size() == ids.size() &&
+                samples.size() == sampled.size() * n_z * ids.size() &&
+                estimate.size() == (has_estimate ? ids.size() : 0));
         std::size_t next = 0;
-        for (std::size_t i = 0; i < addresses.size(); ++i)
+        for (std::size_t i = 0; i < ids.size(); ++i)
           {
             const auto local =
               std::lower_bound(cells.begin(),
                                cells.end(),
-                               addresses[i],
-                               [](const LocalCell &a, const CellAddress &b) {
-                                 return is_before<dim>(a.address, b);
+                               ids[i],
+                               [](const LocalCell &a, const CellId &b) {
+                                 return a.id < b;
                                });
-            const bool is_here =
-              local != cells.end() && local->address == addresses[i];
+            const bool is_here = local != cells.end() && local->id == ids[i];
             for (unsigned int v = 0; v < GeometryInfo<dim>::vertices_per_cell;
                  ++v)
               if ((vertices[i] >> v & 1) != 0)
@@ -469,8 +418,6 @@ namespace Viscoplastic
 
 
 #define INSTANTIATE(dim)                                                    \
-  template CellAddress CellAddress::of<dim>(                                \
-    const Triangulation<dim>::cell_iterator &);                             \
   template std::string pack_mesh<dim>(                                      \
     const parallel::distributed::Triangulation<dim> &);                     \
   template void restore_mesh<dim>(                                          \

@@ -24,7 +24,7 @@ namespace Viscoplastic
   {
     const std::string manifest_name = "manifest.txt";
     const std::string any_format    = "viscoplastic_contact checkpoint ";
-    const std::string first_line    = any_format + "1";
+    const std::string first_line    = any_format + "2";
     const std::string unfinished = ".unfinished", outdated = ".outdated";
     // What an unfinished checkpoint has instead of a manifest.
     const std::string list_name       = "unfinished.txt";
@@ -130,9 +130,9 @@ namespace Viscoplastic
       const auto require = [](const bool condition) {
         AssertThrow(condition, ExcMessage("the manifest is damaged"));
       };
-      AssertThrow(text.compare(0, first_line.size() + 1, first_line + '\n') ==
-                    0,
-                  ExcMessage("its format is not that of this program"));
+      AssertThrow(
+        text.compare(0, first_line.size() + 1, first_line + '\n') == 0,
+        ExcMessage("its format is that of another version of the program"));
       const std::size_t last = text.rfind("\nchecksum ");
       require(last != std::string::npos &&
               text.substr(last + 1) ==

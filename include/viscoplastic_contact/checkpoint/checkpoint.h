@@ -17,32 +17,10 @@ namespace Viscoplastic
   // What a checkpoint holds of mesh and fields, in bytes. Nothing depends on
   // the numbering of cells or degrees of freedom or on the number of ranks:
   // values belong to cells and to vertices of cells, and cells are named by
-  // their place in the refinement tree.
+  // their CellId.
   //
   // deal.II's Triangulation::save() and load() do the same, but end the process
   // on a full disk or a damaged file, since p4est does.
-
-  /// A cell by its coarse cell and the way down from it.
-  struct CellAddress
-  {
-    std::uint32_t coarse_cell = 0;
-    std::uint32_t level       = 0;
-    /// The number of the child on each level, from the top, in dim bits each.
-    std::uint64_t children = 0;
-
-    template <int dim>
-    static CellAddress
-    of(const typename Triangulation<dim>::cell_iterator &cell);
-
-    bool
-    operator==(const CellAddress &other) const
-    {
-      return coarse_cell == other.coarse_cell && level == other.level &&
-             children == other.children;
-    }
-  };
-
-
 
   /// The active cells of this rank, in their order.
   template <int dim>

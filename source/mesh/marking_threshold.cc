@@ -11,8 +11,8 @@ namespace Viscoplastic
     // Estimates that differ by less than this belong together if need be.
     constexpr double window = 0.01;
 
-    /// Sorted @p values without those whose neighbours on both sides are near:
-    /// no gap worth looking at begins or ends there.
+    /// Return the sorted @p values without those whose neighbors on both sides
+    /// are near: no gap worth looking at begins or ends there.
     std::vector<double>
     ends_of_gaps(const std::vector<double> &values, const double near)
     {

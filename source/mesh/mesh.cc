@@ -113,9 +113,6 @@ namespace Viscoplastic
                                           "Geometry/Translation"),
                          triangulation);
     }
-
-
-
   } // namespace
 
 

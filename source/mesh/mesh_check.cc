@@ -16,9 +16,9 @@ namespace Viscoplastic
   namespace
   {
     /**
-     * The least value in the cell, at its vertices and Gauss points, of the
-     * determinant of the Jacobian divided by the lengths of its columns: 1 in
-     * a box, the sine of the angle in a parallelogram.
+     * Return the least value in the cell, at its vertices and Gauss points, of
+     * the determinant of the Jacobian divided by the lengths of its columns: 1
+     * in a box, the sine of the angle in a parallelogram.
      */
     template <int dim, typename CellIterator>
     double
@@ -46,8 +46,8 @@ namespace Viscoplastic
 
 
 
-    /// Of coarse cells, which all ranks know; cells of refined meshes are not
-    /// smaller by orders of magnitude that matter.
+    /// Check the lengths of the coarse cells, which all ranks know; those of
+    /// refined meshes are not smaller by orders of magnitude that matter.
     template <int dim>
     void
     check_lengths(
@@ -122,7 +122,8 @@ namespace Viscoplastic
 
 
 
-    /// Follow shared faces of coarse cells, which all ranks know.
+    /// Check that all coarse cells, which all ranks know, are connected by
+    /// faces that they share.
     template <int dim>
     void
     check_connection(

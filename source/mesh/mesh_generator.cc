@@ -56,8 +56,8 @@ namespace Viscoplastic
 
 
 
-    /// deal.II takes negative numbers of cells for huge ones, and asks for all
-    /// the memory that huge ones need.
+    /// Check the numbers of cells: deal.II takes negative ones for huge ones,
+    /// and asks for all the memory that huge ones need.
     void
     check_numbers_of_cells(const GeometryParameters &geometry,
                            const unsigned int        dim,
@@ -112,7 +112,8 @@ namespace Viscoplastic
 
 
 
-    /// As numbers; empty unless all of them are.
+    /// Return the numbers in a list that is separated by commas; none if one of
+    /// them is no number.
     std::vector<double>
     list_of_numbers(const std::string &text)
     {
@@ -130,9 +131,10 @@ namespace Viscoplastic
 
 
     /**
-     * deal.II takes what is not a list of whole numbers of cells for lists of
-     * step sizes, one a direction, and in release mode compares neither their
-     * number nor that of the numbers of cells with the dimension.
+     * Check the arguments of a box: deal.II takes what is not a list of whole
+     * numbers of cells for lists of step sizes, one a direction, and in release
+     * mode compares neither their number nor that of the numbers of cells with
+     * the dimension.
      */
     void
     check_box(const GeometryParameters &geometry, const unsigned int dim)

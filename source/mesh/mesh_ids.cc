@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/ids.h>
-#include <viscoplastic_contact/mesh/files/mesh_file.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 
 #include <cmath>
@@ -28,19 +27,19 @@ namespace Viscoplastic
             entry))
       {}
 
-      /// The new id of a face or cell; @p what it is, for error messages.
+      /// Return the new id of a face or cell; @p what names it in messages.
       template <int structdim>
       unsigned int
       operator()(const TriaAccessor<structdim, dim, dim> &object,
                  const unsigned int                       old_id,
                  const std::string                       &what)
       {
-        // The centre, and near the corners, which neighbours share.
+        // At the center, and near the corners, which neighbours share.
         Point<structdim> xi;
         for (unsigned int d = 0; d < structdim; ++d)
           xi[d] = 0.5;
-        const Point<dim>   centre = object.intermediate_point(xi);
-        const unsigned int id     = value(centre, old_id);
+        const Point<dim>   center = object.intermediate_point(xi);
+        const unsigned int id     = value(center, old_id);
         for (unsigned int v = 0; v < GeometryInfo<structdim>::vertices_per_cell;
              ++v)
           {
@@ -51,7 +50,7 @@ namespace Viscoplastic
               continue;
             std::ostringstream message;
             message << "'" << entry << "' gives " << id << " and " << id_here
-                    << " in the " << what << " with the centre (" << centre
+                    << " in the " << what << " with the centre (" << center
                     << "); an id may change only between " << what
                     << "s of the coarse mesh.";
             AssertThrow(false, ExcMessage(message.str()));

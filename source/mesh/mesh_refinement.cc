@@ -20,7 +20,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// `Boundary refinements': how often by boundary id.
+    /// Parse `Boundary refinements': how often to refine, by boundary id.
     template <int dim>
     std::map<types::boundary_id, unsigned int>
     boundary_refinements(
@@ -55,8 +55,8 @@ namespace Viscoplastic
 
 
 
-    /// About how many cells there will be, from below: each face brings a cell
-    /// to be halved, and 2^(dim-1) faces in its place.
+    /// Estimate from below how many cells there will be: each face brings a
+    /// cell to be halved, and 2^(dim-1) faces in its place.
     template <int dim>
     double
     n_cells_after(

@@ -18,7 +18,8 @@ namespace Viscoplastic
 
   namespace
   {
-    /// Of this computer, in bytes, or less if the process may have less.
+    /// Return the memory of this computer in bytes, or less if the process may
+    /// have less.
     double
     physical_memory()
     {

@@ -10,7 +10,7 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// On which side of the critical value the threshold is to lie.
+  /// The side of the critical value on which the threshold is to lie.
   enum class ThresholdSide
   {
     below,
@@ -18,7 +18,7 @@ namespace Viscoplastic
   };
 
   /**
-   * A threshold among positive values that are spread over ranks.
+   * Choose a threshold among positive values that are spread over ranks.
    *
    * The critical value is the one at which the weights of the values that are
    * not smaller add up to at least @p target. A threshold right beside it would

@@ -8,9 +8,9 @@
 namespace Viscoplastic
 {
   /**
-   * The mesh of a scene before any adaptation: from a generator or a file, with
-   * ids by expression, moved, checked and refined. Collective. Throws
-   * ExcMessage with a sentence for the user.
+   * Make the mesh of a scene as it is before any adaptation: take it from a
+   * generator or a file, give it the ids of the expressions, move, check and
+   * refine it. Collective. Throws ExcMessage with a sentence for the user.
    */
   template <int dim>
   void

@@ -8,8 +8,9 @@ namespace Viscoplastic
   using namespace dealii;
 
   /**
-   * Whether the body is one, and no cell is inverted or degenerate. Collective.
-   * Throws ExcMessage with a sentence for the user.
+   * Check that the body is connected, that no cell is inverted or degenerate,
+   * and that lengths can be computed with. Collective. Throws ExcMessage with a
+   * sentence for the user if not.
    */
   template <int dim>
   void

@@ -8,8 +8,8 @@
 namespace Viscoplastic
 {
   /**
-   * The coarse mesh of `Geometry/Generator'. Collective. Throws ExcMessage with
-   * a sentence for the user, also where the mesh would be larger than any
+   * Make the coarse mesh of `Geometry/Generator'. Collective. Throws ExcMessage
+   * with a sentence for the user, also where the mesh would be larger than any
    * memory.
    */
   template <int dim>

@@ -19,11 +19,12 @@ namespace Viscoplastic
   set_ids(const GeometryParameters                  &geometry,
           parallel::distributed::Triangulation<dim> &triangulation);
 
-  /// The ids of the coarse mesh, the same on all ranks. Collective.
+  /// Return the boundary ids of the coarse mesh, which all ranks know.
   template <int dim>
   std::set<types::boundary_id>
   boundary_ids(const parallel::distributed::Triangulation<dim> &triangulation);
 
+  /// Return the material ids of the coarse mesh, which all ranks know.
   template <int dim>
   std::set<types::material_id>
   material_ids(const parallel::distributed::Triangulation<dim> &triangulation);

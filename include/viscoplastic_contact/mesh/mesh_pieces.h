@@ -7,17 +7,22 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  /// The mean outward normal of a boundary piece, and how far it is from flat.
+  /// The mean outward normal of the boundary faces with one id, which tells
+  /// how far they are from a plane.
   template <int dim>
   struct PieceNormal
   {
     /// Of unit length; exact for pieces along coordinate planes.
     Tensor<1, dim> normal;
-    /// The largest angle between it and a face's normal, in degrees.
+    /// The largest angle between it and the normals of the faces, in degrees.
     double deviation;
   };
 
-  /// Collective.
+  /**
+   * Return the mean normal of the boundary faces with this @p id, each weighted
+   * by its area. Where normals cancel, as all around a body, it is zero and the
+   * deviation 180. Collective.
+   */
   template <int dim>
   PieceNormal<dim>
   piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,

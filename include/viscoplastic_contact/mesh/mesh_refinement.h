@@ -8,8 +8,8 @@
 namespace Viscoplastic
 {
   /**
-   * The refinements of `Geometry/Global refinements' and `Boundary
-   * refinements'. Collective. Throws ExcMessage with a sentence for the user.
+   * Refine the mesh as `Geometry/Global refinements' and `Boundary refinements'
+   * say. Collective. Throws ExcMessage with a sentence for the user.
    */
   template <int dim>
   void

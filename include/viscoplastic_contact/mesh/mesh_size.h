@@ -8,7 +8,7 @@
 namespace Viscoplastic
 {
   /**
-   * Whether meshes of @p n_cells cells in @p dim dimensions are possible: their
+   * Check that a mesh of @p n_cells cells in @p dim dimensions is possible: its
    * unknowns have to be numbered by 32 bits, those of a rank's matrix entries,
    * too, and the mesh has to fit the memory of the computers. To be called
    * before memory is taken, which would not end with an error but with all

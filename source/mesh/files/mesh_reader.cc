@@ -2,11 +2,9 @@
 #include <viscoplastic_contact/base/ids.h>
 #include <viscoplastic_contact/mesh/files/mesh_reader.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <map>
 #include <stdexcept>
 
 namespace Viscoplastic

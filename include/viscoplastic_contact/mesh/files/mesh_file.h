@@ -22,12 +22,13 @@ namespace Viscoplastic
     /// A quadrilateral or hexahedron; a line or quadrilateral as a face.
     struct Element
     {
-      /// Indices of its nodes: around, in 3D around the lower and then around
-      /// the upper face. The first 2, 4 or 8 count.
+      /// The indices of its nodes, in the order of a walk around it; in 3D
+      /// around the lower and then around the upper face. Only the first 2, 4
+      /// or 8 are used.
       std::array<unsigned int, 8> nodes{};
-      /// Of the material or the boundary.
+      /// The id of the material or of the boundary.
       unsigned int id = 0;
-      /// Where the file has it, for error messages.
+      /// The line of the file that has it, for error messages.
       unsigned int line = 0;
     };
 

@@ -17,7 +17,7 @@ namespace Viscoplastic
   class MeshReader
   {
   public:
-    /// A kind of elements.
+    /// A type of elements that a file may have.
     struct Shape
     {
       std::string  name;
@@ -29,54 +29,61 @@ namespace Viscoplastic
 
     // The text
 
-    /// Skips blanks and empty lines.
+    /// Skip blanks and empty lines, and tell whether nothing is left.
     bool
     at_end();
 
-    /// The next word; @p what is expected, for the message if there is none.
+    /// Return the next word. The message if there is none says that @p what
+    /// should be there; the same holds for the functions below.
     std::string
     word(const std::string &what);
 
+    /// Read the next word, which has to be this one.
     void
     expect(const std::string &keyword);
 
-    /// The next word as a whole number, of magnitude 1e12 at most.
+    /// Read a whole number of magnitude 1e12 at most.
     long
     integer(const std::string &what);
 
-    /// As a finite number.
+    /// Read a finite number.
     double
     number(const std::string &what);
 
-    /// As a number of things that the rest of the file can still hold, each
-    /// being a word.
+    /// Read how many words of some kind follow; the rest of the file must be
+    /// able to hold them.
     unsigned long
     count(const std::string &what);
 
-    /// The next word as a key of @p shapes.
+    /// Read a type of elements, one of the keys of @p shapes.
     const Shape &
     shape(const std::map<std::string, Shape> &shapes);
 
+    /// Read the numbers of @p n nodes.
     std::vector<long>
     node_numbers(const unsigned int n);
 
+    /// Read the three coordinates of a node.
     Point<3>
     coordinates();
 
+    /// Throw the message, with the present line in front.
     [[noreturn]] void
     fail(const std::string &message) const;
 
-    /// A word of the file as it can be shown in a message.
+    /// Return a word of the file as a message can show it.
     static std::string
     quoted(const std::string &word);
 
     // The mesh
 
+    /// Add a node; its number must be new.
     void
     add_node(const long number, const Point<3> &x);
 
-    /// Cells and faces are kept; shapes without nodes at all of their 2^dim
-    /// corners, or with more, are refused.
+    /// Add a cell or face; elements of lower dimensions are left out. Shapes
+    /// other than lines, quadrilaterals and hexahedra with nodes at their
+    /// corners are refused.
     void
     add_element(const Shape             &shape,
                 const long               id,
@@ -84,9 +91,9 @@ namespace Viscoplastic
 
     const unsigned int dim;
     MeshFile           mesh;
-    /// Of the last word.
+    /// The line of the word that was read last, counted from 1.
     unsigned int line = 1;
-    /// Whether there were elements of a dimension.
+    /// Whether the file has elements of each dimension.
     std::array<bool, 4> has_dimension{};
 
   private:

@@ -5,17 +5,17 @@
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/ids.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
+#include <viscoplastic_contact/parameters/parameter_text.h>
 
 #include <boost/property_tree/json_parser.hpp>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <functional>
 #include <limits>
+#include <regex>
 #include <sstream>
 
 namespace Viscoplastic
@@ -26,149 +26,164 @@ namespace Viscoplastic
 
 
 
-    /// Names of the children of a node that are entries, or subsections.
-    std::vector<std::string>
-    names(const Tree &node, const bool entries)
+    using Names = std::vector<std::string>;
+    /// Paths `Section/Entry' and values, in the order of declaration.
+    using Entries = std::vector<std::pair<std::string, std::string>>;
+
+    Entries
+    collect(const Tree &node, const std::string &path = "")
     {
-      std::vector<std::string> result;
-      for (const auto &[name, child] : node)
-        if (is_entry(child) == entries)
-          result.push_back(name);
-      return result;
-    }
-
-
-
-    /// The child of exactly this name, or null. A ptree's own search takes
-    /// dots for separators.
-    const Tree *
-    child(const Tree &node, const std::string &name)
-    {
-      const auto position = node.find(name);
-      return position == node.not_found() ? nullptr : &position->second;
-    }
-
-
-
-    /// The subsections that have an entry of this name.
-    void
-    find_owners(const Tree               &node,
-                const std::string        &path,
-                const std::string        &entry,
-                std::vector<std::string> &owners)
-    {
+      Entries entries;
       for (const auto &[name, below] : node)
-        if (!is_entry(below))
+        if (is_entry(below))
+          entries.emplace_back(path + name, below.get<std::string>("value"));
+        else
+          for (auto &entry : collect(below, path + name + '/'))
+            entries.push_back(std::move(entry));
+      return entries;
+    }
+
+
+
+    bool
+    contains(const Names &names, const std::string &name)
+    {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    }
+
+
+
+    /// The names of the entries in @p section, or of its subsections.
+    Names
+    names_in(const std::string &section,
+             const Entries     &entries,
+             const bool         of_subsections)
+    {
+      Names names;
+      for (const auto &[path, value] : entries)
+        if (path.compare(0, section.size(), section) == 0)
           {
-            const Tree *found = child(below, entry);
-            if (found != nullptr && is_entry(*found))
-              owners.push_back("'" + path + name + "'");
-            find_owners(below, path + name + '/', entry, owners);
+            const std::string below = path.substr(section.size());
+            const std::string name  = below.substr(0, below.find('/'));
+            if ((name != below) == of_subsections && !contains(names, name))
+              names.push_back(name);
           }
+      return names;
     }
 
 
 
-    /// "; the nearest is 'a'" or "; there are a, b, c".
+    /// That there is no such entry or subsection, and what may have been meant.
     std::string
-    suggestion(const std::string              &name,
-               const std::vector<std::string> &candidates,
-               const std::string              &what)
+    unknown_name(const ParameterLine &line, const Tree &declared)
     {
-      const std::string nearest = nearest_name(name, candidates);
-      if (!nearest.empty())
-        return "; did you mean '" + nearest + "'?";
-      if (candidates.empty())
-        return "; it has no " + what + ".";
-      return "; its " + what + " are: " + enumeration(candidates, 30) + ".";
-    }
+      const Entries     entries = collect(declared);
+      const bool        opens   = line.is_opening;
+      const std::string what    = opens ? "subsection" : "entry";
+      const std::string parent =
+        line.section.substr(0, line.section.rfind('/'));
+      const std::string said =
+        (parent.empty() ? "there is no " + what :
+                          "'" + excerpt(parent) + "' has no " + what) +
+        " '" + excerpt(line.name) + "'" +
+        (parent.empty() && !opens ? " outside of subsections" : "");
 
-
-
-    /// `boundary3' as the `Boundary 3' that it should be, or nothing.
-    std::string
-    numbered_subsection(const std::string &name)
-    {
-      for (const std::string kind : {"Boundary", "Material"})
-        if (name.size() > kind.size() &&
-            std::equal(
-              kind.begin(), kind.end(), name.begin(), [](char a, char b) {
-                return std::tolower(static_cast<unsigned char>(a)) ==
-                       std::tolower(static_cast<unsigned char>(b));
-              }))
-          {
-            const std::string id = Utilities::trim(name.substr(kind.size()));
-            if (id.size() < 10 &&
-                id.find_first_not_of("0123456789") == std::string::npos)
-              return kind + ' ' + id;
-          }
-      return "";
-    }
-
-
-
-    std::string
-    unknown_section(const ParameterStatement &statement,
-                    const std::size_t         depth,
-                    const Tree               &parent,
-                    const Tree               &root)
-    {
-      const auto       &section = statement.sections[depth];
-      const std::string name    = excerpt(section.name);
-      if (depth == 0)
+      Names outermost = names_in("", entries, opens);
+      if (opens)
         {
-          const std::string message =
-            statement.origin() + ": there is no subsection '" + name + "'";
-          if (name == "Boundary")
-            return message + "; a boundary needs its id, as in `Boundary 0'.";
-          const std::string numbered = numbered_subsection(section.name);
-          if (!numbered.empty())
-            return message + "; did you mean '" + numbered + "'?";
-          return message +
-                 suggestion(section.name, names(parent, false), "subsections");
+          if (line.name == "Boundary")
+            return said + "; a boundary needs its id, as in `Boundary 0'.";
+          // Any number makes a subsection.
+          const std::size_t id = line.name.find_last_not_of("0123456789") + 1;
+          for (const std::string kind : {"Boundary ", "Material "})
+            if (id < line.name.size())
+              outermost.push_back(kind + line.name.substr(id));
+          if (line.number > 0 && !parent.empty() &&
+              contains(outermost, line.name))
+            {
+              const ParameterLine *around = &line;
+              do
+                --around;
+              while (!around->is_opening ||
+                     around->section + around->name != parent);
+              return said +
+                     ", which stands outside of others; is there no `end' to "
+                     "the one that begins in line " +
+                     std::to_string(around->number) + "?";
+            }
         }
-      const auto       &outer   = statement.sections[depth - 1];
-      const std::string message = statement.origin() + ": '" +
-                                  excerpt(outer.name) +
-                                  "' has no subsection '" + name + "'";
-      if (section.line > 0 && (child(root, section.name) != nullptr ||
-                               !numbered_subsection(section.name).empty()))
-        return message +
-               ", which stands outside of others; is there no `end' "
-               "to the one that begins in line " +
-               std::to_string(outer.line) + "?";
-      return message +
-             suggestion(section.name, names(parent, false), "subsections");
+      else
+        {
+          if (contains(names_in(line.section, entries, true), line.name))
+            return said + "; that is the name of a subsection.";
+          if (contains(outermost, line.name))
+            return said + "; it belongs outside of all subsections.";
+          Names owners;
+          for (const auto &[path, value] : entries)
+            {
+              const std::size_t slash = path.rfind('/');
+              if (slash != std::string::npos &&
+                  path.substr(slash + 1) == line.name)
+                owners.push_back("'" + path.substr(0, slash) + "'");
+            }
+          if (!owners.empty())
+            return said + "; '" + line.name + "' belongs to " +
+                   enumeration(owners, 6) + ".";
+        }
+
+      const Names candidates =
+        parent.empty() ? outermost : names_in(line.section, entries, opens);
+      const std::string nearest = nearest_name(line.name, candidates);
+      const std::string several = opens ? "subsections" : "entries";
+      return said + (!nearest.empty()   ? "; did you mean '" + nearest + "'?" :
+                     candidates.empty() ? "; it has no " + several + "." :
+                                          "; its " + several + " are: " +
+                                            enumeration(candidates, 30) + ".");
     }
 
 
 
+    /// What is wrong with a line that ParameterHandler does not understand.
     std::string
-    unknown_entry(const ParameterStatement &statement,
-                  const Tree               &section,
-                  const Tree               &root)
+    no_statement(const std::string &text)
     {
-      const std::string &entry   = statement.entry;
-      std::string        message = statement.origin() + ": ";
-      if (statement.sections.empty())
-        message +=
-          "there is no entry '" + excerpt(entry) + "' outside of subsections";
-      else
-        message +=
-          "'" +
-          excerpt(
-            ParameterStatement{"", 0, statement.sections, "", ""}.path()) +
-          "' has no entry '" + excerpt(entry) + "'";
-      if (child(section, entry) != nullptr)
-        return message + "; that is the name of a subsection.";
-      std::vector<std::string> owners;
-      if (child(root, entry) != nullptr && is_entry(*child(root, entry)))
-        return message + "; it belongs outside of all subsections.";
-      find_owners(root, "", entry, owners);
-      if (!owners.empty())
-        return message + "; '" + entry + "' belongs to " +
-               enumeration(owners, 6) + ".";
-      return message + suggestion(entry, names(section, true), "entries");
+      const std::string word = text.substr(0, text.find(' '));
+      const std::string said = "'" + excerpt(text) + "' ";
+      if (word == "set")
+        return said +
+               (text.find('=') == std::string::npos ?
+                  "has no `='" :
+                  "has no name before `='") +
+               "; it must be `set Entry = value'.";
+      if (word == "end")
+        return "`end' stands alone on its line, but '" +
+               excerpt(Utilities::trim(text.substr(3))) + "' follows.";
+      if (word == "subsection" || word == "include")
+        return "`" + word + "' needs a " +
+               (word == "include" ? "file" : "name") + " after it.";
+      return said + "is no statement; a line is `set Entry = value', "
+                    "`subsection Name', `end', `include file', or a comment "
+                    "after `#'.";
+    }
+
+
+
+    /// What the entry of the line may be instead.
+    std::string
+    wrong_value(const ParameterLine &line, const Tree &declared)
+    {
+      const std::string path    = line.section + line.name;
+      const auto        pattern = declared.get<std::string>(
+        Tree::path_type(path + "/pattern_description", '/'));
+      const std::string near =
+        pattern.compare(0, 11, "[Selection ") == 0 ?
+          nearest_name(line.value,
+                       Utilities::split_string_list(
+                         pattern.substr(11, pattern.rfind(' ') - 11), '|')) :
+          "";
+      return "'" + path + "' is '" + excerpt(line.value) + "'; it must be " +
+             allowed_values(pattern) +
+             (near.empty() ? "." : "; did you mean '" + near + "'?");
     }
   } // namespace
 
@@ -200,72 +215,50 @@ namespace Viscoplastic
   std::string
   allowed_values(const std::string &pattern_description)
   {
-    const std::string &text = pattern_description;
-    // What stands between a prefix and a suffix, if they are there.
-    const auto inside = [&text](const std::string &prefix,
-                                const std::string &suffix,
-                                std::string       &found) {
-      if (text.compare(0, prefix.size(), prefix) != 0)
-        return false;
-      const std::size_t end = text.rfind(suffix);
-      if (end == std::string::npos || end < prefix.size())
-        return false;
-      found = text.substr(prefix.size(), end - prefix.size());
-      return true;
-    };
-    // "a...b" with what stands for no bounds.
-    const auto range = [](const std::string &bounds,
-                          const std::string &lowest,
-                          const std::string &highest,
-                          const std::string &what) {
-      const std::size_t dots  = bounds.find("...");
-      const std::string lower = bounds.substr(0, dots),
-                        upper = bounds.substr(dots + 3);
-      if (lower != lowest && upper != highest)
-        return what + " from " + lower + " to " + upper;
-      if (lower != lowest)
-        return what + " of at least " + lower;
-      return upper != highest ? what + " of at most " + upper : what;
-    };
+    static const std::regex selection("\\[Selection (.*) \\]"),
+      range("\\[(Integer range|Double) (.*)\\.\\.\\.(.*) \\(inclusive\\)\\]"),
+      items("\\[List of <(.*)> of length (.*)\\.\\.\\.(.*) \\(inclusive\\)\\]");
+    static const std::map<std::string, std::string> others{
+      {"[Integer]", "a whole number"},
+      {"[Bool]", "true or false"},
+      {"[Anything]", "any text"}};
 
-    std::string found;
-    if (inside("[Selection ", " ]", found))
+    std::smatch part;
+    if (std::regex_match(pattern_description, part, selection))
       {
         std::vector<std::string> values =
-          Utilities::split_string_list(found, '|');
+          Utilities::split_string_list(part[1], '|');
         // A default that stands for nothing is no choice.
         values.erase(std::remove(values.begin(), values.end(), "not given"),
                      values.end());
         return "one of " + enumeration(values, 50);
       }
-    if (inside("[Integer range ", " (inclusive)]", found))
-      return range(found,
-                   std::to_string(std::numeric_limits<int>::min()),
-                   std::to_string(std::numeric_limits<int>::max()),
-                   "a whole number");
-    if (text == "[Integer]")
-      return "a whole number";
-    if (inside("[Double ", " (inclusive)]", found))
-      return range(found, "-MAX_DOUBLE", "MAX_DOUBLE", "a number");
-    if (text == "[Bool]")
-      return "true or false";
-    if (text == "[Anything]")
-      return "any text";
-    if (inside("[List of <", "> of length", found))
+    if (std::regex_match(pattern_description, part, range))
       {
-        std::string length;
-        inside("[List of <" + found + "> of length ", " (inclusive)]", length);
-        const std::size_t dots  = length.find("...");
-        const std::string lower = length.substr(0, dots),
-                          upper = length.substr(dots + 3);
-        return (lower == upper ? "a list of " + lower + " items" : "a list") +
-               " separated by commas, each " + allowed_values(found);
+        const auto bound = [&part](const int i, const int none) {
+          return part[i] == "-MAX_DOUBLE" || part[i] == "MAX_DOUBLE" ||
+                     part[i] == std::to_string(none) ?
+                   "" :
+                   part.str(i);
+        };
+        const std::string lower = bound(2, std::numeric_limits<int>::min());
+        const std::string upper = bound(3, std::numeric_limits<int>::max());
+        return (part[1] == "Double" ? "a number" : "a whole number") +
+               (!lower.empty() && !upper.empty() ?
+                  " from " + lower + " to " + upper :
+                !lower.empty() ? " of at least " + lower :
+                !upper.empty() ? " of at most " + upper :
+                                 "");
       }
-    std::string words =
-      Patterns::pattern_factory(text)->description(Patterns::PatternBase::Text);
-    words[0] =
-      static_cast<char>(std::tolower(static_cast<unsigned char>(words[0])));
-    return words;
+    if (std::regex_match(pattern_description, part, items))
+      return (part[2] == part[3] ? "a list of " + part.str(2) + " items" :
+                                   "a list") +
+             " separated by commas, each " + allowed_values(part[1]);
+    const auto other = others.find(pattern_description);
+    return other != others.end() ?
+             other->second :
+             Patterns::pattern_factory(pattern_description)
+               ->description(Patterns::PatternBase::Text);
   }
 
 
@@ -305,117 +298,88 @@ namespace Viscoplastic
 
 
   void
-  Parameters::find_numbered_subsections(
-    const std::vector<ParameterStatement> &statements)
+  Parameters::read(const std::vector<ParameterLine> &lines)
   {
-    for (const ParameterStatement &statement : statements)
+    // The empty comments: a backslash before one does not continue the line.
+    std::string text;
+    for (const ParameterLine &line : lines)
+      text += line.text + " #\n";
+    std::istringstream input(text);
+    // The line that has just been read.
+    const auto line = [&]() -> const ParameterLine & {
+      return lines
+        [std::count(text.begin(), text.begin() + input.tellg(), '\n') - 1];
+    };
+    const auto refuse = [&](const std::string &why) {
+      AssertThrow(false, ExcMessage(line().origin() + ": " + why));
+    };
+    try
       {
-        if (statement.sections.empty())
-          continue;
-        const std::string &name  = statement.sections[0].name;
-        const std::size_t  blank = name.find(' ');
-        const std::string  kind  = name.substr(0, blank);
-        if (blank == std::string::npos ||
-            (kind != "Boundary" && kind != "Material"))
-          continue;
-        const std::string digits = name.substr(blank + 1);
-        const bool        is_id =
-          digits.size() <= 10 &&
-          digits.find_first_not_of("0123456789") == std::string::npos &&
-          std::stoull(digits) <= largest_id;
-        AssertThrow(is_id,
-                    ExcMessage(statement.origin() + ": '" + excerpt(digits) +
-                               "' in the subsection '" + excerpt(name) +
-                               "' is no id; it must be a whole number from 0 "
-                               "to " +
-                               std::to_string(largest_id) + "."));
-        const auto id = static_cast<unsigned int>(std::stoul(digits));
-        if (kind == "Boundary")
-          boundaries[id];
-        else
-          materials[id];
+        handler.parse_input(input);
+      }
+    catch (const ParameterHandler::ExcNoSubsection &)
+      {
+        refuse(unknown_name(line(), declared_entries(handler)));
+      }
+    catch (const ParameterHandler::ExcInvalidEntryForPattern &)
+      {
+        refuse(wrong_value(line(), declared_entries(handler)));
+      }
+    catch (const ParameterHandler::ExcCannotParseLine &)
+      {
+        refuse(line().name.empty() ?
+                 no_statement(line().text) :
+                 unknown_name(line(), declared_entries(handler)));
       }
   }
 
 
 
   void
-  Parameters::apply(const ParameterStatement &statement, const Tree &declared)
+  Parameters::check_material(const std::vector<ParameterLine> &lines) const
   {
-    const Tree *section = &declared;
-    for (std::size_t depth = 0; depth < statement.sections.size(); ++depth)
-      {
-        const Tree *inner = child(*section, statement.sections[depth].name);
-        AssertThrow(inner != nullptr && !is_entry(*inner),
-                    ExcMessage(
-                      unknown_section(statement, depth, *section, declared)));
-        section = inner;
-      }
-    if (statement.entry.empty())
-      return;
-    const Tree *entry = child(*section, statement.entry);
-    AssertThrow(entry != nullptr && is_entry(*entry),
-                ExcMessage(unknown_entry(statement, *section, declared)));
-
-    const std::string pattern = entry->get<std::string>("pattern_description");
-    if (!Patterns::pattern_factory(pattern)->match(statement.value))
-      {
-        std::string              near;
-        std::vector<std::string> values;
-        if (pattern.compare(0, 11, "[Selection ") == 0)
-          near =
-            nearest_name(statement.value,
-                         Utilities::split_string_list(
-                           pattern.substr(11, pattern.rfind(' ') - 11), '|'));
-        AssertThrow(false,
-                    ExcMessage(
-                      statement.origin() + ": '" + statement.path() + "' is '" +
-                      excerpt(statement.value) + "'; it must be " +
-                      allowed_values(pattern) +
-                      (near.empty() ? "." : "; did you mean '" + near + "'?")));
-      }
-
-    // Numbered materials replace the one for all cells. The record of a run
-    // has its entries nevertheless, with their defaults.
-    const std::string &top =
-      statement.sections.empty() ? "" : statement.sections[0].name;
-    if (top == "Material" && !materials.empty() &&
-        statement.entry != "Volumetric integration" &&
-        statement.entry != "Stress history")
-      AssertThrow(statement.value == entry->get<std::string>("default_value"),
-                  ExcMessage(statement.origin() + ": '" + statement.path() +
-                             "' cannot be set beside 'Material " +
-                             std::to_string(materials.begin()->first) +
-                             "'; where materials have numbers, each is "
-                             "described in its own subsection, and 'Material' "
-                             "has only 'Volumetric integration' and 'Stress "
-                             "history'."));
-
-    for (const auto &open : statement.sections)
-      handler.enter_subsection(open.name);
-    handler.set(statement.entry, statement.value);
-    for (std::size_t depth = 0; depth < statement.sections.size(); ++depth)
-      handler.leave_subsection();
+    const Tree declared = declared_entries(handler);
+    for (const ParameterLine &line : lines)
+      if (!line.is_opening && !line.name.empty() &&
+          line.section.compare(0, 9, "Material/") == 0 &&
+          line.name != "Volumetric integration" &&
+          line.name != "Stress history")
+        {
+          const std::string path = line.section + line.name;
+          const Tree &entry = declared.get_child(Tree::path_type(path, '/'));
+          // The record of a run has the entries with their defaults.
+          AssertThrow(line.value == entry.get<std::string>("default_value"),
+                      ExcMessage(
+                        line.origin() + ": '" + path +
+                        "' cannot be set beside 'Material " +
+                        std::to_string(materials.begin()->first) +
+                        "'; where materials have numbers, each is described "
+                        "in its own subsection, and 'Material' has only "
+                        "'Volumetric integration' and 'Stress history'."));
+        }
   }
 
 
 
   void
-  Parameters::locate_mesh_file(const ParameterStatement &statement)
+  Parameters::locate_mesh_file(const std::vector<ParameterLine> &lines)
   {
     namespace fs = std::filesystem;
-    const fs::path  given(geometry.file);
+    const auto line =
+      std::find_if(lines.rbegin(), lines.rend(), [](const auto &one) {
+        return one.section + one.name == "Geometry/File";
+      });
+    const fs::path given(geometry.file);
+    const fs::path beside =
+      line->number == 0 ? given : fs::path(line->source).parent_path() / given;
     std::error_code error;
-    const fs::path  beside = given.is_absolute() || statement.file.empty() ?
-                               given :
-                               fs::path(statement.file).parent_path() / given;
-    const fs::path  found  = fs::exists(beside, error) ? beside : given;
+    const fs::path  found = fs::exists(beside, error) ? beside : given;
     AssertThrow(fs::exists(found, error),
                 ExcMessage(
-                  statement.origin() + ": 'Geometry/File' is '" +
+                  line->origin() + ": 'Geometry/File' is '" +
                   excerpt(geometry.file) + "', but there is no such file" +
                   (beside == given ? "." :
-                                     ", neither beside '" + statement.file +
+                                     ", neither beside '" + line->source +
                                        "' nor in the working directory.")));
     handler.enter_subsection("Geometry");
     handler.set("File", fs::absolute(found).lexically_normal().string());
@@ -428,25 +392,25 @@ namespace Viscoplastic
                          const std::vector<std::string> &overrides)
     : file(files.empty() ? "" : files[0])
   {
-    std::vector<ParameterStatement> statements;
-    for (const std::string &name : files)
-      for (ParameterStatement &statement : read_parameter_text(name))
-        statements.push_back(std::move(statement));
-    for (const std::string &text : overrides)
-      statements.push_back(read_override(text));
-
-    find_numbered_subsections(statements);
+    const std::vector<ParameterLine> lines =
+      read_parameter_lines(files, overrides);
+    for (const ParameterLine &line : lines)
+      if (line.is_opening && line.section.empty())
+        {
+          const auto id = [&] {
+            return static_cast<unsigned int>(std::stoul(line.name.substr(9)));
+          };
+          if (line.name.compare(0, 9, "Boundary ") == 0)
+            boundaries[id()];
+          if (line.name.compare(0, 9, "Material ") == 0)
+            materials[id()];
+        }
     declare();
-    const Tree                declared  = declared_entries(handler);
-    const ParameterStatement *mesh_file = nullptr;
-    for (const ParameterStatement &statement : statements)
-      {
-        apply(statement, declared);
-        if (statement.path() == "Geometry/File")
-          mesh_file = &statement;
-      }
+    read(lines);
+    if (!materials.empty())
+      check_material(lines);
     if (!geometry.file.empty())
-      locate_mesh_file(*mesh_file);
+      locate_mesh_file(lines);
     refinement.check();
     std::ostringstream message;
     message << "'Solver/Contact tolerance' = " << solver.contact_tolerance
@@ -461,17 +425,8 @@ namespace Viscoplastic
   std::map<std::string, std::string>
   Parameters::values() const
   {
-    std::map<std::string, std::string>                           result;
-    const std::function<void(const Tree &, const std::string &)> collect =
-      [&](const Tree &node, const std::string &path) {
-        for (const auto &[name, below] : node)
-          if (is_entry(below))
-            result[path + name] = below.get<std::string>("value");
-          else
-            collect(below, path + name + '/');
-      };
-    collect(declared_entries(handler), "");
-    return result;
+    const Entries entries = collect(declared_entries(handler));
+    return {entries.begin(), entries.end()};
   }
 
 

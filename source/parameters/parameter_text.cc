@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
+#include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/ids.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,299 +16,238 @@
 namespace Viscoplastic
 {
   using namespace dealii;
+  namespace fs = std::filesystem;
 
   namespace
   {
     // Nobody writes more by hand; these end recursions and devices.
     const std::size_t  max_characters = 10'000'000;
     const unsigned int max_files      = 1000;
-    const unsigned int max_depth      = 50;
+    const int          max_depth      = 50;
 
 
 
-    std::string
-    position(const std::string &file, const unsigned int line)
+    void
+    require(const bool condition, const std::string &sentence)
     {
-      return "'" + file + "', line " + std::to_string(line);
+      AssertThrow(condition, ExcMessage(sentence));
+    }
+
+
+
+    /// The text of a file, with blanks for tabs.
+    std::string
+    content(const std::string &file, const std::string &called)
+    {
+      std::error_code error;
+      std::ifstream   input(file, std::ios::binary);
+      std::string     text(max_characters, '\0');
+      input.read(text.data(), static_cast<std::streamsize>(text.size()));
+      text.resize(static_cast<std::size_t>(input.gcount()));
+      const std::string fault =
+        !fs::exists(file, error)        ? "does not exist" :
+        fs::is_directory(file, error)   ? "is a directory" :
+        input.bad() || !input.is_open() ? "cannot be read" :
+        text.find('\0') != std::string::npos ?
+                                          "is binary, not a parameter file" :
+        input ? "is too long for a parameter file" :
+                "";
+      require(fault.empty(),
+              called + " '" + excerpt(file, 200) + "' " + fault + '.');
+      // Some editors begin a file with a byte order mark.
+      if (text.compare(0, 3, "\xEF\xBB\xBF") == 0)
+        text.erase(0, 3);
+      std::replace(text.begin(), text.end(), '\t', ' ');
+      return text;
     }
 
 
 
     /// `Boundary  03' as `Boundary 3'.
     std::string
-    without_leading_zeros(const std::string &name)
+    with_plain_id(const std::string &name, const std::string &origin)
     {
-      const std::size_t last = name.find_last_not_of("0123456789");
-      if (last == std::string::npos || last + 1 == name.size() ||
-          name[last] != ' ')
+      const std::string kind = name.substr(0, name.find(' '));
+      if (kind == name || (kind != "Boundary" && kind != "Material"))
         return name;
-      const std::size_t first =
-        std::min(name.find_first_not_of('0', last + 1), name.size() - 1);
-      return Utilities::trim(name.substr(0, last)) + ' ' + name.substr(first);
+      const std::string id = Utilities::trim(name.substr(kind.size()));
+      require(Patterns::Integer(0, largest_id).match(id),
+              origin + ": '" + excerpt(id) + "' in the subsection '" +
+                excerpt(name) +
+                "' is no id; it must be a whole number from 0 to " +
+                std::to_string(largest_id) + ".");
+      return kind + ' ' + std::to_string(std::stoul(id));
     }
 
 
 
-    /// If the line begins with the keyword and a blank, what follows.
-    bool
-    begins_with(const std::string &line,
-                const std::string &keyword,
-                std::string       &rest)
+    struct Reader
     {
-      const std::string word = line.substr(0, line.find(' '));
-      std::string       upper(keyword);
-      std::transform(upper.begin(), upper.end(), upper.begin(), [](char c) {
-        return static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-      });
-      if (word != keyword && word != upper)
-        return false;
-      rest = Utilities::trim(line.substr(word.size()));
-      return true;
-    }
-
-
-
-    class Reader
-    {
-    public:
-      std::vector<ParameterStatement> statements;
-
-      /// @p shown is how messages call the file.
-      void
-      read(const std::string &shown, const std::string &includer);
-
-    private:
-      using Section = ParameterStatement::Section;
-
-      std::string
-      content(const std::string &file, const std::string &includer) const;
-
+      std::vector<ParameterLine> lines;
+      /// The subsections that are open, each with a `/' behind it.
+      std::string section;
       /// Files that are being read, each included by the one before it.
-      std::vector<std::filesystem::path> open_files;
-      std::vector<Section>               sections;
-      unsigned int                       n_files = 0;
+      std::vector<fs::path> open_files;
+      unsigned int          n_files = 0;
+
+      /// @p caller is what messages say before the name of the file.
+      void
+      read_file(const std::string &file, const std::string &caller)
+      {
+        std::istringstream input(content(file, caller));
+        std::error_code    error;
+        open_files.push_back(fs::weakly_canonical(file, error));
+        require(std::find(open_files.begin(),
+                          open_files.end() - 1,
+                          open_files.back()) == open_files.end() - 1,
+                caller + " '" + file + "' includes itself.");
+        require(++n_files <= max_files,
+                caller + " '" + file + "' is one of more than " +
+                  std::to_string(max_files) + ".");
+        read(input, file, 1);
+        open_files.pop_back();
+      }
+
+      void
+      read_assignment(const std::string &text)
+      {
+        const std::string where  = "--set '" + excerpt(text) + "'";
+        const std::size_t equals = text.find('=');
+        require(equals != std::string::npos,
+                where + ": there is no `='; it must be 'Section/Entry=value'.");
+        // The record of the run must be readable again.
+        require(text.find_first_of("#\n\r") == std::string::npos &&
+                  text.back() != '\\',
+                where + ": a value cannot contain `#' or line breaks, nor end "
+                        "with a backslash.");
+        std::istringstream names(text.substr(0, equals) + '/');
+        std::string        name, opening, assignment, closing;
+        while (std::getline(names, name, '/'))
+          {
+            require(!Utilities::trim(name).empty(),
+                    where +
+                      ": a name is empty; it must be 'Section/Entry=value'.");
+            if (!assignment.empty())
+              {
+                opening += "subsection " + assignment + " #\n";
+                closing += "end\n";
+              }
+            assignment = name;
+          }
+        std::istringstream input(opening + "set " + assignment +
+                                 text.substr(equals) + '\n' + closing);
+        read(input, where, 0);
+      }
+
+      /// Lines are counted from @p first, or not at all if that is 0.
+      void
+      read(std::istream &input, const std::string &source, unsigned int first)
+      {
+        std::vector<ParameterLine>          open; // by this source
+        std::map<std::string, unsigned int> set;  // lines by path
+        std::string                         physical, logical;
+        for (unsigned int next = first; std::getline(input, physical);)
+          {
+            next += first > 0 ? 1 : 0;
+            physical             = Utilities::trim(physical);
+            const bool continues = !physical.empty() && physical.back() == '\\';
+            if (continues)
+              physical.pop_back();
+            logical += physical;
+            if (continues && input.peek() != std::char_traits<char>::eof())
+              continue;
+            ParameterLine line{source,
+                               first,
+                               Utilities::trim(
+                                 logical.substr(0, logical.find('#'))),
+                               section};
+            first = next;
+            logical.clear();
+            if (line.text.empty())
+              continue;
+
+            const std::string word = line.text.substr(0, line.text.find(' '));
+            const std::string rest =
+              Utilities::trim(line.text.substr(word.size()));
+            const std::size_t equals = rest.find('=');
+            if ((word == "include" || word == "INCLUDE") && !rest.empty())
+              {
+                read_file((fs::path(source).parent_path() / rest).string(),
+                          line.origin() + ": the included file");
+                continue;
+              }
+            if ((word == "subsection" || word == "SUBSECTION") && !rest.empty())
+              {
+                require(std::count(section.begin(), section.end(), '/') <
+                          max_depth,
+                        line.origin() + ": more than " +
+                          std::to_string(max_depth) +
+                          " subsections are inside each other; are there as "
+                          "many lines `end' as lines `subsection'?");
+                line.name =
+                  section.empty() ? with_plain_id(rest, line.origin()) : rest;
+                line.text       = "subsection " + line.name;
+                line.is_opening = true;
+                section += line.name + '/';
+                open.push_back(line);
+              }
+            else if (word == "end" || word == "END")
+              {
+                require(!open.empty(),
+                        line.origin() + ": there is no open subsection that "
+                                        "this `end' could close.");
+                section = open.back().section;
+                open.pop_back();
+              }
+            else if ((word == "set" || word == "SET") &&
+                     equals != std::string::npos)
+              {
+                line.name  = Utilities::trim(rest.substr(0, equals));
+                line.value = Utilities::trim(rest.substr(equals + 1));
+                const std::string path       = section + line.name;
+                const auto [earlier, is_new] = set.emplace(path, line.number);
+                require(is_new,
+                        "'" + excerpt(path) + "' is set twice in '" + source +
+                          "', in lines " + std::to_string(earlier->second) +
+                          " and " + std::to_string(line.number) +
+                          "; keep one of them, or move one to a file of its "
+                          "own to override the other.");
+                // To ParameterHandler that is a list of runs, left unread.
+                require(line.value.find('{') == std::string::npos,
+                        line.origin() + ": '" + excerpt(path) + "' is '" +
+                          excerpt(line.value) +
+                          "'; a value cannot contain `{'.");
+              }
+            lines.push_back(std::move(line));
+          }
+        if (!open.empty())
+          require(false,
+                  open.back().origin() + ": the subsection '" +
+                    excerpt(open.back().name) + "' has no `end'.");
+      }
     };
-
-
-
-    std::string
-    Reader::content(const std::string &file, const std::string &includer) const
-    {
-      const std::string name =
-        (includer.empty() ? "The parameter file '" :
-                            includer + ": the included file '") +
-        excerpt(file, 200) + "' ";
-      std::error_code error;
-      AssertThrow(std::filesystem::exists(file, error),
-                  ExcMessage(name + "does not exist."));
-      AssertThrow(!std::filesystem::is_directory(file, error),
-                  ExcMessage(name + "is a directory."));
-      std::ifstream input(file, std::ios::binary);
-      AssertThrow(input,
-                  ExcMessage(name + "cannot be opened; is it readable?"));
-      std::string text(max_characters + 1, '\0');
-      input.read(text.data(), static_cast<std::streamsize>(text.size()));
-      AssertThrow(!input.bad(), ExcMessage(name + "cannot be read."));
-      text.resize(static_cast<std::size_t>(input.gcount()));
-      AssertThrow(text.size() <= max_characters,
-                  ExcMessage(name + "is too long for a parameter file."));
-      AssertThrow(text.find('\0') == std::string::npos,
-                  ExcMessage(name + "is binary, not a parameter file."));
-      // Some editors begin a file with a byte order mark.
-      if (text.compare(0, 3, "\xEF\xBB\xBF") == 0)
-        text.erase(0, 3);
-      std::replace(text.begin(), text.end(), '\t', ' ');
-      text.shrink_to_fit();
-      return text;
-    }
-
-
-
-    void
-    Reader::read(const std::string &file, const std::string &includer)
-    {
-      std::istringstream input(content(file, includer));
-
-      std::error_code             error;
-      const std::filesystem::path canonical =
-        std::filesystem::weakly_canonical(file, error);
-      AssertThrow(std::find(open_files.begin(), open_files.end(), canonical) ==
-                    open_files.end(),
-                  ExcMessage(includer + ": the file '" + file +
-                             "' includes itself."));
-      AssertThrow(++n_files <= max_files,
-                  ExcMessage(includer + ": more than " +
-                             std::to_string(max_files) +
-                             " files are included."));
-      open_files.push_back(canonical);
-
-      const std::size_t                   n_outer_sections = sections.size();
-      std::map<std::string, unsigned int> lines; // by entry
-      std::string                         physical, line, rest;
-      unsigned int                        number = 0, first_number = 1;
-      while (std::getline(input, physical))
-        {
-          ++number;
-          physical             = Utilities::trim(physical);
-          const bool continues = !physical.empty() && physical.back() == '\\';
-          if (continues)
-            physical.pop_back();
-          line += physical;
-          if (continues &&
-              input.peek() != std::istringstream::traits_type::eof())
-            continue;
-          const std::string statement =
-            Utilities::trim(line.substr(0, line.find('#')));
-          const std::string where = position(file, first_number);
-          line.clear();
-
-          if (statement.empty())
-            {}
-          else if (begins_with(statement, "subsection", rest))
-            {
-              AssertThrow(!rest.empty(),
-                          ExcMessage(where +
-                                     ": `subsection' needs a name after it."));
-              AssertThrow(sections.size() < max_depth,
-                          ExcMessage(where + ": more than " +
-                                     std::to_string(max_depth) +
-                                     " subsections are inside each other; are "
-                                     "there as many lines `end' as lines "
-                                     "`subsection'?"));
-              sections.push_back({without_leading_zeros(rest), first_number});
-              statements.push_back({file, first_number, sections, "", ""});
-            }
-          else if (begins_with(statement, "end", rest))
-            {
-              AssertThrow(rest.empty(),
-                          ExcMessage(where +
-                                     ": `end' stands alone on its "
-                                     "line, but '" +
-                                     excerpt(rest) + "' follows."));
-              AssertThrow(sections.size() > n_outer_sections,
-                          ExcMessage(where + ": there is no open subsection "
-                                             "that this `end' could close."));
-              sections.pop_back();
-            }
-          else if (begins_with(statement, "set", rest))
-            {
-              const std::size_t equals = rest.find('=');
-              AssertThrow(equals != std::string::npos,
-                          ExcMessage(where + ": '" + excerpt(statement) +
-                                     "' has no `='; it must be `set Entry = "
-                                     "value'."));
-              ParameterStatement set{file,
-                                     first_number,
-                                     sections,
-                                     Utilities::trim(rest.substr(0, equals)),
-                                     Utilities::trim(rest.substr(equals + 1))};
-              AssertThrow(!set.entry.empty(),
-                          ExcMessage(where + ": '" + excerpt(statement) +
-                                     "' has no name before `='; it must be "
-                                     "`set Entry = value'."));
-              const auto [earlier, is_new] =
-                lines.emplace(set.path(), first_number);
-              AssertThrow(is_new,
-                          ExcMessage("'" + excerpt(set.path()) +
-                                     "' is set twice in '" + file +
-                                     "', in lines " +
-                                     std::to_string(earlier->second) + " and " +
-                                     std::to_string(first_number) +
-                                     "; keep one of them, or move one to a "
-                                     "file of its own to override the other."));
-              statements.push_back(std::move(set));
-            }
-          else if (begins_with(statement, "include", rest))
-            {
-              AssertThrow(!rest.empty(),
-                          ExcMessage(where +
-                                     ": `include' needs a file after it."));
-              std::filesystem::path included(rest);
-              if (included.is_relative())
-                included = std::filesystem::path(file).parent_path() / included;
-              read(included.string(), where);
-            }
-          else
-            AssertThrow(false,
-                        ExcMessage(where + ": '" + excerpt(statement) +
-                                   "' is no statement; a line is `set Entry = "
-                                   "value', `subsection Name', `end', "
-                                   "`include file', or a comment after `#'."));
-          first_number = number + 1;
-        }
-      AssertThrow(
-        sections.size() == n_outer_sections,
-        ExcMessage(position(file, sections.back().line) + ": the subsection '" +
-                   excerpt(sections.back().name) + "' has no `end'."));
-      open_files.pop_back();
-    }
   } // namespace
 
 
 
   std::string
-  ParameterStatement::path() const
+  ParameterLine::origin() const
   {
-    std::string result;
-    for (const Section &section : sections)
-      result += section.name + '/';
-    if (entry.empty())
-      result.pop_back();
-    return result + entry;
+    return number == 0 ? source :
+                         "'" + source + "', line " + std::to_string(number);
   }
 
 
 
-  std::string
-  ParameterStatement::origin() const
-  {
-    if (file.empty())
-      return "--set '" + excerpt(path() + '=' + value) + "'";
-    return position(file, line);
-  }
-
-
-
-  std::vector<ParameterStatement>
-  read_parameter_text(const std::string &file)
+  std::vector<ParameterLine>
+  read_parameter_lines(const std::vector<std::string> &files,
+                       const std::vector<std::string> &assignments)
   {
     Reader reader;
-    reader.read(file, "");
-    return std::move(reader.statements);
-  }
-
-
-
-  ParameterStatement
-  read_override(const std::string &text)
-  {
-    const std::string where  = "--set '" + excerpt(text) + "': ";
-    const std::size_t equals = text.find('=');
-    AssertThrow(equals != std::string::npos,
-                ExcMessage(where + "there is no `='; it must be "
-                                   "'Section/Entry=value'."));
-    ParameterStatement statement;
-    statement.value = Utilities::trim(text.substr(equals + 1));
-    // The record of the run must be readable again.
-    AssertThrow(statement.value.find_first_of("#\n\r") == std::string::npos &&
-                  (statement.value.empty() || statement.value.back() != '\\'),
-                ExcMessage(where + "a value cannot contain `#' or line breaks, "
-                                   "nor end with a backslash."));
-    std::string path = text.substr(0, equals);
-    for (std::size_t slash = path.find('/'); slash != std::string::npos;
-         slash             = path.find('/'))
-      {
-                    statement.sections.push_back(
-          {without_leading_zeros(Utilities::trim(path.substr(0, slash))), 0});
-                    path.erase(0, slash + 1);
-      }
-    statement.entry  = Utilities::trim(path);
-    bool is_complete = !statement.entry.empty();
-    for (const auto &section : statement.sections)
-      is_complete = is_complete && !section.name.empty();
-    AssertThrow(is_complete,
-                ExcMessage(where + "a name is empty; it must be "
-                                   "'Section/Entry=value'."));
-    return statement;
+    for (const std::string &file : files)
+      reader.read_file(file, "The parameter file");
+    for (const std::string &text : assignments)
+      reader.read_assignment(text);
+    return std::move(reader.lines);
   }
 } // namespace Viscoplastic

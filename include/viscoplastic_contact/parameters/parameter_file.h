@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/parameters/parameter_text.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 
 #include <boost/property_tree/ptree_fwd.hpp>
@@ -12,6 +11,8 @@
 
 namespace Viscoplastic
 {
+  struct ParameterLine;
+
   /**
    * One or several parameter files, read and checked as far as that is possible
    * without a mesh. Expressions stay texts here: their number of components
@@ -72,19 +73,17 @@ namespace Viscoplastic
     void
     declare();
 
-    /// The ids that the names of subsections contain decide what is declared.
+    /// Give the entries their values.
     void
-    find_numbered_subsections(
-      const std::vector<ParameterStatement> &statements);
+    read(const std::vector<ParameterLine> &lines);
 
-    /// Give an entry its value.
+    /// Numbered materials replace the one for all cells.
     void
-    apply(const ParameterStatement          &statement,
-          const boost::property_tree::ptree &declared);
+    check_material(const std::vector<ParameterLine> &lines) const;
 
     /// Make the name of the mesh file independent of the working directory.
     void
-    locate_mesh_file(const ParameterStatement &statement);
+    locate_mesh_file(const std::vector<ParameterLine> &lines);
   };
 
 

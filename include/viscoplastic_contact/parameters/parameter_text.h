@@ -6,29 +6,20 @@
 
 namespace Viscoplastic
 {
-  /**
-   * A line of a parameter file that opens a subsection or sets an entry, or an
-   * assignment on the command line.
-   */
-  struct ParameterStatement
+  /// A statement of a parameter file or of the command line.
+  struct ParameterLine
   {
-    struct Section
-    {
-      std::string  name;
-      unsigned int line = 0;
-    };
-
-    /// Empty for the command line.
-    std::string  file;
-    unsigned int line = 0;
-    /// The subsections that are open, including one that is opened here.
-    std::vector<Section> sections;
-    /// Empty where a subsection is opened.
-    std::string entry, value;
-
-    /// `Section/Subsection/Entry'.
-    std::string
-    path() const;
+    /// The name of the file and the line, or the option and 0.
+    std::string  source;
+    unsigned int number;
+    /// As ParameterHandler reads it, on one line and without comment.
+    std::string text;
+    /// The subsections around it, each with a `/' behind it.
+    std::string section;
+    /// Of the entry that it sets or the subsection that it opens, if any.
+    std::string name       = {};
+    std::string value      = {};
+    bool        is_opening = false;
 
     /// "'scene.prm', line 3" or "--set 'Time/Phases=1: 4'", for messages.
     std::string
@@ -36,18 +27,16 @@ namespace Viscoplastic
   };
 
   /**
-   * The statements of a file in deal.II's format of parameters, and of those
-   * that it includes. In contrast to ParameterHandler::parse_input(), includes
-   * are relative to the including file, the same entry twice in one file is an
-   * error, and all messages name file and line. Numbers at the end of
-   * subsections lose leading zeros, so that `Boundary 03' is `Boundary 3'.
+   * What ParameterHandler is to read: the statements of some files, with those
+   * that they include in their places, and then of the assignments
+   * `Section/Entry=value' of the command line. Whether names and values are
+   * right is left to ParameterHandler. Here is what it does not do: includes
+   * are relative to the including file and close what they open, the same entry
+   * twice in one file is an error, and `Boundary 03' is `Boundary 3'.
    *
-   * Throws ExcMessage.
+   * Throws ExcMessage with file and line.
    */
-  std::vector<ParameterStatement>
-  read_parameter_text(const std::string &file);
-
-  /// The same for `Section/Entry=value'.
-  ParameterStatement
-  read_override(const std::string &text);
+  std::vector<ParameterLine>
+  read_parameter_lines(const std::vector<std::string> &files,
+                       const std::vector<std::string> &assignments);
 } // namespace Viscoplastic

@@ -14,17 +14,14 @@ namespace Viscoplastic
   bool
   stdout_is_terminal()
   {
-    if (isatty(STDOUT_FILENO) == 0)
-      return false;
     const char *type = std::getenv("TERM");
-    if (type == nullptr || std::string(type) == "dumb")
-      return false;
+    bool        sees = isatty(STDOUT_FILENO) != 0 && type != nullptr &&
+                std::string(type) != "dumb";
     // Variables of Open MPI, MPICH and others.
     for (const char *variable :
          {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"})
-      if (std::getenv(variable) != nullptr)
-        return false;
-    return true;
+      sees = sees && std::getenv(variable) == nullptr;
+    return sees;
   }
 
 
@@ -36,8 +33,8 @@ namespace Viscoplastic
     : speaks(!quiet && Utilities::MPI::this_mpi_process(communicator) == 0)
     , is_terminal(speaks && has_terminal)
     , log_name(log_name)
-    , tee(*this)
-    , everywhere(&tee)
+    , buffer(*this)
+    , everywhere(&buffer)
   {
     if (log_name.empty() || Utilities::MPI::this_mpi_process(communicator) != 0)
       return;
@@ -51,6 +48,7 @@ namespace Viscoplastic
 
   Console::~Console()
   {
+    everywhere.flush();
     if (status_is_shown)
       std::cout << std::endl;
   }
@@ -61,9 +59,8 @@ namespace Viscoplastic
   Console::width() const
   {
     winsize size{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-      return size.ws_col;
-    return 80;
+    ioctl(STDOUT_FILENO, TIOCGWINSZ, &size);
+    return size.ws_col > 0 ? size.ws_col : 80;
   }
 
 
@@ -73,6 +70,7 @@ namespace Viscoplastic
   {
     if (!is_terminal)
       return;
+    everywhere.flush();
     // The last column stays free: a character there would begin a new line.
     // The escape sequence erases what is left of a longer line before.
     std::cout << '\r' << line.substr(0, width() - 1) << "\033[K" << std::flush;
@@ -93,6 +91,7 @@ namespace Viscoplastic
   void
   Console::check()
   {
+    everywhere.flush();
     AssertThrow(!log_file.is_open() || log_file.flush(),
                 ExcMessage("The log file '" + log_name +
                            "' is not complete: writing failed; is the disk "
@@ -105,43 +104,18 @@ namespace Viscoplastic
 
 
   int
-  Console::Tee::overflow(int c)
+  Console::Buffer::sync()
   {
-    if (traits_type::eq_int_type(c, traits_type::eof()))
-      return traits_type::not_eof(c);
-    const char character = traits_type::to_char_type(c);
-    xsputn(&character, 1);
-    return c;
-  }
-
-
-
-  std::streamsize
-  Console::Tee::xsputn(const char *text, std::streamsize n)
-  {
-    if (console.speaks)
+    const std::string text = str();
+    str("");
+    if (console.speaks && !text.empty())
       {
-        if (console.status_is_shown)
-          {
-            std::cout << "\r\033[K";
-            console.status_is_shown = false;
-          }
-        std::cout.write(text, n);
+        std::cout << (console.status_is_shown ? "\r\033[K" : "") << text
+                  << std::flush;
+        console.status_is_shown = false;
       }
     if (console.log_file.is_open())
-      console.log_file.write(text, n);
-    return n;
-  }
-
-
-
-  int
-  Console::Tee::sync()
-  {
-    if (console.speaks)
-      std::cout.flush();
-    if (console.log_file.is_open())
-      console.log_file.flush();
+      console.log_file << text << std::flush;
     return 0;
   }
 } // namespace Viscoplastic

@@ -2,7 +2,6 @@
 #include <viscoplastic_contact/base/progress.h>
 
 #include <cmath>
-#include <cstdint>
 #include <iomanip>
 #include <sstream>
 #include <vector>
@@ -21,132 +20,63 @@ namespace Viscoplastic
 
 
 
+    /// The step in words, or, if @p width is not 0, in that many characters:
+    /// what matters least is left out first.
     std::string
-    whole_number(const double value)
+    description(const StepProgress &step,
+                const unsigned int  n_steps,
+                const double        elapsed,
+                const double        left,
+                const std::size_t   width)
     {
-      return std::to_string(static_cast<std::uint64_t>(value));
-    }
+      const bool        brief = width > 0;
+      const std::string all =
+        step.expected_steps ?
+          "~" + number(std::floor(*step.expected_steps), 18) :
+          std::to_string(n_steps);
+      std::ostringstream count;
+      count << "Step " << std::setw(static_cast<int>(all.size())) << step.n
+            << '/' << all;
 
-
-
-    std::string
-    percent(const double fraction)
-    {
-      return std::to_string(std::lround(100. * fraction)) + " %";
-    }
-
-
-
-    /// The number of the step and of all, which may be an estimate.
-    std::string
-    count(const StepProgress &step, const unsigned int n_steps)
-    {
-      const std::string  all = step.expected_steps ?
-                                 "~" + whole_number(*step.expected_steps) :
-                                 std::to_string(n_steps);
-      std::ostringstream text;
-      text << "Step " << std::setw(static_cast<int>(all.size())) << step.n
-           << '/' << all;
-      return text.str();
-    }
-
-
-
-    /// The step in words, for lines that stay.
-    std::string
-    in_words(const StepProgress &step,
-             const unsigned int  n_steps,
-             const double        elapsed,
-             const double        left)
-    {
-      std::string line = count(step, n_steps) + "  t = " + number(step.t, 5) +
-                         "  k = " + number(step.k, 3) + "  cells " +
-                         whole_number(step.n_cells);
-      if (step.contact_iterations)
-        line +=
-          "  contact iterations " + std::to_string(*step.contact_iterations);
-      if (step.slipping)
-        line += "  slipping " + percent(*step.slipping);
-      if (step.error_estimate)
-        line += "  error estimate " + number(*step.error_estimate, 3);
-      if (step.relative_error)
-        line +=
-          "  error estimate " + number(100. * *step.relative_error, 2) + " %";
-      return line + "  elapsed " + duration(elapsed) + "  left " +
-             duration(left);
-    }
-
-
-
-    /// The step as a line of at most @p width characters: what matters least
-    /// is left out first.
-    std::string
-    in_short(const StepProgress &step,
-             const unsigned int  n_steps,
-             const double        elapsed,
-             const double        left,
-             const std::size_t   width)
-    {
       // In the order of appearance, with the order of omission.
-      std::vector<std::pair<std::string, unsigned int>> parts;
-      parts.emplace_back(count(step, n_steps), 0);
-      parts.emplace_back("t = " + number(step.t, 4), 6);
-      parts.emplace_back("k = " + number(step.k, 2), 2);
-      parts.emplace_back("cells " + whole_number(step.n_cells), 3);
+      std::vector<std::pair<unsigned int, std::string>> parts{
+        {8, count.str()},
+        {6, "t = " + number(step.t, brief ? 4 : 5)},
+        {2, "k = " + number(step.k, brief ? 2 : 3)},
+        {3, "cells " + number(step.n_cells, 18)}};
+      const std::string error = brief ? "error " : "error estimate ";
       if (step.contact_iterations)
-        parts.emplace_back("its " + std::to_string(*step.contact_iterations),
-                           4);
+        parts.emplace_back(4,
+                           (brief ? "its " : "contact iterations ") +
+                             std::to_string(*step.contact_iterations));
       if (step.slipping)
-        parts.emplace_back("slip " + percent(*step.slipping), 5);
+        parts.emplace_back(
+          5,
+          (brief ? "slip " : "slipping ") +
+            std::to_string(std::lround(100. * *step.slipping)) + " %");
       if (step.error_estimate)
-        parts.emplace_back("error " + number(*step.error_estimate, 2), 5);
+        parts.emplace_back(5,
+                           error + number(*step.error_estimate, brief ? 2 : 3));
       if (step.relative_error)
-        parts.emplace_back("error " + number(100. * *step.relative_error, 2) +
-                             " %",
-                           5);
-      parts.emplace_back("elapsed " + duration(elapsed), 1);
-      parts.emplace_back("left " + duration(left), 7);
+        parts.emplace_back(5,
+                           error + number(100. * *step.relative_error, 2) +
+                             " %");
+      parts.emplace_back(1, "elapsed " + duration(elapsed));
+      parts.emplace_back(7, "left " + duration(left));
 
       std::string line;
-      for (unsigned int omitted = 0; omitted <= 7; ++omitted)
+      for (unsigned int omitted = 0; omitted < 8; ++omitted)
         {
           line.clear();
-          for (const auto &[text, order] : parts)
-            if (order == 0 || order > omitted)
+          for (const auto &[order, text] : parts)
+            if (order > omitted)
               line += (line.empty() ? "" : "  ") + text;
-          if (line.size() <= width)
+          if (!brief || line.size() <= width)
             break;
         }
       return line;
     }
   } // namespace
-
-
-
-  void
-  RemainingTime::add_step(const double seconds, const double n_cells)
-  {
-    const double memory = 0.9;
-    weighted_seconds    = memory * weighted_seconds + seconds;
-    weighted_cells      = memory * weighted_cells + n_cells;
-  }
-
-
-
-  double
-  RemainingTime::seconds(const double n_steps, const double n_cells) const
-  {
-    return weighted_cells > 0. ?
-             n_steps * n_cells * weighted_seconds / weighted_cells :
-             0.;
-  }
-
-
-
-  Progress::Progress(Console &console, const unsigned int n_steps)
-    : console(console)
-    , n_steps(n_steps)
-  {}
 
 
 
@@ -164,24 +94,17 @@ namespace Viscoplastic
     const bool   is_last = varies ? step.done >= 1. : step.n == n_steps;
 
     // A line for each of max_lines equal parts of the run.
-    const std::uint64_t part =
-      varies ? static_cast<std::uint64_t>(step.done * max_lines) :
-               std::uint64_t(step.n) * max_lines / n_steps;
-    const bool is_another_part = part > last_part;
-    last_part                  = part;
-    if (step.n == 1 || is_last || is_another_part)
-      {
-        const std::string line = in_words(step, n_steps, elapsed, left);
-        if (!console.has_status() || is_last)
-          console.stream() << line << std::endl;
-        else
-          console.log() << line << std::endl;
-      }
+    const double part = std::floor(
+      varies ? max_lines * step.done : double(max_lines) * step.n / n_steps);
+    if (step.n == 1 || is_last || part > last_part)
+      (console.has_status() && !is_last ? console.log() : console.stream())
+        << description(step, n_steps, elapsed, left, 0) << std::endl;
+    last_part = part;
     // Ten changes a second are enough.
     if (console.has_status() && !is_last && elapsed - last_shown >= 0.1)
       {
         console.show_status(
-          in_short(step, n_steps, elapsed, left, console.width() - 1));
+          description(step, n_steps, elapsed, left, console.width() - 1));
         last_shown = elapsed;
       }
   }
@@ -192,15 +115,15 @@ namespace Viscoplastic
   duration(const double seconds)
   {
     std::ostringstream text;
-    text << std::fixed << std::setprecision(0);
+    text << std::fixed << std::setprecision(seconds < 6000. ? 0 : 1);
     if (seconds < 100.)
       text << seconds << " s";
     else if (seconds < 6000.)
       text << seconds / 60. << " min";
     else if (seconds < 172800.)
-      text << std::setprecision(1) << seconds / 3600. << " h";
+      text << seconds / 3600. << " h";
     else
-      text << std::setprecision(1) << seconds / 86400. << " d";
+      text << seconds / 86400. << " d";
     return text.str();
   }
 } // namespace Viscoplastic

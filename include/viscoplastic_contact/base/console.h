@@ -4,8 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <fstream>
-#include <ostream>
-#include <streambuf>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -38,7 +37,8 @@ namespace Viscoplastic
     Console &
     operator=(const Console &) = delete;
 
-    /// Text goes to the standard output and the log; on other ranks nowhere.
+    /// Text goes to the standard output and the log whenever this is flushed;
+    /// on other ranks nowhere.
     std::ostream &
     stream()
     {
@@ -49,7 +49,7 @@ namespace Viscoplastic
     std::ostream &
     log()
     {
-      return log_file;
+      return everywhere.flush(), log_file;
     }
 
     /// Whether there is a status line.
@@ -72,11 +72,6 @@ namespace Viscoplastic
     void
     remark(const std::string &sentence);
 
-    /// Throws ExcMessage if not all has been written that was to be, on the
-    /// standard output or in the log: the disk may be full. On rank 0.
-    void
-    check();
-
     /// In their order.
     const std::vector<std::string> &
     remarks() const
@@ -84,26 +79,22 @@ namespace Viscoplastic
       return all_remarks;
     }
 
+    /// Throws ExcMessage if not all has been written that was to be, on the
+    /// standard output or in the log: the disk may be full. On rank 0.
+    void
+    check();
+
   private:
-    /// Passes characters on to the standard output and to the log.
-    class Tee : public std::streambuf
+    /// Keeps text until it is flushed.
+    struct Buffer : public std::stringbuf
     {
-    public:
-      explicit Tee(Console &console)
+      explicit Buffer(Console &console)
         : console(console)
       {}
-
-    protected:
-      int
-      overflow(int c) override;
-
-      std::streamsize
-      xsputn(const char *text, std::streamsize n) override;
 
       int
       sync() override;
 
-    private:
       Console &console;
     };
 
@@ -111,7 +102,7 @@ namespace Viscoplastic
     const bool               is_terminal;
     const std::string        log_name;
     std::ofstream            log_file;
-    Tee                      tee;
+    Buffer                   buffer;
     std::ostream             everywhere;
     bool                     status_is_shown = false;
     std::vector<std::string> all_remarks;

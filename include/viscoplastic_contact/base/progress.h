@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/base/console.h>
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -18,11 +17,20 @@ namespace Viscoplastic
   public:
     /// A step has taken @p seconds.
     void
-    add_step(const double seconds, const double n_cells);
+    add_step(const double seconds, const double n_cells)
+    {
+      weighted_seconds = 0.9 * weighted_seconds + seconds;
+      weighted_cells   = 0.9 * weighted_cells + n_cells;
+    }
 
     /// What @p n_steps further ones will take on a mesh of @p n_cells.
     double
-    seconds(const double n_steps, const double n_cells) const;
+    seconds(const double n_steps, const double n_cells) const
+    {
+      return weighted_cells > 0. ?
+               n_steps * n_cells * weighted_seconds / weighted_cells :
+               0.;
+    }
 
   private:
     double weighted_seconds = 0., weighted_cells = 0.;
@@ -62,7 +70,10 @@ namespace Viscoplastic
   {
   public:
     /// @p n_steps: of the run, unless each step says how many it expects.
-    Progress(Console &console, const unsigned int n_steps);
+    Progress(Console &console, const unsigned int n_steps)
+      : console(console)
+      , n_steps(n_steps)
+    {}
 
     /// A step has been made, @p elapsed seconds after the beginning of the
     /// run; the initial state is step 0. In the order of steps, on all ranks.
@@ -77,7 +88,7 @@ namespace Viscoplastic
     RemainingTime      remaining;
     double             last_elapsed = 0., last_shown = -1.;
     /// Of max_lines equal parts of the run, those that are done.
-    std::uint64_t last_part = 0;
+    double last_part = 0.;
   };
 
 

@@ -81,6 +81,17 @@ namespace Viscoplastic
 
 
 
+    /// A file, or an assignment on the command line.
+    struct Source
+    {
+      std::string                name;
+      std::vector<ParameterLine> open;
+      /// The lines of what has been set, by path.
+      std::map<std::string, unsigned int> set;
+    };
+
+
+
     struct Reader
     {
       std::vector<ParameterLine> lines;
@@ -141,11 +152,10 @@ namespace Viscoplastic
 
       /// Lines are counted from @p first, or not at all if that is 0.
       void
-      read(std::istream &input, const std::string &source, unsigned int first)
+      read(std::istream &input, const std::string &name, unsigned int first)
       {
-        std::vector<ParameterLine>          open; // by this source
-        std::map<std::string, unsigned int> set;  // lines by path
-        std::string                         physical, logical;
+        Source      source{name, {}, {}};
+        std::string physical, logical;
         for (unsigned int next = first; std::getline(input, physical);)
           {
             next += first > 0 ? 1 : 0;
@@ -156,74 +166,70 @@ namespace Viscoplastic
             logical += physical;
             if (continues && input.peek() != std::char_traits<char>::eof())
               continue;
-            ParameterLine line{source,
-                               first,
-                               Utilities::trim(
-                                 logical.substr(0, logical.find('#'))),
-                               section};
+            const std::string text =
+              Utilities::trim(logical.substr(0, logical.find('#')));
+            if (!text.empty())
+              take({name, first, text, section}, source);
             first = next;
             logical.clear();
-            if (line.text.empty())
-              continue;
-
-            const std::string word = line.text.substr(0, line.text.find(' '));
-            const std::string rest =
-              Utilities::trim(line.text.substr(word.size()));
-            const std::size_t equals = rest.find('=');
-            if ((word == "include" || word == "INCLUDE") && !rest.empty())
-              {
-                read_file((fs::path(source).parent_path() / rest).string(),
-                          line.origin() + ": the included file");
-                continue;
-              }
-            if ((word == "subsection" || word == "SUBSECTION") && !rest.empty())
-              {
-                require(std::count(section.begin(), section.end(), '/') <
-                          max_depth,
-                        line.origin() + ": more than " +
-                          std::to_string(max_depth) +
-                          " subsections are inside each other; are there as "
-                          "many lines `end' as lines `subsection'?");
-                line.name =
-                  section.empty() ? with_plain_id(rest, line.origin()) : rest;
-                line.text       = "subsection " + line.name;
-                line.is_opening = true;
-                section += line.name + '/';
-                open.push_back(line);
-              }
-            else if (word == "end" || word == "END")
-              {
-                require(!open.empty(),
-                        line.origin() + ": there is no open subsection that "
-                                        "this `end' could close.");
-                section = open.back().section;
-                open.pop_back();
-              }
-            else if ((word == "set" || word == "SET") &&
-                     equals != std::string::npos)
-              {
-                line.name  = Utilities::trim(rest.substr(0, equals));
-                line.value = Utilities::trim(rest.substr(equals + 1));
-                const std::string path       = section + line.name;
-                const auto [earlier, is_new] = set.emplace(path, line.number);
-                require(is_new,
-                        "'" + excerpt(path) + "' is set twice in '" + source +
-                          "', in lines " + std::to_string(earlier->second) +
-                          " and " + std::to_string(line.number) +
-                          "; keep one of them, or move one to a file of its "
-                          "own to override the other.");
-                // To ParameterHandler that is a list of runs, left unread.
-                require(line.value.find('{') == std::string::npos,
-                        line.origin() + ": '" + excerpt(path) + "' is '" +
-                          excerpt(line.value) +
-                          "'; a value cannot contain `{'.");
-              }
-            lines.push_back(std::move(line));
           }
-        if (!open.empty())
-          require(false,
-                  open.back().origin() + ": the subsection '" +
-                    excerpt(open.back().name) + "' has no `end'.");
+        AssertThrow(source.open.empty(),
+                    ExcMessage(
+                      source.open.back().origin() + ": the subsection '" +
+                      excerpt(source.open.back().name) + "' has no `end'."));
+      }
+
+      void
+      take(ParameterLine line, Source &source)
+      {
+        const std::string word = line.text.substr(0, line.text.find(' '));
+        const std::string rest = Utilities::trim(line.text.substr(word.size()));
+        const std::size_t equals = rest.find('=');
+        if ((word == "include" || word == "INCLUDE") && !rest.empty())
+          return read_file(
+            (fs::path(source.name).parent_path() / rest).string(),
+            line.origin() + ": the included file");
+        if ((word == "subsection" || word == "SUBSECTION") && !rest.empty())
+          {
+            require(std::count(section.begin(), section.end(), '/') < max_depth,
+                    line.origin() + ": more than " + std::to_string(max_depth) +
+                      " subsections are inside each other; are there as many "
+                      "lines `end' as lines `subsection'?");
+            line.name =
+              section.empty() ? with_plain_id(rest, line.origin()) : rest;
+            line.text       = "subsection " + line.name;
+            line.is_opening = true;
+            section += line.name + '/';
+            source.open.push_back(line);
+          }
+        else if (word == "end" || word == "END")
+          {
+            require(!source.open.empty(),
+                    line.origin() + ": there is no open subsection that this "
+                                    "`end' could close.");
+            section = source.open.back().section;
+            source.open.pop_back();
+          }
+        else if ((word == "set" || word == "SET") &&
+                 equals != std::string::npos)
+          {
+            line.name              = Utilities::trim(rest.substr(0, equals));
+            line.value             = Utilities::trim(rest.substr(equals + 1));
+            const std::string path = section + line.name;
+            const auto [earlier, is_new] =
+              source.set.emplace(path, line.number);
+            require(is_new,
+                    "'" + excerpt(path) + "' is set twice in '" + source.name +
+                      "', in lines " + std::to_string(earlier->second) +
+                      " and " + std::to_string(line.number) +
+                      "; keep one of them, or move one to a file of its own to "
+                      "override the other.");
+            // To ParameterHandler that is a list of runs, left unread.
+            require(line.value.find('{') == std::string::npos,
+                    line.origin() + ": '" + excerpt(path) + "' is '" +
+                      excerpt(line.value) + "'; a value cannot contain `{'.");
+          }
+        lines.push_back(std::move(line));
       }
     };
   } // namespace

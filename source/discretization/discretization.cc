@@ -11,10 +11,10 @@ namespace Viscoplastic
     bool
     use_mean_dilatation(const Scene<dim> &scene, const double max_nu)
     {
-      const std::string &choice =
+      const VolumetricIntegration choice =
         scene.parameters.stress.volumetric_integration;
-      if (choice != "automatic")
-        return choice == "mean dilatation";
+      if (choice != VolumetricIntegration::automatic)
+        return choice == VolumetricIntegration::mean_dilatation;
       for (const auto &material : scene.materials)
         if (material->law && material->law->deviatoric_flow())
           return true;
@@ -47,7 +47,8 @@ namespace Viscoplastic
     , sampling(space,
                moduli,
                scene.has_viscosity() &&
-                 scene.parameters.stress.stress_history == "quadrature points",
+                 scene.parameters.stress.stress_history ==
+                   StressHistory::quadrature_points,
                mean_dilatation)
     , laws(sampling)
     , loads(space)

@@ -37,20 +37,13 @@ namespace Viscoplastic
 
 
   TimeDefect
-  time_defect(const std::string &scheme)
+  time_defect(const TimeScheme scheme)
   {
-    if (scheme == "forward Euler")
-      return {0.5, 0.};
-    if (scheme == "backward Euler")
-      return {-0.5, 0.};
-    // The trapezoidal rule; what the predictor adds where G depends on it is
-    // left out.
-    if (scheme == "Heun")
-      return {0., -1. / 12.};
-    AssertThrow(false,
-                ExcMessage("The time error of the scheme '" + scheme +
-                           "' is not known."));
-    return {0., 0.};
+    // Of Heun's that of the trapezoidal rule; what the predictor adds where G
+    // depends on it is left out.
+    return scheme == TimeScheme::forward_euler  ? TimeDefect{0.5, 0.} :
+           scheme == TimeScheme::backward_euler ? TimeDefect{-0.5, 0.} :
+                                                  TimeDefect{0., -1. / 12.};
   }
 
 

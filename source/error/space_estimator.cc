@@ -8,9 +8,10 @@ namespace Viscoplastic
   SpaceEstimator<dim>::SpaceEstimator(const Discretization<dim> &discretization)
     : discretization(discretization)
     , refines_by_kelly(discretization.scene().parameters.refinement.strategy ==
-                       "kelly")
+                       RefinementStrategy::kelly)
     , refines_by_residual(
-        discretization.scene().parameters.refinement.strategy == "residual")
+        discretization.scene().parameters.refinement.strategy ==
+        RefinementStrategy::residual)
   {
     if (discretization.scene().parameters.error_control.error_bar ||
         refines_by_residual)

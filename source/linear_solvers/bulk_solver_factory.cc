@@ -42,24 +42,20 @@ namespace Viscoplastic
             const unsigned int            n_face_dofs,
             const MPI_Comm                communicator)
   {
-    const std::string &choice  = demand.choice;
+    const LinearSolver choice  = demand.choice;
     const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
-    AssertThrow(choice != "direct" || n_ranks == 1,
+    AssertThrow(choice != LinearSolver::direct || n_ranks == 1,
                 ExcMessage("'Solver/Linear solver' = direct works on one MPI "
                            "rank, but the run has " +
                            std::to_string(n_ranks) +
                            "; use multigrid or automatic."));
-    AssertThrow(choice == "automatic" || choice == "direct" ||
-                  choice == "multigrid",
-                ExcMessage("'Solver/Linear solver' = " + choice +
-                           " is unknown; it must be automatic, direct or "
-                           "multigrid."));
-    return choice == "direct" || (choice == "automatic" && n_ranks == 1 &&
-                                  prefer_direct(dim,
-                                                n_dofs,
-                                                n_face_dofs,
-                                                demand.max_poissons_ratio,
-                                                demand.n_solves));
+    return choice == LinearSolver::direct ||
+           (choice == LinearSolver::automatic && n_ranks == 1 &&
+            prefer_direct(dim,
+                          n_dofs,
+                          n_face_dofs,
+                          demand.max_poissons_ratio,
+                          demand.n_solves));
   }
 
 

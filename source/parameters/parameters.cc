@@ -103,21 +103,21 @@ namespace Viscoplastic
   void
   StressParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter(
+    add_choice(
+      prm,
       "Volumetric integration",
       volumetric_integration,
       "`full' integrates the elastic form fully; `mean dilatation' takes the "
       "mean of the volumetric strain over each cell, which prevents "
       "volumetric locking; `automatic' chooses it for laws whose flow is "
-      "deviatoric and for nu > 0.4.",
-      Patterns::Selection("automatic|full|mean dilatation"));
-    prm.add_parameter(
+      "deviatoric and for nu > 0.4.");
+    add_choice(
+      prm,
       "Stress history",
       stress_history,
       "Where the irreversible stress z lives. `cell means' is the paper's "
       "piecewise constant stress; `quadrature points' keeps z at each "
-      "quadrature point, which long creep on coarse meshes needs.",
-      Patterns::Selection("cell means|quadrature points"));
+      "quadrature point, which long creep on coarse meshes needs.");
   }
 
 
@@ -170,15 +170,15 @@ namespace Viscoplastic
                       stress,
                       "sigma(x,t): xx; yy; zz; xy in 2D, xx; yy; zz; xy; xz; "
                       "yz in 3D. Unit: stress.");
-    prm.add_parameter(
+    add_choice(
+      prm,
       "Data",
       data,
       "`scene': u and sigma solve the problem of the scene. `solution': a "
       "manufactured solution; body force, tractions, normal stresses, "
       "prescribed displacements and initial data follow from u and sigma, "
       "which also add the source sigma' - E eps(u') - G to G. Materials, "
-      "friction bounds and coefficients remain those of the scene.",
-      Patterns::Selection("scene|solution"));
+      "friction bounds and coefficients remain those of the scene.");
     prm.add_parameter("Reference directory",
                       reference_directory,
                       "Results of a finer run of the same scene with `Output/"
@@ -251,26 +251,26 @@ namespace Viscoplastic
                       "Phases of equal time steps as `end time: number of "
                       "steps', separated by commas, starting at t = 0; a "
                       "phase begins where the one before it ends. Unit: time.");
-    prm.add_parameter("Scheme",
-                      scheme,
-                      "How z' = G is integrated. `forward Euler': G at the "
-                      "beginning of the step, the scheme of the paper, first "
-                      "order, stable for steps up to 2/r with the relaxation "
-                      "rate r. `backward Euler': G at the end of the step, "
-                      "first order, stable for all steps; steps cost more "
-                      "where G is not linear. `Heun': the mean of G at the "
-                      "beginning and at what forward Euler predicts for the "
-                      "end, second order, stable up to 2/r, twice the price of "
-                      "forward Euler.",
-                      Patterns::Selection("forward Euler|backward Euler|Heun"));
-    prm.add_parameter("Stiffness policy",
-                      stiffness_policy,
-                      "What becomes of a step of an explicit scheme beyond its "
-                      "stability limit 2/r. `refuse' ends the run with a "
-                      "sentence; `subdivide' divides the step into equal ones "
-                      "within the limit; `backward Euler' takes it by that "
-                      "scheme.",
-                      Patterns::Selection("refuse|subdivide|backward Euler"));
+    add_choice(prm,
+               "Scheme",
+               scheme,
+               "How z' = G is integrated. `forward Euler': G at the "
+               "beginning of the step, the scheme of the paper, first "
+               "order, stable for steps up to 2/r with the relaxation "
+               "rate r. `backward Euler': G at the end of the step, "
+               "first order, stable for all steps; steps cost more "
+               "where G is not linear. `Heun': the mean of G at the "
+               "beginning and at what forward Euler predicts for the "
+               "end, second order, stable up to 2/r, twice the price of "
+               "forward Euler.");
+    add_choice(prm,
+               "Stiffness policy",
+               stiffness_policy,
+               "What becomes of a step of an explicit scheme beyond its "
+               "stability limit 2/r. `refuse' ends the run with a "
+               "sentence; `subdivide' divides the step into equal ones "
+               "within the limit; `backward Euler' takes it by that "
+               "scheme.");
   }
 
 
@@ -326,13 +326,13 @@ namespace Viscoplastic
   void
   SolverParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter(
+    add_choice(
+      prm,
       "Linear solver",
       linear_solver,
       "`direct': sparse Cholesky (CHOLMOD) with the contact face condensed, "
       "on one MPI rank; `multigrid': conjugate gradients with algebraic "
-      "multigrid (ML), on any number; `automatic' chooses.",
-      Patterns::Selection("automatic|direct|multigrid"));
+      "multigrid (ML), on any number; `automatic' chooses.");
     prm.add_parameter(
       "Contact tolerance",
       contact_tolerance,
@@ -421,12 +421,12 @@ namespace Viscoplastic
   void
   RefinementParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter("Strategy",
-                      strategy,
-                      "`none' keeps the mesh; `residual' refines by the "
-                      "residual estimator of the friction inequality, `kelly' "
-                      "by jumps of the displacement gradient.",
-                      Patterns::Selection("none|residual|kelly"));
+    add_choice(prm,
+               "Strategy",
+               strategy,
+               "`none' keeps the mesh; `residual' refines by the "
+               "residual estimator of the friction inequality, `kelly' "
+               "by jumps of the displacement gradient.");
     prm.add_parameter("Every n steps",
                       every_n_steps,
                       "Steps between changes of the mesh.",

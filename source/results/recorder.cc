@@ -205,7 +205,8 @@ namespace Viscoplastic
       }
     if (control.may_reject())
       run.steps = control.counts();
-    if (may_be_implicit() && scene.parameters.time.scheme != "backward Euler")
+    if (may_be_implicit() &&
+        scene.parameters.time.scheme != TimeScheme::backward_euler)
       run.implicit_steps = implicit_steps;
   }
 
@@ -410,7 +411,7 @@ namespace Viscoplastic
                     relative_stress_fluctuation(discretization->sampling, state) :
                     0.;
     if (fluctuation > 0.2 &&
-        scene.parameters.stress.stress_history == "cell means")
+        scene.parameters.stress.stress_history == StressHistory::cell_means)
       {
         std::ostringstream text;
         text << std::setprecision(3)

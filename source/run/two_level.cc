@@ -39,7 +39,7 @@ namespace Viscoplastic
     const RefinementParameters &refinement = parameters.refinement;
     // Steps by their error: twice as long with twice the error per time, or
     // four times in the second order.
-    const double       factor = parameters.time.scheme == "Heun" ? 4. : 2.;
+    const double factor = parameters.time.scheme == TimeScheme::heun ? 4. : 2.;
     std::ostringstream tolerance;
     tolerance << std::setprecision(17)
               << factor * parameters.step_control.tolerance;

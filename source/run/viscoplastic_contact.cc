@@ -39,7 +39,7 @@ namespace Viscoplastic
     , control(parameters.step_control,
               parameters.time.stiffness_policy,
               scene.schedule,
-              parameters.time.scheme == "Heun" ? 2 : 1,
+              parameters.time.scheme == TimeScheme::heun ? 2 : 1,
               parameters.output.fields_interval)
     , error_bar(parameters.error_control.error_bar ?
                   std::make_unique<ErrorBar<dim>>(scene) :
@@ -284,7 +284,7 @@ namespace Viscoplastic
       accepted.space_estimate.squared_indicators;
     // What rounding and iterations leave of an estimate, as in uniform states,
     // says nothing about the mesh, and differs between numbers of ranks.
-    if (parameters.refinement.strategy == "residual" &&
+    if (parameters.refinement.strategy == RefinementStrategy::residual &&
         total_estimate(squared_indicators, communicator) <=
           10. * std::max(1e-10, time_stepper->tolerance(accepted)) *
             std::sqrt(2. * std::max(0., accepted.forces.strain_energy)))

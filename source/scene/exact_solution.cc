@@ -34,7 +34,7 @@ namespace Viscoplastic
   template <int dim>
   ExactSolution<dim>::ExactSolution(const ExactSolutionParameters &parameters,
                                     const double                   end_time)
-    : makes_data(parameters.data == "solution")
+    : makes_data(parameters.data == DataSource::solution)
     , space_step(relative_step)
     , time_step(relative_step * end_time)
   {

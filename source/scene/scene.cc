@@ -33,7 +33,7 @@ namespace Viscoplastic
     {
       const bool is_given = !Utilities::trim(given.displacement).empty() ||
                             !Utilities::trim(given.stress).empty() ||
-                            given.data == "solution";
+                            given.data == DataSource::solution;
       return is_given ? std::make_unique<ExactSolution<dim>>(given, end_time) :
                         nullptr;
     }
@@ -368,13 +368,14 @@ namespace Viscoplastic
         if (!material->law)
           continue;
         const std::string announcement = material->law->announcement();
-        result.push_back("viscoplastic flow" + of + " (" + material->law_name +
-                         ", history at " + parameters.stress.stress_history +
-                         (announcement.empty() ? "" : "; " + announcement) +
-                         ")");
+        result.push_back(
+          "viscoplastic flow" + of + " (" + material->law_name +
+          ", history at " + name_of(parameters.stress.stress_history) +
+          (announcement.empty() ? "" : "; " + announcement) + ")");
       }
     if (has_viscosity())
-      result.push_back("time integration by " + parameters.time.scheme);
+      result.push_back("time integration by " +
+                       name_of(parameters.time.scheme));
     const auto boundaries = [&](const auto &condition) {
       std::string ids;
       for (const auto &[id, data] : boundary)
@@ -420,8 +421,8 @@ namespace Viscoplastic
     if (initial_displacement || initial_stress)
       result.push_back("initial displacement or stress");
     if (is_adaptive())
-      result.push_back("adaptive mesh (" + parameters.refinement.strategy +
-                       " estimator)");
+      result.push_back("adaptive mesh (" +
+                       name_of(parameters.refinement.strategy) + " estimator)");
     return result;
   }
 

@@ -62,9 +62,10 @@ namespace Viscoplastic
     const int  finest     = static_cast<int>(parameters.levels) - 1;
     const auto ladders    = items(parameters.ladders, "both"),
                strategies = items(parameters.strategies, "uniform"),
-               schemes = items(parameters.time_schemes, runs.scene.time.scheme),
-               histories = items(parameters.stress_histories,
-                                 runs.scene.stress.stress_history);
+               schemes    = items(parameters.time_schemes,
+                               name_of(runs.scene.time.scheme)),
+               histories  = items(parameters.stress_histories,
+                                 name_of(runs.scene.stress.stress_history));
 
     const auto add = [&](const MethodVariant &variant,
                          const int            mesh_level,

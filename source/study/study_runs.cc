@@ -43,7 +43,7 @@ namespace Viscoplastic
     bool
     is_adaptive(const Parameters &scene)
     {
-      return scene.refinement.strategy != "none";
+      return scene.refinement.strategy != RefinementStrategy::none;
     }
 
 
@@ -228,8 +228,8 @@ namespace Viscoplastic
     RunKey key;
     key.variant = {is_adaptive(scene) ? MeshStrategy::adaptive :
                                         MeshStrategy::uniform,
-                   scene.time.scheme,
-                   scene.stress.stress_history};
+                   name_of(scene.time.scheme),
+                   name_of(scene.stress.stress_history)};
     return key;
   }
 
@@ -275,9 +275,9 @@ namespace Viscoplastic
       return text;
     };
     return to_string(key.variant.strategy) +
-           add(key.variant.scheme, scene.time.scheme) +
-           add(key.variant.history, scene.stress.stress_history) + "_h" +
-           std::to_string(key.mesh_level) + "_k" +
+           add(key.variant.scheme, name_of(scene.time.scheme)) +
+           add(key.variant.history, name_of(scene.stress.stress_history)) +
+           "_h" + std::to_string(key.mesh_level) + "_k" +
            std::to_string(key.time_level);
   }
 
@@ -310,7 +310,7 @@ namespace Viscoplastic
     set("Time/Scheme", key.variant.scheme);
     set("Material/Stress history", key.variant.history);
     // Runs have the steps that the study says, or none.
-    if (scene.time.stiffness_policy == "subdivide")
+    if (scene.time.stiffness_policy == StiffnessPolicy::subdivide)
       set("Time/Stiffness policy", "refuse");
     if (base + level < 0)
       set("Geometry/Arguments",

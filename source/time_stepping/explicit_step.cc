@@ -17,7 +17,8 @@ namespace Viscoplastic
     std::ostringstream message;
     message << "the time step " << time_step.k
             << " exceeds the stability limit 2/r = "
-            << 2. / rate.relaxation_rate << " of " << parameters.time.scheme
+            << 2. / rate.relaxation_rate << " of "
+            << name_of(parameters.time.scheme)
             << ", which is that of the cell at x = (";
     for (unsigned int d = 0; d < dim; ++d)
       message << (d > 0 ? ", " : "") << rate.critical_position[d];
@@ -33,7 +34,7 @@ namespace Viscoplastic
                                   TimerOutput               &timer)
     : discretization(discretization)
     , is_heun(discretization.scene().has_viscosity() &&
-              discretization.scene().parameters.time.scheme == "Heun")
+              discretization.scene().parameters.time.scheme == TimeScheme::heun)
     , timer(timer)
     , solver(discretization)
   {

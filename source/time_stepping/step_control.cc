@@ -79,13 +79,13 @@ namespace Viscoplastic
 
 
   StepControl::StepControl(const StepControlParameters &parameters,
-                           const std::string           &stiffness_policy,
+                           const StiffnessPolicy        stiffness_policy,
                            const TimeSchedule          &schedule,
                            const unsigned int           order,
                            const double                 output_interval)
     : is_on(parameters.is_on())
-    , subdivides(stiffness_policy == "subdivide")
-    , passes_limit(stiffness_policy == "backward Euler")
+    , subdivides(stiffness_policy == StiffnessPolicy::subdivide)
+    , passes_limit(stiffness_policy == StiffnessPolicy::backward_euler)
     , parameters(parameters)
     , schedule(schedule)
     , order(order)

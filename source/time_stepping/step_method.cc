@@ -76,9 +76,9 @@ namespace Viscoplastic
     const TimeParameters &time  = scene.parameters.time;
     if (!scene.has_viscosity())
       return std::make_unique<ExplicitStep<dim>>(discretization, timer);
-    if (time.scheme == "backward Euler")
+    if (time.scheme == TimeScheme::backward_euler)
       return std::make_unique<ImplicitStep<dim>>(discretization, timer);
-    if (time.stiffness_policy == "backward Euler")
+    if (time.stiffness_policy == StiffnessPolicy::backward_euler)
       return std::make_unique<ExplicitUpToTheLimit<dim>>(discretization, timer);
     return std::make_unique<ExplicitStep<dim>>(discretization, timer);
   }

@@ -62,7 +62,7 @@ namespace Viscoplastic
   TimeStepper<dim>::needs_rate() const
   {
     return scene.has_viscosity() &&
-           (scene.parameters.time.scheme != "backward Euler" ||
+           (scene.parameters.time.scheme != TimeScheme::backward_euler ||
             error_bar != nullptr);
   }
 
@@ -86,7 +86,7 @@ namespace Viscoplastic
     // r is the constant of (2.8), or the larger of its parts.
     double limit = std::numeric_limits<double>::infinity();
     if (rate != nullptr && rate->relaxation_rate > 0. &&
-        scene.parameters.time.scheme != "backward Euler")
+        scene.parameters.time.scheme != TimeScheme::backward_euler)
       limit = 2. / rate->relaxation_rate;
 
     const auto memory = control.may_reject() ?
@@ -198,7 +198,7 @@ namespace Viscoplastic
     TimerOutput::Scope phase(timer, "estimate");
     error_bar->assess(discretization.sampling,
                       time_defect(step.is_implicit ?
-                                    "backward Euler" :
+                                    TimeScheme::backward_euler :
                                     scene.parameters.time.scheme),
                       step.report,
                       accepted,

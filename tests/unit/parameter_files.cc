@@ -31,8 +31,26 @@ namespace
     EXPECT_EQ(parameters->boundaries.size(), 2u);
     EXPECT_EQ(parameters->boundaries.at(7).role, "clamped");
     EXPECT_EQ(parameters->boundaries.at(2).friction_law, "not given");
-    EXPECT_EQ(parameters->solver.linear_solver, "automatic");
+    EXPECT_EQ(parameters->solver.linear_solver, LinearSolver::automatic);
     EXPECT_FALSE(parameters->initial_state.equilibrate);
+  }
+
+
+
+  TEST(Parameters, Choices)
+  {
+    for (const TimeScheme scheme : {TimeScheme::forward_euler,
+                                    TimeScheme::backward_euler,
+                                    TimeScheme::heun})
+      {
+        const Parameters parameters({}, {"Time/Scheme=" + name_of(scheme)});
+        EXPECT_EQ(parameters.time.scheme, scheme);
+        EXPECT_EQ(parameters.values().at("Time/Scheme"), name_of(scheme));
+      }
+    EXPECT_EQ(name_of(TimeScheme::heun), "Heun");
+    expect_refusal([] { Parameters p({}, {"Solver/Linear solver=magic"}); },
+                   "'Solver/Linear solver' is 'magic'; it must be one of "
+                   "automatic, direct, multigrid.");
   }
 
 

@@ -75,7 +75,7 @@ namespace
   {
     const TimeSchedule          schedule("1: 3, 1.7: 7, 4: 1");
     const StepControlParameters off;
-    StepControl                 control(off, "refuse", schedule, 1, 0.);
+    StepControl control(off, StiffnessPolicy::refuse, schedule, 1, 0.);
     EXPECT_FALSE(control.may_reject());
     double t = 0.;
     for (unsigned int n = 0; n < schedule.n_steps(); ++n)
@@ -114,8 +114,8 @@ namespace
     const TimeSchedule schedule("10: 10");
     const auto         parameters = with_tolerance(0.1);
     const auto         c = [](const double t) { return t < 5. ? 10. : 1.; };
-    StepControl        control(parameters, "refuse", schedule, 1, 0.);
-    const auto         done = steps(control, 10., [&](const TimeStep &step) {
+    StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
+    const auto  done = steps(control, 10., [&](const TimeStep &step) {
       return StepErrors{c(step.t) * step.k * step.k, step.k, step.t};
     });
     EXPECT_NEAR(largest(done, 6.), 0.1, 0.03);
@@ -138,8 +138,8 @@ namespace
     // An error at t = 0.31 that no step size reduces.
     const TimeSchedule schedule("1: 10");
     const auto         parameters = with_tolerance(0.1);
-    StepControl        control(parameters, "refuse", schedule, 1, 0.);
-    const auto         done = steps(control, 1., [](const TimeStep &step) {
+    StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
+    const auto  done = steps(control, 1., [](const TimeStep &step) {
       const bool jumps = step.t_old < 0.31 && step.t >= 0.31;
       return StepErrors{jumps ? 1. : 0., step.k, 1.};
     });
@@ -162,23 +162,24 @@ namespace
     };
     auto parameters = with_tolerance(0.1);
     {
-      StepControl control(parameters, "refuse", schedule, 1, 0.);
+      StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
       const auto  done = steps(control, 1., no_error, {}, 0.013);
       EXPECT_LE(largest(done), 0.013 * (1. + 1e-12)); // t carries rounding
       EXPECT_LE(done.size(), 80u);
     }
     {
-      StepControl control(parameters, "backward Euler", schedule, 1, 0.);
+      StepControl control(
+        parameters, StiffnessPolicy::backward_euler, schedule, 1, 0.);
       EXPECT_GT(largest(steps(control, 1., no_error, {}, 0.013)), 0.1);
     }
     {
       // Without an estimate, steps of the phase are the largest.
-      StepControl control(parameters, "refuse", schedule, 1, 0.);
+      StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
       control.set_has_estimate(false);
       EXPECT_NEAR(largest(steps(control, 1., no_error)), 0.1, 1e-12);
     }
     parameters.largest_step = 0.02;
-    StepControl control(parameters, "refuse", schedule, 1, 0.);
+    StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
     EXPECT_LE(largest(steps(control, 1., no_error)), 0.02 * (1. + 1e-12));
   }
 
@@ -188,8 +189,8 @@ namespace
   {
     const TimeSchedule          schedule("1: 2");
     const StepControlParameters off;
-    StepControl                 control(off, "subdivide", schedule, 1, 0.);
-    const auto                  done = steps(
+    StepControl control(off, StiffnessPolicy::subdivide, schedule, 1, 0.);
+    const auto  done = steps(
       control, 1., [](const TimeStep &) { return StepErrors(); }, {}, 0.13);
     ASSERT_EQ(done.size(), 8u);
     for (const TimeStep &step : done)
@@ -205,7 +206,7 @@ namespace
     const TimeSchedule schedule("1: 10, 2: 10");
     auto               parameters = with_tolerance(0.1);
     parameters.landing_times      = "1.2345, 0.777";
-    StepControl control(parameters, "refuse", schedule, 1, 0.3);
+    StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.3);
     const auto  done = steps(control, 2., [](const TimeStep &step) {
       return StepErrors{0., step.k, 1.};
     });
@@ -231,8 +232,9 @@ namespace
     const auto         parameters = with_tolerance(0.1);
     for (const double t : {0.1, 0.5, 0.501, 0.9999})
       {
-        StepControl control(parameters, "refuse", schedule, 1, 0.);
-        const auto  has_event = [&](const TimeStep &step) {
+        StepControl control(
+          parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
+        const auto has_event = [&](const TimeStep &step) {
           return step.t_old < t && step.t >= t;
         };
         const auto done = steps(
@@ -258,7 +260,7 @@ namespace
     const TimeSchedule schedule("1: 1");
     auto               parameters = with_tolerance(0.1);
     parameters.smallest_step      = 0.01;
-    StepControl  control(parameters, "refuse", schedule, 1, 0.);
+    StepControl  control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
     TimeStep     step    = control.propose(0, 0., infinity);
     unsigned int retries = 0;
     while (control.retries(step, false))
@@ -272,10 +274,10 @@ namespace
     EXPECT_GE(step.k, 0.01);
 
     const StepControlParameters off;
-    StepControl                 fixed(off, "subdivide", schedule, 1, 0.);
+    StepControl fixed(off, StiffnessPolicy::subdivide, schedule, 1, 0.);
     EXPECT_FALSE(fixed.retries(fixed.propose(0, 0., infinity), false));
     EXPECT_TRUE(fixed.retries(fixed.propose(0, 0., infinity), true));
-    StepControl refuses(off, "refuse", schedule, 1, 0.);
+    StepControl refuses(off, StiffnessPolicy::refuse, schedule, 1, 0.);
     EXPECT_FALSE(refuses.retries(refuses.propose(0, 0., infinity), true));
   }
 

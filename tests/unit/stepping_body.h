@@ -32,11 +32,12 @@ namespace Viscoplastic::Testing
       const Parameters &p = *this->parameters;
       if (p.error_control.error_bar)
         error_bar = std::make_unique<ErrorBar<dim>>(this->scene);
-      control = std::make_unique<StepControl>(p.step_control,
-                                              p.time.stiffness_policy,
-                                              this->scene.schedule,
-                                              p.time.scheme == "Heun" ? 2 : 1,
-                                              0.);
+      control =
+        std::make_unique<StepControl>(p.step_control,
+                                      p.time.stiffness_policy,
+                                      this->scene.schedule,
+                                      p.time.scheme == TimeScheme::heun ? 2 : 1,
+                                      0.);
       control->set_has_estimate(this->scene.has_viscosity());
       stepper        = std::make_unique<TimeStepper<dim>>(*discretization,
                                                    error_bar.get(),

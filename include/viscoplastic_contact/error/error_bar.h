@@ -3,8 +3,7 @@
 
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
-
-#include <string>
+#include <viscoplastic_contact/parameters/choices.h>
 
 namespace Viscoplastic
 {
@@ -24,7 +23,7 @@ namespace Viscoplastic
 
   /// Of a value of `Time/Scheme'.
   TimeDefect
-  time_defect(const std::string &scheme);
+  time_defect(const TimeScheme scheme);
 
 
 

@@ -3,10 +3,10 @@
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
+#include <viscoplastic_contact/parameters/choices.h>
 
 #include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace Viscoplastic
@@ -29,8 +29,7 @@ namespace Viscoplastic
   /// What decides on the solver of a system.
   struct SolverDemand
   {
-    /// `automatic', `direct' or `multigrid'.
-    std::string choice = "automatic";
+    LinearSolver choice = LinearSolver::automatic;
     /// Of the material that the matrix stands for.
     double max_poissons_ratio = 0.;
     /// How often the solver will be used at least.

@@ -3,6 +3,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <viscoplastic_contact/parameters/choices.h>
+
 #include <string>
 
 namespace Viscoplastic
@@ -45,8 +47,9 @@ namespace Viscoplastic
   /// How stresses are discretised, the same for all materials.
   struct StressParameters
   {
-    std::string volumetric_integration = "automatic";
-    std::string stress_history         = "cell means";
+    VolumetricIntegration volumetric_integration =
+      VolumetricIntegration::automatic;
+    StressHistory stress_history = StressHistory::cell_means;
 
     void
     declare(ParameterHandler &prm);
@@ -74,7 +77,7 @@ namespace Viscoplastic
   struct ExactSolutionParameters
   {
     std::string displacement, stress;
-    std::string data = "scene";
+    DataSource  data = DataSource::scene;
     std::string reference_directory;
 
     void
@@ -98,9 +101,9 @@ namespace Viscoplastic
 
   struct TimeParameters
   {
-    std::string phases           = "1: 10";
-    std::string scheme           = "forward Euler";
-    std::string stiffness_policy = "refuse";
+    std::string     phases           = "1: 10";
+    TimeScheme      scheme           = TimeScheme::forward_euler;
+    StiffnessPolicy stiffness_policy = StiffnessPolicy::refuse;
 
     void
     declare(ParameterHandler &prm);
@@ -128,7 +131,7 @@ namespace Viscoplastic
 
   struct SolverParameters
   {
-    std::string linear_solver = "automatic";
+    LinearSolver linear_solver = LinearSolver::automatic;
     /// 0: coupled to the estimated discretisation error.
     double       contact_tolerance  = 0.;
     unsigned int maximal_iterations = 200;
@@ -171,13 +174,13 @@ namespace Viscoplastic
 
   struct RefinementParameters
   {
-    std::string  strategy            = "none";
-    unsigned int every_n_steps       = 1;
-    double       refinement_fraction = 0.3;
-    double       coarsening_fraction = 0.05;
-    unsigned int minimal_level       = 0;
-    unsigned int maximal_level       = 6;
-    unsigned int cell_budget         = 100000;
+    RefinementStrategy strategy            = RefinementStrategy::none;
+    unsigned int       every_n_steps       = 1;
+    double             refinement_fraction = 0.3;
+    double             coarsening_fraction = 0.05;
+    unsigned int       minimal_level       = 0;
+    unsigned int       maximal_level       = 6;
+    unsigned int       cell_budget         = 100000;
 
     void
     declare(ParameterHandler &prm);

@@ -146,8 +146,8 @@ namespace Viscoplastic
     {
       const TimeParameters &time = scene.parameters.time;
       return scene.has_viscosity() &&
-             (time.scheme == "backward Euler" ||
-              time.stiffness_policy == "backward Euler");
+             (time.scheme == TimeScheme::backward_euler ||
+              time.stiffness_policy == StiffnessPolicy::backward_euler);
     }
 
     /// How far loads, reactions and friction are from adding up to zero,

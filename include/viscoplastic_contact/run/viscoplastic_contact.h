@@ -121,7 +121,7 @@ namespace Viscoplastic
     bool
     is_implicit() const
     {
-      return parameters.time.scheme == "backward Euler" &&
+      return parameters.time.scheme == TimeScheme::backward_euler &&
              scene.has_viscosity();
     }
 

@@ -91,7 +91,7 @@ namespace Viscoplastic
     bool
     is_adaptive() const
     {
-      return parameters.refinement.strategy != "none";
+      return parameters.refinement.strategy != RefinementStrategy::none;
     }
 
     const Parameters &parameters;

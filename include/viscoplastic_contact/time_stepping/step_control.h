@@ -73,7 +73,7 @@ namespace Viscoplastic
     /// @p order of the scheme. @p output_interval: 0 for none. Throws
     /// ExcMessage.
     StepControl(const StepControlParameters &parameters,
-                const std::string           &stiffness_policy,
+                const StiffnessPolicy        stiffness_policy,
                 const TimeSchedule          &schedule,
                 const unsigned int           order,
                 const double                 output_interval);

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <string>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  // Entries with a closed list of values. Each has an enumeration and
+  // choices(), the names of its values in their order as in parameter files.
+
+  enum class VolumetricIntegration
+  {
+    automatic,
+    full,
+    mean_dilatation
+  };
+
+  inline const char *
+  choices(VolumetricIntegration)
+  {
+    return "automatic|full|mean dilatation";
+  }
+
+  /// Where the irreversible stress lives.
+  enum class StressHistory
+  {
+    cell_means,
+    quadrature_points
+  };
+
+  inline const char *
+  choices(StressHistory)
+  {
+    return "cell means|quadrature points";
+  }
+
+  /// What the data of a scene with an exact solution are.
+  enum class DataSource
+  {
+    scene,
+    solution
+  };
+
+  inline const char *
+  choices(DataSource)
+  {
+    return "scene|solution";
+  }
+
+  enum class TimeScheme
+  {
+    forward_euler,
+    backward_euler,
+    heun
+  };
+
+  inline const char *
+  choices(TimeScheme)
+  {
+    return "forward Euler|backward Euler|Heun";
+  }
+
+  /// What becomes of an explicit step beyond its stability limit.
+  enum class StiffnessPolicy
+  {
+    refuse,
+    subdivide,
+    backward_euler
+  };
+
+  inline const char *
+  choices(StiffnessPolicy)
+  {
+    return "refuse|subdivide|backward Euler";
+  }
+
+  enum class LinearSolver
+  {
+    automatic,
+    direct,
+    multigrid
+  };
+
+  inline const char *
+  choices(LinearSolver)
+  {
+    return "automatic|direct|multigrid";
+  }
+
+  enum class RefinementStrategy
+  {
+    none,
+    residual,
+    kelly
+  };
+
+  inline const char *
+  choices(RefinementStrategy)
+  {
+    return "none|residual|kelly";
+  }
+
+
+
+  /// What a value is called in parameter files.
+  template <typename Choice>
+  std::string
+  name_of(const Choice choice)
+  {
+    return Utilities::split_string_list(choices(choice),
+                                        '|')[static_cast<std::size_t>(choice)];
+  }
+
+
+
+  /// Like ParameterHandler::add_parameter().
+  template <typename Choice>
+  void
+  add_choice(ParameterHandler  &prm,
+             const std::string &entry,
+             Choice            &choice,
+             const std::string &documentation)
+  {
+    prm.declare_entry(entry,
+                      name_of(choice),
+                      Patterns::Selection(choices(choice)),
+                      documentation);
+    prm.add_action(entry, [&choice](const std::string &value) {
+      const auto names = Utilities::split_string_list(choices(choice), '|');
+      choice           = static_cast<Choice>(
+        std::find(names.begin(), names.end(), value) - names.begin());
+    });
+  }
+} // namespace Viscoplastic

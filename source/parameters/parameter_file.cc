@@ -12,7 +12,6 @@
 #include <boost/property_tree/json_parser.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <limits>
 #include <regex>

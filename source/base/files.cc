@@ -75,7 +75,7 @@ namespace Viscoplastic
       }
 
       void
-      synchronise() const
+      synchronize() const
       {
         // Some file systems cannot do it for directories.
         check_written(fsync(descriptor) == 0 || errno == EINVAL, name);
@@ -122,7 +122,7 @@ namespace Viscoplastic
   {
     Descriptor file(name, name, O_WRONLY | O_CREAT | O_TRUNC);
     file.write_all(bytes);
-    file.synchronise();
+    file.synchronize();
     file.close();
   }
 
@@ -149,7 +149,7 @@ namespace Viscoplastic
         Descriptor file(name, part, O_WRONLY | O_CREAT | O_TRUNC);
         file.write_all(bytes);
         if (to_disk)
-          file.synchronise();
+          file.synchronize();
         file.close();
         check_written(std::rename(part.c_str(), name.c_str()) == 0, name);
       }
@@ -163,17 +163,17 @@ namespace Viscoplastic
 
 
   void
-  synchronise(const std::string &file)
+  synchronize(const std::string &file)
   {
-    Descriptor(file, file, O_RDONLY).synchronise();
+    Descriptor(file, file, O_RDONLY).synchronize();
   }
 
 
 
   void
-  synchronise_directory(const std::string &name)
+  synchronize_directory(const std::string &name)
   {
-    Descriptor(name, name, O_RDONLY | O_DIRECTORY).synchronise();
+    Descriptor(name, name, O_RDONLY | O_DIRECTORY).synchronize();
   }
 
 

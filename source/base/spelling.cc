@@ -23,7 +23,7 @@ namespace Viscoplastic
 
 
     /// How many letters have to be inserted, deleted, replaced, or swapped
-    /// with their neighbour.
+    /// with their neighbor.
     unsigned int
     edit_distance(const std::string &a, const std::string &b)
     {

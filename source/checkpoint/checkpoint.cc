@@ -140,11 +140,11 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  pack_fields(const StressSampling<dim> &sampling,
-              const State<dim>          &state,
-              const Vector<double>      &squared_estimate)
+  pack_fields(const StressSpace<dim> &stress_space,
+              const State<dim>       &state,
+              const Vector<double>   &squared_estimate)
   {
-    const AdmissibleSpace<dim> &space  = sampling.space;
+    const AdmissibleSpace<dim> &space  = stress_space.space;
     const auto                  fields = nodal_fields(state);
     std::vector<bool>           is_packed(space.owned.n_elements(), false);
     std::vector<std::uint8_t>   vertices; // a bit a vertex with values here
@@ -172,10 +172,10 @@ namespace Viscoplastic
           vertices.push_back(with_values);
           for (const IrreversibleStress *field : sample_fields(state))
             if (!field->empty())
-              for (unsigned int s = 0; s < sampling.n_samples; ++s)
+              for (unsigned int s = 0; s < stress_space.n_samples; ++s)
                 {
                   const auto &sample =
-                    (*field)[owned_cell * sampling.n_samples + s];
+                    (*field)[owned_cell * stress_space.n_samples + s];
                   samples.insert(samples.end(),
                                  sample.begin_raw(),
                                  sample.begin_raw() +
@@ -196,7 +196,7 @@ namespace Viscoplastic
   bool
   unpack_fields(const std::vector<std::string> &meshes,
                 const std::vector<std::string> &fields,
-                const StressSampling<dim>      &sampling,
+                const StressSpace<dim>         &stress_space,
                 const bool                      has_initial_u,
                 const bool                      has_estimate,
                 const unsigned int              n_sample_fields,
@@ -205,13 +205,13 @@ namespace Viscoplastic
   {
     AssertDimension(meshes.size(), fields.size());
     using Cell = typename DoFHandler<dim>::active_cell_iterator;
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     const auto        &triangulation  = space.dof_handler.get_triangulation();
     const unsigned int n_fields       = has_initial_u ? 3 : 2;
     std::vector<IrreversibleStress *> sampled;
     for (unsigned int f = 0; f < n_sample_fields; ++f)
       sampled.push_back(sample_fields(state)[f]);
-    const std::size_t n_z = sampling.n_samples * 6; // a cell and field
+    const std::size_t n_z = stress_space.n_samples * 6; // a cell and field
 
     // Vertices of owned cells are vertices of owned or ghost cells elsewhere.
     struct LocalCell
@@ -234,7 +234,7 @@ namespace Viscoplastic
 
     std::vector<DistributedVector> values(n_fields, space.owned_vector());
     for (IrreversibleStress *field : sampled)
-      field->resize(n_owned * sampling.n_samples);
+      field->resize(n_owned * stress_space.n_samples);
     if (has_estimate)
       squared_estimate.reinit(triangulation.n_active_cells());
     std::size_t n_values = 0, n_cells = 0;
@@ -284,7 +284,8 @@ namespace Viscoplastic
             ++n_cells;
             for (std::size_t f = 0; f < sampled.size(); ++f)
               for (std::size_t j = 0; j < n_z; ++j)
-                (*sampled[f])[local->owned_index * sampling.n_samples + j / 6]
+                (*sampled[f])[local->owned_index * stress_space.n_samples +
+                              j / 6]
                   .begin_raw()[j % 6] =
                   samples[(i * sampled.size() + f) * n_z + j];
             if (has_estimate)
@@ -423,12 +424,12 @@ namespace Viscoplastic
   template void restore_mesh<dim>(                                          \
     const std::vector<std::string> &,                                       \
     parallel::distributed::Triangulation<dim> &);                           \
-  template std::string pack_fields<dim>(const StressSampling<dim> &,        \
+  template std::string pack_fields<dim>(const StressSpace<dim> &,           \
                                         const State<dim> &,                 \
                                         const Vector<double> &);            \
   template bool        unpack_fields<dim>(const std::vector<std::string> &, \
                                    const std::vector<std::string> &, \
-                                   const StressSampling<dim> &,      \
+                                   const StressSpace<dim> &,         \
                                    const bool,                       \
                                    const bool,                       \
                                    const unsigned int,               \

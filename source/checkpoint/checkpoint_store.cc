@@ -422,7 +422,7 @@ namespace Viscoplastic
         }
       write_file(temporary + manifest_name, to_text(manifest));
       fs::remove(temporary + list_name);
-      synchronise_directory(temporary);
+      synchronize_directory(temporary);
       // A directory cannot replace another one.
       std::string aside;
       if (fs::exists(fs::symlink_status(final_path)))
@@ -431,7 +431,7 @@ namespace Viscoplastic
           fs::rename(final_path, aside);
         }
       fs::rename(temporary, final_path);
-      synchronise_directory(directory);
+      synchronize_directory(directory);
 
       if (!aside.empty())
         remove_own(aside, remarks);

@@ -197,7 +197,7 @@ namespace Viscoplastic
 
 
     /**
-     * The step in (0, 2] that minimises J along the correction; 1 if that is as
+     * The step in (0, 2] that minimizes J along the correction; 1 if that is as
      * good up to inexact linear solves, 0 if there is no descent.
      */
     SearchResult

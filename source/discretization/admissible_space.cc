@@ -58,7 +58,7 @@ namespace Viscoplastic
   {
     // A node's frame is a function of the boundary ids that meet there, and
     // each id has one normal. Owners know all ids at their nodes, since every
-    // neighbour of an owned cell is at least a ghost; as a bit mask in a vector
+    // neighbor of an owned cell is at least a ghost; as a bit mask in a vector
     // the ids travel to the other ranks.
     std::vector<const BoundaryCondition<dim> *> listed;
     for (const auto &pair : scene.boundary)
@@ -171,16 +171,16 @@ namespace Viscoplastic
     // Gram matrix of the modes on the prescribed components; its null space
     // are the rigid motions that nothing prevents.
     FullMatrix<double> gram(n, n);
-    Point<dim>         centre;
+    Point<dim>         center;
     double             count = node_position.size();
     for (const auto &x : node_position)
-      centre += x;
-    centre =
-      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(centre), communicator) /
+      center += x;
+    center =
+      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(center), communicator) /
                  Utilities::MPI::sum(count, communicator));
     double radius = 0.;
     for (const auto &x : node_position)
-      radius = std::max(radius, x.distance(centre));
+      radius = std::max(radius, x.distance(center));
     radius = Utilities::MPI::max(radius, communicator);
 
     for (const BoundaryNode &node : nodes)
@@ -188,7 +188,7 @@ namespace Viscoplastic
         {
           const Tensor<1, dim> direction =
             column(frames[node.frame].directions, frames[node.frame].fixed[i]);
-          const Tensor<1, dim> x = (node.position - centre) / radius;
+          const Tensor<1, dim> x = (node.position - center) / radius;
           std::vector<double>  value(n);
           for (unsigned int d = 0; d < dim; ++d)
             value[d] = direction[d];
@@ -284,19 +284,19 @@ namespace Viscoplastic
     const unsigned int             n_modes = dim == 2 ? 3 : 6;
     std::vector<DistributedVector> modes(n_modes, owned_vector());
 
-    Point<dim>   centre;
+    Point<dim>   center;
     const double count = node_position.size();
     for (const auto &x : node_position)
-      centre += x;
-    centre =
-      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(centre), communicator) /
+      center += x;
+    center =
+      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(center), communicator) /
                  Utilities::MPI::sum(count, communicator));
 
     for (std::size_t n = 0; n < node_position.size(); ++n)
       {
         const NodalFrame<dim> &frame =
           frames[frame_of_node[(first_owned / dim) + n]];
-        const Tensor<1, dim> x = node_position[n] - centre;
+        const Tensor<1, dim> x = node_position[n] - center;
         for (unsigned int m = 0; m < n_modes; ++m)
           {
             Tensor<1, dim> u;

@@ -8,11 +8,11 @@
 namespace Viscoplastic
 {
   template <int dim>
-  ContactTension<dim>::ContactTension(const StressSampling<dim> &sampling)
-    : sampling(sampling)
+  ContactTension<dim>::ContactTension(const StressSpace<dim> &stress_space)
+    : stress_space(stress_space)
     , total_area(0.)
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     std::size_t                 index = 0;
     for (const auto &cell : space.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -41,17 +41,17 @@ namespace Viscoplastic
   double
   ContactTension<dim>::tension_area(const State<dim> &state) const
   {
-    const unsigned int                 n = sampling.n_samples;
+    const unsigned int                 n = stress_space.n_samples;
     std::vector<SymmetricTensor<2, 3>> strain(n);
     std::vector<double>                normal_stress;
     double                             largest = 0.;
     for (const Face &face : faces)
       {
-        sampling.strains(face.cell, state.u.begin(), strain.data());
-        SymmetricTensor<2, 3> stress = sampling.moduli(face.cell).stress(
-          sampling.mean(face.cell, strain.data()));
+        stress_space.strains(face.cell, state.u.begin(), strain.data());
+        SymmetricTensor<2, 3> stress = stress_space.moduli(face.cell).stress(
+          stress_space.mean(face.cell, strain.data()));
         if (!state.z.empty())
-          stress += sampling.mean(face.cell, &state.z[face.cell * n]);
+          stress += stress_space.mean(face.cell, &state.z[face.cell * n]);
         double value = 0.;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
@@ -60,7 +60,7 @@ namespace Viscoplastic
         // Of the whole stress: in pure shear the normal stress is rounding.
         largest = std::max(largest, stress.norm());
       }
-    const MPI_Comm comm = sampling.space.communicator;
+    const MPI_Comm comm = stress_space.space.communicator;
     largest             = Utilities::MPI::max(largest, comm);
     double area         = 0.;
     for (std::size_t i = 0; i < faces.size(); ++i)

@@ -44,16 +44,16 @@ namespace Viscoplastic
     : space(dof_handler, scene)
     , moduli(space)
     , mean_dilatation(use_mean_dilatation(scene, moduli.max_poissons_ratio()))
-    , sampling(space,
-               moduli,
-               scene.has_viscosity() &&
-                 scene.parameters.stress.stress_history ==
-                   StressHistory::quadrature_points,
-               mean_dilatation)
-    , laws(sampling)
+    , stress_space(space,
+                   moduli,
+                   scene.has_viscosity() &&
+                     scene.parameters.stress.stress_history ==
+                       StressHistory::quadrature_points,
+                   mean_dilatation)
+    , laws(stress_space)
     , loads(space)
     , tension(has_bilateral_contact(scene) ?
-                std::make_unique<ContactTension<dim>>(sampling) :
+                std::make_unique<ContactTension<dim>>(stress_space) :
                 nullptr)
     , face(scene.has_friction() ? std::make_unique<ContactFace<dim>>(space) :
                                   nullptr)

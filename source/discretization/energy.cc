@@ -21,36 +21,36 @@ namespace Viscoplastic
 
   template <int dim>
   StressSummary
-  summarise_stress(const FlowLaws<dim> &laws,
+  summarize_stress(const FlowLaws<dim> &laws,
                    const State<dim>    &old_state,
                    const State<dim>    &state)
   {
-    const StressSampling<dim>         &sampling = laws.sampling;
-    const unsigned int                 n        = sampling.n_samples;
-    const auto                         now      = laws.at(state.t);
+    const StressSpace<dim>            &stress_space = laws.stress_space;
+    const unsigned int                 n            = stress_space.n_samples;
+    const auto                         now          = laws.at(state.t);
     std::vector<SymmetricTensor<2, 3>> strain(n), old_strain(n);
     const bool                         has_z = !state.z.empty();
     StressSummary                      result;
     double                             volume = 0.;
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
-        const Stiffness       &stiffness = sampling.moduli(c);
+        const Stiffness       &stiffness = stress_space.moduli(c);
         const ViscoplasticLaw *law       = now.law(c);
-        sampling.strains(c, state.u.begin(), strain.data());
+        stress_space.strains(c, state.u.begin(), strain.data());
         const SymmetricTensor<2, 3> mean_strain =
-          sampling.mean(c, strain.data());
+          stress_space.mean(c, strain.data());
         SymmetricTensor<2, 3> mean = stiffness.stress(mean_strain);
         if (has_z)
           {
-            mean += sampling.mean(c, &state.z[c * n]);
+            mean += stress_space.mean(c, &state.z[c * n]);
             // A source flows also where there is no law.
             const bool flows = law || laws.source_solution;
             if (flows)
-              sampling.strains(c, old_state.u.begin(), old_strain.data());
+              stress_space.strains(c, old_state.u.begin(), old_strain.data());
             for (unsigned int s = 0; s < n; ++s)
               {
                 const auto  &z      = state.z[c * n + s];
-                const double weight = sampling.weight(c, s);
+                const double weight = stress_space.weight(c, s);
                 result.irreversible_energy +=
                   0.5 * weight * (stiffness.strain(z) * z);
                 if (!flows)
@@ -83,12 +83,12 @@ namespace Viscoplastic
         const double mises   = std::sqrt(1.5) * stable_norm(deviator(mean));
         result.max_von_mises = std::max(result.max_von_mises, mises);
         result.max_strain    = std::max(result.max_strain, mean_strain.norm());
-        result.mean_von_mises += mises * sampling.volume(c);
-        result.stress_norm += (mean * mean) * sampling.volume(c);
-        volume += sampling.volume(c);
+        result.mean_von_mises += mises * stress_space.volume(c);
+        result.stress_norm += (mean * mean) * stress_space.volume(c);
+        volume += stress_space.volume(c);
       }
 
-    const MPI_Comm      comm = sampling.space.communicator;
+    const MPI_Comm      comm = stress_space.space.communicator;
     std::vector<double> sums{result.mean_von_mises,
                              result.stress_norm,
                              result.irreversible_energy,
@@ -110,14 +110,15 @@ namespace Viscoplastic
 
   template <int dim>
   double
-  relative_stress_fluctuation(const StressSampling<dim> &sampling,
-                              const State<dim>          &state)
+  relative_stress_fluctuation(const StressSpace<dim> &stress_space,
+                              const State<dim>       &state)
   {
-    // The strain within cells, which a sampling of cell means does not keep.
-    const StressSampling<dim>          points(sampling.space,
-                                     sampling.moduli,
-                                     /* at_quadrature_points = */ true,
-                                     sampling.mean_dilatation);
+    // The strain within cells, which a stress_space of cell means does not
+    // keep.
+    const StressSpace<dim>             points(stress_space.space,
+                                  stress_space.moduli,
+                                  /* at_quadrature_points = */ true,
+                                  stress_space.mean_dilatation);
     std::vector<SymmetricTensor<2, 3>> stress(points.n_samples);
     std::vector<double>                sums(2, 0.);
     for (std::size_t c = 0; c < points.n_cells(); ++c)
@@ -125,10 +126,10 @@ namespace Viscoplastic
         points.strains(c, state.u.begin(), stress.data());
         for (unsigned int s = 0; s < points.n_samples; ++s)
           {
-            stress[s] = sampling.moduli(c).stress(stress[s]);
+            stress[s] = stress_space.moduli(c).stress(stress[s]);
             if (!state.z.empty())
-              stress[s] += state.z[c * sampling.n_samples +
-                                   (sampling.n_samples == 1 ? 0 : s)];
+              stress[s] += state.z[c * stress_space.n_samples +
+                                   (stress_space.n_samples == 1 ? 0 : s)];
           }
         const SymmetricTensor<2, 3> mean = points.mean(c, stress.data());
         for (unsigned int s = 0; s < points.n_samples; ++s)
@@ -137,18 +138,18 @@ namespace Viscoplastic
             sums[1] += square(stress[s]) * points.weight(c, s);
           }
       }
-    Utilities::MPI::sum(sums, sampling.space.communicator, sums);
+    Utilities::MPI::sum(sums, stress_space.space.communicator, sums);
     return sums[1] > 0. ? std::sqrt(sums[0] / sums[1]) : 0.;
   }
 
 
 
   template StressSummary
-  summarise_stress<2>(const FlowLaws<2> &, const State<2> &, const State<2> &);
+  summarize_stress<2>(const FlowLaws<2> &, const State<2> &, const State<2> &);
   template StressSummary
-  summarise_stress<3>(const FlowLaws<3> &, const State<3> &, const State<3> &);
+  summarize_stress<3>(const FlowLaws<3> &, const State<3> &, const State<3> &);
   template double
-  relative_stress_fluctuation<2>(const StressSampling<2> &, const State<2> &);
+  relative_stress_fluctuation<2>(const StressSpace<2> &, const State<2> &);
   template double
-  relative_stress_fluctuation<3>(const StressSampling<3> &, const State<3> &);
+  relative_stress_fluctuation<3>(const StressSpace<3> &, const State<3> &);
 } // namespace Viscoplastic

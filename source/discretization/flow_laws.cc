@@ -13,13 +13,13 @@ namespace Viscoplastic
     /// The position of a sample; in 2D, z = 0.
     template <int dim>
     Point<3>
-    position(const StressSampling<dim> &sampling,
-             const std::size_t          cell,
-             const unsigned int         s)
+    position(const StressSpace<dim> &stress_space,
+             const std::size_t       cell,
+             const unsigned int      s)
     {
       Point<3> x;
       for (unsigned int d = 0; d < dim; ++d)
-        x[d] = sampling.position(cell, s)[d];
+        x[d] = stress_space.position(cell, s)[d];
       return x;
     }
   } // namespace
@@ -27,16 +27,16 @@ namespace Viscoplastic
 
 
   template <int dim>
-  FlowLaws<dim>::FlowLaws(const StressSampling<dim> &sampling)
-    : sampling(sampling)
+  FlowLaws<dim>::FlowLaws(const StressSpace<dim> &stress_space)
+    : stress_space(stress_space)
     , any(false)
     , any_cap(false)
     , any_own_energy(false)
-    , source_solution(sampling.space.scene.has_source() ?
-                        sampling.space.scene.exact_solution.get() :
+    , source_solution(stress_space.space.scene.has_source() ?
+                        stress_space.space.scene.exact_solution.get() :
                         nullptr)
   {
-    const Scene<dim> &scene         = sampling.space.scene;
+    const Scene<dim> &scene         = stress_space.space.scene;
     bool              any_to_sample = false;
     for (const auto &material : scene.materials)
       {
@@ -59,23 +59,23 @@ namespace Viscoplastic
         for (const auto &material : scene.materials)
           index.emplace(material.get(), index.size());
         for (const auto &cell :
-             sampling.space.dof_handler.active_cell_iterators())
+             stress_space.space.dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             material_of_cell.push_back(
               index.at(&scene.material(cell->material_id())));
       }
 
     const AtTime start = at(0.);
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-      for (unsigned int s = 0; s < sampling.n_samples; ++s)
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      for (unsigned int s = 0; s < stress_space.n_samples; ++s)
         {
           const ViscoplasticLaw *law = start.law(c);
           if (any_to_sample)
             parameters.push_back(
-              law ? law->point(position(sampling, c, s), 0.).parameters :
+              law ? law->point(position(stress_space, c, s), 0.).parameters :
                     std::array<double, 6>());
           if (law && (s == 0 || law->depends_on_position()))
-            law->check(sampling.moduli(c), start.point(c, s));
+            law->check(stress_space.moduli(c), start.point(c, s));
         }
   }
 
@@ -103,12 +103,12 @@ namespace Viscoplastic
                      [](const Entry &entry) { return entry.varies_in_time; }))
       return;
     const AtTime now(*this, t); // evaluates what depends on t alone
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
         const ViscoplasticLaw *law = now.law(c);
         if (law && law->depends_on_time() && law->depends_on_position())
-          for (unsigned int s = 0; s < sampling.n_samples; ++s)
-            law->point(position(sampling, c, s), t);
+          for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+            law->point(position(stress_space, c, s), t);
       }
   }
 
@@ -124,8 +124,8 @@ namespace Viscoplastic
     SymmetricTensor<2, 3> result;
     if (source_solution == nullptr)
       return result;
-    const Point<dim> &x         = sampling.position(cell, s);
-    const Stiffness  &stiffness = sampling.moduli(cell);
+    const Point<dim> &x         = stress_space.position(cell, s);
+    const Stiffness  &stiffness = stress_space.moduli(cell);
     result                      = source_solution->stress_rate(x, now.t, side) -
              stiffness.stress(source_solution->strain_rate(x, now.t, side));
     if (const ViscoplasticLaw *law = now.law(cell))
@@ -159,12 +159,13 @@ namespace Viscoplastic
     const unsigned int m =
       laws.material_of_cell.empty() ? 0 : laws.material_of_cell[cell];
     const Entry   &entry = laws.materials[m];
-    const Point<3> x     = position(laws.sampling, cell, s);
+    const Point<3> x     = position(laws.stress_space, cell, s);
     if (entry.varies_in_space && entry.varies_in_time)
       return entry.law->point(x, t);
     LawPoint point = uniform[m];
     if (entry.varies_in_space)
-      point.parameters = laws.parameters[cell * laws.sampling.n_samples + s];
+      point.parameters =
+        laws.parameters[cell * laws.stress_space.n_samples + s];
     point.x = x;
     point.t = t;
     return point;
@@ -226,37 +227,37 @@ namespace Viscoplastic
                 const double                            t,
                 const typename ExactSolution<dim>::Side side)
   {
-    const StressSampling<dim> &sampling = laws.sampling;
-    const MPI_Comm             comm     = sampling.space.communicator;
-    const auto                 now      = laws.at(t);
-    FlowRate                   result{IrreversibleStress(z.size()), 0., 0.};
-    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    const StressSpace<dim> &stress_space = laws.stress_space;
+    const MPI_Comm          comm         = stress_space.space.communicator;
+    const auto              now          = laws.at(t);
+    FlowRate                result{IrreversibleStress(z.size()), 0., 0.};
+    std::vector<SymmetricTensor<2, 3>> strain(stress_space.n_samples);
     CriticalSample                     worst;
     // An expression without a value there, on some rank.
     fail_together(comm, [&] {
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
           if (laws.source_solution)
-            for (unsigned int s = 0; s < sampling.n_samples; ++s)
-              result.rate[c * sampling.n_samples + s] =
+            for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+              result.rate[c * stress_space.n_samples + s] =
                 laws.source(now, c, s, side);
           const ViscoplasticLaw *law = now.law(c);
           if (law == nullptr)
             continue;
-          const Stiffness &stiffness = sampling.moduli(c);
-          sampling.strains(c, ghosted_u.begin(), strain.data());
-          for (unsigned int s = 0; s < sampling.n_samples; ++s)
+          const Stiffness &stiffness = stress_space.moduli(c);
+          stress_space.strains(c, ghosted_u.begin(), strain.data());
+          for (unsigned int s = 0; s < stress_space.n_samples; ++s)
             {
-              const std::size_t           i     = c * sampling.n_samples + s;
+              const std::size_t           i = c * stress_space.n_samples + s;
               const LawPoint              point = now.point(c, s);
               const SymmetricTensor<2, 3> stress =
                 stiffness.stress(strain[s]) + z[i];
               result.rate[i] += law->rate(stress, strain[s], stiffness, point);
               const double r =
                 law->relaxation_rate(stress, strain[s], stiffness, point);
-              worst.add(r, position(sampling, c, s));
+              worst.add(r, position(stress_space, c, s));
               if (law->is_beyond_cap(stress, point))
-                result.capped_volume += sampling.weight(c, s);
+                result.capped_volume += stress_space.weight(c, s);
             }
         }
     });

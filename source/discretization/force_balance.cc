@@ -47,12 +47,12 @@ namespace Viscoplastic
 
   template <int dim>
   Forces<dim>
-  evaluate_forces(const StressSampling<dim> &sampling,
-                  const DistributedMatrix   &matrix,
-                  Load<dim>                  load,
-                  const State<dim>          &state)
+  evaluate_forces(const StressSpace<dim>  &stress_space,
+                  const DistributedMatrix &matrix,
+                  Load<dim>                load,
+                  const State<dim>        &state)
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     Forces<dim>                 forces{
       space.owned_vector(), std::move(load), space.owned_vector(), {}, 0., 0.};
     space.to_frames(state.u, forces.u);
@@ -62,7 +62,7 @@ namespace Viscoplastic
     if (space.scene.has_irreversible_stress()) // collective
       {
         DistributedVector irreversible = space.owned_vector();
-        add_irreversible_load(sampling, state.z, irreversible);
+        add_irreversible_load(stress_space, state.z, irreversible);
         forces.irreversible_work = -(forces.u * irreversible);
         forces.internal -= irreversible;
       }
@@ -146,8 +146,8 @@ namespace Viscoplastic
         const double weight = face.weights()[p];
         const double force  = stable_norm(state.multiplier[p]);
         if (state.bound[p] > 0.)
-          result.max_utilisation =
-            std::max(result.max_utilisation, force / state.bound[p]);
+          result.max_utilization =
+            std::max(result.max_utilization, force / state.bound[p]);
         if (state.sticks[p])
           {
             result.stick_area += weight;
@@ -172,7 +172,7 @@ namespace Viscoplastic
 
 
 #define INSTANTIATE(dim)                                                       \
-  template Forces<dim> evaluate_forces<dim>(const StressSampling<dim> &,       \
+  template Forces<dim> evaluate_forces<dim>(const StressSpace<dim> &,          \
                                             const DistributedMatrix &,         \
                                             Load<dim>,                         \
                                             const State<dim> &);               \

@@ -44,22 +44,22 @@ namespace Viscoplastic
   template <int dim>
   IrreversibleStress
   implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,
-                               const StressSampling<dim>            &sampling,
-                               const DistributedVector              &ghosted_u,
-                               const IrreversibleStress             &old_z,
-                               const double                          k,
-                               const IrreversibleStress             &start)
+                               const StressSpace<dim>   &stress_space,
+                               const DistributedVector  &ghosted_u,
+                               const IrreversibleStress &old_z,
+                               const double              k,
+                               const IrreversibleStress &start)
   {
     IrreversibleStress                 z(old_z);
-    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    std::vector<SymmetricTensor<2, 3>> strain(stress_space.n_samples);
     LinearEquation                     linear_equation;
     const auto                         solve_cell = [&](const std::size_t c) {
-      const ViscoplasticLaw &law       = *laws.law(c);
-      const Stiffness       &stiffness = sampling.moduli(c);
-      sampling.strains(c, ghosted_u.begin(), strain.data());
-      for (unsigned int s = 0; s < sampling.n_samples; ++s)
+      const ViscoplasticLaw &law = *laws.law(c);
+      const Stiffness       &stiffness = stress_space.moduli(c);
+      stress_space.strains(c, ghosted_u.begin(), strain.data());
+      for (unsigned int s = 0; s < stress_space.n_samples; ++s)
         {
-          const std::size_t i = c * sampling.n_samples + s;
+          const std::size_t i = c * stress_space.n_samples + s;
           const LawPoint    point = laws.point(c, s);
           z[i] =
             law.has_constant_tangents() ?
@@ -71,8 +71,8 @@ namespace Viscoplastic
     };
 
     // A sample without a solution fails the step.
-    fail_together(sampling.space.communicator, [&] {
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+    fail_together(stress_space.space.communicator, [&] {
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         if (laws.law(c) != nullptr)
           solve_cell(c);
     });
@@ -83,14 +83,14 @@ namespace Viscoplastic
 
   template IrreversibleStress
   implicit_irreversible_stress<2>(const FlowLaws<2>::AtTime &,
-                                  const StressSampling<2> &,
+                                  const StressSpace<2> &,
                                   const DistributedVector &,
                                   const IrreversibleStress &,
                                   const double,
                                   const IrreversibleStress &);
   template IrreversibleStress
   implicit_irreversible_stress<3>(const FlowLaws<3>::AtTime &,
-                                  const StressSampling<3> &,
+                                  const StressSpace<3> &,
                                   const DistributedVector &,
                                   const IrreversibleStress &,
                                   const double,

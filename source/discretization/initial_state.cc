@@ -132,10 +132,10 @@ namespace Viscoplastic
 
   template <int dim>
   State<dim>
-  make_initial_state(const StressSampling<dim> &sampling,
-                     const bool                 equilibrate)
+  make_initial_state(const StressSpace<dim> &stress_space,
+                     const bool              equilibrate)
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     const Scene<dim>           &scene = space.scene;
 
     // Do u0 and the prescribed displacements agree at t = 0?
@@ -179,14 +179,14 @@ namespace Viscoplastic
 
     if (scene.has_irreversible_stress())
       {
-        std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
-        state.z.resize(sampling.n_cells() * sampling.n_samples);
-        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+        std::vector<SymmetricTensor<2, 3>> strain(stress_space.n_samples);
+        state.z.resize(stress_space.n_cells() * stress_space.n_samples);
+        for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
           {
-            sampling.strains(c, state.u.begin(), strain.data());
-            for (unsigned int s = 0; s < sampling.n_samples; ++s)
-              state.z[c * sampling.n_samples + s] =
-                -1. * sampling.moduli(c).stress(strain[s]);
+            stress_space.strains(c, state.u.begin(), strain.data());
+            for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+              state.z[c * stress_space.n_samples + s] =
+                -1. * stress_space.moduli(c).stress(strain[s]);
           }
         // (3.18): sigma0^h = P_Qh sigma0.
         if (scene.initial_stress)
@@ -197,10 +197,11 @@ namespace Viscoplastic
                 {
                   const SymmetricTensor<2, 3> stress =
                     initial_stress(scene, values.quadrature_point(q));
-                  if (sampling.n_samples == 1)
-                    state.z[c] += stress * (values.JxW(q) / sampling.volume(c));
+                  if (stress_space.n_samples == 1)
+                    state.z[c] +=
+                      stress * (values.JxW(q) / stress_space.volume(c));
                   else
-                    state.z[c * sampling.n_samples + q] += stress;
+                    state.z[c * stress_space.n_samples + q] += stress;
                 }
               ++c;
             });
@@ -213,22 +214,22 @@ namespace Viscoplastic
 
   template <int dim>
   double
-  initial_data_error(const StressSampling<dim> &sampling,
-                     const State<dim>          &state)
+  initial_data_error(const StressSpace<dim> &stress_space,
+                     const State<dim>       &state)
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     const Scene<dim>           &scene = space.scene;
     if (!scene.initial_displacement && !scene.initial_stress)
       return 0.;
     std::vector<double>                sums(2, 0.);
-    std::vector<SymmetricTensor<2, 3>> strain(sampling.n_samples);
+    std::vector<SymmetricTensor<2, 3>> strain(stress_space.n_samples);
     std::size_t                        c = 0;
     for_each_cell(space, 3, [&](const auto &cell, const auto &values) {
-      const Stiffness &stiffness = sampling.moduli(c);
-      sampling.strains(c, state.u.begin(), strain.data());
+      const Stiffness &stiffness = stress_space.moduli(c);
+      stress_space.strains(c, state.u.begin(), strain.data());
       SymmetricTensor<2, 3> sigma =
-        stiffness.stress(sampling.mean(c, strain.data()));
-      sigma += sampling.mean(c, &state.z[c * sampling.n_samples]);
+        stiffness.stress(stress_space.mean(c, strain.data()));
+      sigma += stress_space.mean(c, &state.z[c * stress_space.n_samples]);
       for (const unsigned int q : values.quadrature_point_indices())
         {
           SymmetricTensor<2, 3> error;
@@ -297,13 +298,13 @@ namespace Viscoplastic
 
 
   template State<2>
-  make_initial_state<2>(const StressSampling<2> &, const bool);
+  make_initial_state<2>(const StressSpace<2> &, const bool);
   template State<3>
-  make_initial_state<3>(const StressSampling<3> &, const bool);
+  make_initial_state<3>(const StressSpace<3> &, const bool);
   template double
-  initial_data_error<2>(const StressSampling<2> &, const State<2> &);
+  initial_data_error<2>(const StressSpace<2> &, const State<2> &);
   template double
-  initial_data_error<3>(const StressSampling<3> &, const State<3> &);
+  initial_data_error<3>(const StressSpace<3> &, const State<3> &);
   template double
   compatibility_violation<2>(const AdmissibleSpace<2> &,
                              const Load<2> &,

@@ -25,7 +25,7 @@ namespace Viscoplastic
     {
       std::vector<Tensor<1, dim>> directions;
 
-      /// Orthonormalise and add @p v; false if it depends on the others.
+      /// Orthonormalize and add @p v; false if it depends on the others.
       bool
       add(Tensor<1, dim> v)
       {

@@ -67,7 +67,7 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  TangentMatrix<dim>::linearise(const DistributedVector  &ghosted_u,
+  TangentMatrix<dim>::linearize(const DistributedVector  &ghosted_u,
                                 const IrreversibleStress &z,
                                 const double              t,
                                 const double              k_exact)
@@ -76,20 +76,20 @@ namespace Viscoplastic
     if (is_constant && k == step_size)
       return false;
 
-    const StressSampling<dim>         &sampling = laws.sampling;
-    const unsigned int                 n        = sampling.n_samples;
-    const auto                         now      = laws.at(t);
+    const StressSpace<dim>            &stress_space = laws.stress_space;
+    const unsigned int                 n            = stress_space.n_samples;
+    const auto                         now          = laws.at(t);
     std::vector<SymmetricTensor<4, 3>> new_tangents;
-    new_tangents.reserve(sampling.n_cells() * n);
+    new_tangents.reserve(stress_space.n_cells() * n);
     std::vector<SymmetricTensor<2, 3>> strain(n);
-    const MPI_Comm                     comm = sampling.space.communicator;
+    const MPI_Comm                     comm = stress_space.space.communicator;
     // A law without derivatives at a sample fails the step.
     fail_together(comm, [&] {
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
           const ViscoplasticLaw *law       = now.law(c);
-          const Stiffness       &stiffness = sampling.moduli(c);
-          sampling.strains(c, ghosted_u.begin(), strain.data());
+          const Stiffness       &stiffness = stress_space.moduli(c);
+          stress_space.strains(c, ghosted_u.begin(), strain.data());
           for (unsigned int s = 0; s < n; ++s)
             new_tangents.push_back(
               law ?
@@ -124,7 +124,7 @@ namespace Viscoplastic
         max_nu = std::max(max_nu, poissons_ratio(tangents[i]));
         // The largest eigenvalue of C^-1 E: with a potential, all others are at
         // least 1.
-        const Stiffness &stiffness = sampling.moduli(i / n);
+        const Stiffness &stiffness = stress_space.moduli(i / n);
         if (&stiffness != last)
           E = stiffness.tensor();
         last    = &stiffness;
@@ -142,9 +142,9 @@ namespace Viscoplastic
   void
   TangentMatrix<dim>::assemble()
   {
-    const StressSampling<dim>  &sampling = laws.sampling;
-    const AdmissibleSpace<dim> &space    = sampling.space;
-    const unsigned int          n        = sampling.n_samples;
+    const StressSpace<dim>     &stress_space = laws.stress_space;
+    const AdmissibleSpace<dim> &space        = stress_space.space;
+    const unsigned int          n            = stress_space.n_samples;
     tangent_matrix.copy_from(elastic_matrix);
 
     const unsigned int n_dofs = space.dof_handler.get_fe().n_dofs_per_cell();
@@ -156,7 +156,7 @@ namespace Viscoplastic
       if (cell->is_locally_owned())
         {
           const std::size_t           c     = index++;
-          const SymmetricTensor<4, 3> E     = sampling.moduli(c).tensor();
+          const SymmetricTensor<4, 3> E     = stress_space.moduli(c).tensor();
           bool                        flows = false;
           for (unsigned int s = 0; s < n; ++s)
             {
@@ -166,7 +166,7 @@ namespace Viscoplastic
           if (!flows)
             continue;
           cell_matrix = 0.;
-          sampling.add_stiffness(c, change.data(), cell_matrix);
+          stress_space.add_stiffness(c, change.data(), cell_matrix);
           cell->get_dof_indices(dofs);
           space.rotate(dofs, cell_matrix);
           space.hanging_nodes().distribute_local_to_global(cell_matrix,
@@ -184,15 +184,15 @@ namespace Viscoplastic
                                   const DistributedVector  &ghosted_from,
                                   const DistributedVector  &ghosted_to) const
   {
-    const StressSampling<dim>         &sampling = laws.sampling;
-    const unsigned int                 n        = sampling.n_samples;
+    const StressSpace<dim>            &stress_space = laws.stress_space;
+    const unsigned int                 n            = stress_space.n_samples;
     IrreversibleStress                 result(z);
     std::vector<SymmetricTensor<2, 3>> from(n), to(n);
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
-        const Stiffness &stiffness = sampling.moduli(c);
-        sampling.strains(c, ghosted_from.begin(), from.data());
-        sampling.strains(c, ghosted_to.begin(), to.data());
+        const Stiffness &stiffness = stress_space.moduli(c);
+        stress_space.strains(c, ghosted_from.begin(), from.data());
+        stress_space.strains(c, ghosted_to.begin(), to.data());
         for (unsigned int s = 0; s < n; ++s)
           {
             const SymmetricTensor<2, 3> change = to[s] - from[s];
@@ -209,16 +209,17 @@ namespace Viscoplastic
   double
   TangentMatrix<dim>::norm(const IrreversibleStress &stress) const
   {
-    const StressSampling<dim> &sampling = laws.sampling;
-    const unsigned int         n        = sampling.n_samples;
-    double                     sum      = 0.;
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+    const StressSpace<dim> &stress_space = laws.stress_space;
+    const unsigned int      n            = stress_space.n_samples;
+    double                  sum          = 0.;
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       for (unsigned int s = 0; s < n; ++s)
         {
           const SymmetricTensor<2, 3> &tau = stress[c * n + s];
-          sum += sampling.weight(c, s) * (tau * (compliances[c * n + s] * tau));
+          sum +=
+            stress_space.weight(c, s) * (tau * (compliances[c * n + s] * tau));
         }
-    return std::sqrt(Utilities::MPI::sum(sum, sampling.space.communicator));
+    return std::sqrt(Utilities::MPI::sum(sum, stress_space.space.communicator));
   }
 
 

@@ -1,61 +1,240 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/numerics/error_estimator.h>
+#include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/error_estimator.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    template <int dim>
+    double
+    energy_norm(const Forces<dim> &forces)
+    {
+      return std::sqrt(2. * std::max(0., forces.strain_energy));
+    }
+
+
+
+    /// E^-1 stress : stress.
+    double
+    complementary_square(const Stiffness             &stiffness,
+                         const SymmetricTensor<2, 3> &stress)
+    {
+      if (!stiffness.is_isotropic())
+        return stiffness.strain(stress) * stress;
+      const double trace_square = Utilities::fixed_power<2>(trace(stress));
+      return (stress * stress - trace_square / 3.) /
+               (2. * stiffness.shear_modulus()) +
+             trace_square / (9. * stiffness.bulk_modulus());
+    }
+  } // namespace
+
+
+
+  TimeDefect
+  time_defect(const TimeScheme scheme)
+  {
+    // Of Heun's that of the trapezoidal rule; what the predictor adds where G
+    // depends on it is left out.
+    return scheme == TimeScheme::forward_euler  ? TimeDefect{0.5, 0.} :
+           scheme == TimeScheme::backward_euler ? TimeDefect{-0.5, 0.} :
+                                                  TimeDefect{0., -1. / 12.};
+  }
+
+
+
   template <int dim>
-  Vector<double>
-  kelly_estimate(const AdmissibleSpace<dim> &space,
-                 const DistributedVector    &ghosted_u)
+  ErrorEstimator<dim>::ErrorEstimator(const Scene<dim> &scene)
+    : scene(scene)
+    , solver(scene.parameters.solver)
+    , algebraic_fraction(scene.parameters.error_control.algebraic_fraction)
+  {}
+
+
+
+  template <int dim>
+  unsigned int
+  ErrorEstimator<dim>::n_sample_fields(const Scene<dim> &scene)
   {
-    const Triangulation<dim> &triangulation =
-      space.dof_handler.get_triangulation();
-    // Estimates come with single precision, whose range the units of a scene
-    // must not meet: scale to 1 by a power of two, which changes no digit.
-    double size = 0.;
-    for (std::size_t i = 0; i < space.relevant.n_elements(); ++i)
-      size = std::max(size, std::abs(ghosted_u.begin()[i]));
-    size = Utilities::MPI::max(size, space.communicator);
-    const double unit =
-      size > 0. ? std::ldexp(1., std::max(std::ilogb(size), -1000)) : 1.;
-    DistributedVector scaled_u(ghosted_u);
-    scaled_u /= unit;
-    Vector<float> estimate(triangulation.n_active_cells());
-    KellyErrorEstimator<dim>::estimate(space.dof_handler,
-                                       QGauss<dim - 1>(2),
-                                       {},
-                                       scaled_u,
-                                       estimate,
-                                       ComponentMask(),
-                                       nullptr,
-                                       numbers::invalid_unsigned_int,
-                                       triangulation.locally_owned_subdomain());
-    Vector<double> result(estimate.size());
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = Utilities::fixed_power<2>(unit * estimate[i]);
-    return result;
+    if (!scene.has_irreversible_stress())
+      return 0;
+    if (!scene.parameters.error_control.error_estimator ||
+        !scene.has_viscosity())
+      return 1;
+    return time_defect(scene.parameters.time.scheme).second != 0. ? 3 : 2;
   }
 
 
 
+  template <int dim>
+  void
+  ErrorEstimator<dim>::begin(const StressSpace<dim> &stress_space,
+                             EvaluatedState<dim>    &initial) const
+  {
+    State<dim> &state      = initial.state;
+    initial.errors.initial = initial_data_error(stress_space, state);
+    if (n_sample_fields(scene) > 1)
+      state.time_error.assign(state.z.size(), SymmetricTensor<2, 3>());
+    if (n_sample_fields(scene) > 2)
+      state.rate_slope.assign(state.z.size(), SymmetricTensor<2, 3>());
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorEstimator<dim>::assess_equilibrium(const ContactReport &report,
+                                          EvaluatedState<dim> &initial) const
+  {
+    initial.errors.energy_norm = energy_norm(initial.forces);
+    initial.errors.space = space_calibration * initial.space_estimate.residual;
+    initial.errors.algebraic = report.error;
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorEstimator<dim>::change_mesh(const AdmissibleSpace<dim> &space,
+                                   const DistributedMatrix    &matrix,
+                                   EvaluatedState<dim>        &accepted) const
+  {
+    DistributedVector velocity = space.owned_vector(), force = velocity;
+    space.to_frames(accepted.state.velocity, velocity);
+    matrix.vmult(force, velocity);
+    accepted.errors.velocity_square = velocity * force;
+  }
+
+
+
+  template <int dim>
   double
-  total_estimate(const Vector<double> &squared_estimate, const MPI_Comm comm)
+  ErrorEstimator<dim>::tolerance(const ErrorEstimate &accepted) const
   {
-    return std::sqrt(Utilities::MPI::sum(
-      std::accumulate(squared_estimate.begin(), squared_estimate.end(), 0.),
-      comm));
+    const double discretization = accepted.space + accepted.time;
+    if (solver.contact_tolerance > 0. || accepted.energy_norm == 0. ||
+        discretization == 0.)
+      return solver.strict_tolerance();
+    return std::clamp(algebraic_fraction * discretization /
+                        accepted.energy_norm,
+                      least_tolerance,
+                      largest_tolerance);
   }
 
 
 
-  template Vector<double>
-  kelly_estimate<2>(const AdmissibleSpace<2> &, const DistributedVector &);
-  template Vector<double>
-  kelly_estimate<3>(const AdmissibleSpace<3> &, const DistributedVector &);
+  template <int dim>
+  void
+  ErrorEstimator<dim>::add_defect(const StressSpace<dim> &stress_space,
+                                  const TimeDefect       &defect,
+                                  const State<dim>       &accepted,
+                                  const FlowRate         &accepted_rate,
+                                  EvaluatedState<dim>    &end) const
+  {
+    State<dim>    &state       = end.state;
+    ErrorEstimate &estimate    = end.errors;
+    const bool     is_second   = n_sample_fields(scene) > 2;
+    const bool     is_first    = accepted.k == 0.;
+    const bool     is_measured = scene.parameters.step_control.is_on();
+    const double   k           = state.k;
+    state.time_error           = accepted.time_error;
+    if (is_second)
+      state.rate_slope.resize(accepted.rate_slope.size());
+    std::vector<double> sums(4, 0.);
+    std::size_t         i = 0;
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      {
+        const Stiffness &stiffness = stress_space.moduli(c);
+        for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
+          {
+            const double                weight = stress_space.weight(c, s);
+            const SymmetricTensor<2, 3> change =
+              end.rate->rate[i] - accepted_rate.rate[i];
+            SymmetricTensor<2, 3> step = defect.first * k * change;
+            if (is_second)
+              {
+                state.rate_slope[i] = change / k;
+                // There is no second derivative before the second step.
+                if (!is_first)
+                  step += defect.second * k * k * k * 2. / (k + accepted.k) *
+                          (state.rate_slope[i] - accepted.rate_slope[i]);
+              }
+            state.time_error[i] += step;
+            // Steps are chosen with the slope as the change of slope there.
+            if (is_first)
+              step += defect.second * k * change;
+            sums[0] += weight * complementary_square(stiffness, step);
+            sums[1] +=
+              weight * complementary_square(stiffness, state.time_error[i]);
+            if (is_measured)
+              {
+                sums[2] += weight * complementary_square(stiffness, state.z[i]);
+                sums[3] +=
+                  weight *
+                  complementary_square(stiffness, state.z[i] - accepted.z[i]);
+              }
+          }
+      }
+    Utilities::MPI::sum(sums, stress_space.space.communicator, sums);
+    estimate.time_indicator      = std::sqrt(sums[0]);
+    estimate.time                = std::sqrt(sums[1]);
+    estimate.irreversible_norm   = std::sqrt(sums[2]);
+    estimate.irreversible_change = std::sqrt(sums[3]);
+  }
+
+
+
+  template <int dim>
+  void
+  ErrorEstimator<dim>::assess(const StressSpace<dim>    &stress_space,
+                              const TimeDefect          &defect,
+                              const ContactReport       &report,
+                              const EvaluatedState<dim> &accepted,
+                              const FlowRate            *accepted_rate,
+                              EvaluatedState<dim>       &end) const
+  {
+    const AdmissibleSpace<dim> &space    = stress_space.space;
+    const Forces<dim>          &forces   = end.forces;
+    const ErrorEstimate        &before   = accepted.errors;
+    ErrorEstimate              &estimate = end.errors;
+    estimate.initial                     = before.initial;
+    estimate.energy_norm                 = energy_norm(forces);
+    estimate.space     = space_calibration * end.space_estimate.residual;
+    estimate.algebraic = report.error;
+
+    if (scene.has_viscosity())
+      {
+        Assert(accepted_rate != nullptr && end.rate,
+               ExcMessage("The rates have not been evaluated."));
+        add_defect(stress_space, defect, accepted.state, *accepted_rate, end);
+      }
+
+    // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:
+    // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).
+    const double      k = end.state.k;
+    DistributedVector change(forces.u), velocity(forces.u),
+      elastic(forces.elastic);
+    change -= accepted.forces.u;
+    elastic -= accepted.forces.elastic;
+    space.to_frames(accepted.state.velocity, velocity);
+    estimate.velocity_square = (elastic * change) / (k * k);
+    const double jump        = estimate.velocity_square -
+                        2. / k * (elastic * velocity) + before.velocity_square;
+    // Below this it is rounding.
+    const bool is_jump =
+      jump > 1e-12 * (estimate.velocity_square + before.velocity_square);
+    estimate.velocity_variation =
+      std::sqrt(Utilities::fixed_power<2>(before.velocity_variation) +
+                (is_jump ? k / 3. * jump : 0.));
+  }
+
+
+
+  template class ErrorEstimator<2>;
+  template class ErrorEstimator<3>;
 } // namespace Viscoplastic

@@ -163,17 +163,17 @@ namespace Viscoplastic
   template <int dim>
   StateTransfer<dim>::StateTransfer(
     parallel::distributed::Triangulation<dim> &triangulation,
-    const StressSampling<dim>                 &old_sampling,
+    const StressSpace<dim>                    &old_stress_space,
     const State<dim>                          &state,
     const DistributedVector                   *multiplier_density)
     : triangulation(triangulation)
-    , n_samples(old_sampling.n_samples)
+    , n_samples(old_stress_space.n_samples)
     , old_fields{{state.u,
                   state.velocity,
                   state.initial_u,
                   multiplier_density ? *multiplier_density :
                                        DistributedVector()}}
-    , field_transfer(old_sampling.space.dof_handler)
+    , field_transfer(old_stress_space.space.dof_handler)
     , handle(numbers::invalid_unsigned_int)
     , n(state.n)
     , t(state.t)
@@ -189,10 +189,10 @@ namespace Viscoplastic
     const auto sampled = sample_fields(state);
     for (unsigned int f = 0; f < sampled.size(); ++f)
       if (Utilities::MPI::max(sampled[f]->empty() ? 0 : 1,
-                              old_sampling.space.communicator) == 1)
+                              old_stress_space.space.communicator) == 1)
         {
           AssertDimension(sampled[f]->size(),
-                          old_sampling.n_cells() * n_samples);
+                          old_stress_space.n_cells() * n_samples);
           carried.push_back(f);
           old_samples.push_back(*sampled[f]);
         }
@@ -204,7 +204,7 @@ namespace Viscoplastic
       if (cell->is_locally_owned())
         {
           for (unsigned int s = 0; s < n_samples; ++s)
-            old_weights.push_back(old_sampling.weight(index, s));
+            old_weights.push_back(old_stress_space.weight(index, s));
           old_cell[cell->active_cell_index()] = index++;
         }
 
@@ -282,7 +282,7 @@ namespace Viscoplastic
 
   template <int dim>
   typename StateTransfer<dim>::Result
-  StateTransfer<dim>::unpack(const StressSampling<dim> &new_sampling)
+  StateTransfer<dim>::unpack(const StressSpace<dim> &new_sampling)
   {
     AssertDimension(new_sampling.n_samples, n_samples);
     const AdmissibleSpace<dim> &space = new_sampling.space;

@@ -101,15 +101,15 @@ namespace Viscoplastic
 
     template <int dim>
     void
-    add_cells(const FieldSamples<dim>   &reference,
-              const StressSampling<dim> &sampling,
-              const State<dim>          &state,
-              Squares                   &error,
-              Squares                   &norm)
+    add_cells(const FieldSamples<dim> &reference,
+              const StressSpace<dim>  &stress_space,
+              const State<dim>        &state,
+              Squares                 &error,
+              Squares                 &norm)
     {
-      using Samples                         = FieldSamples<dim>;
-      const auto               &dof_handler = sampling.space.dof_handler;
-      const auto                stress = sampling.mean_stress(state.u, state.z);
+      using Samples           = FieldSamples<dim>;
+      const auto &dof_handler = stress_space.space.dof_handler;
+      const auto  stress      = stress_space.mean_stress(state.u, state.z);
       std::vector<unsigned int> owned_index(
         dof_handler.get_triangulation().n_active_cells());
       unsigned int n_owned = 0;
@@ -127,9 +127,9 @@ namespace Viscoplastic
         dof_handler,
         [&](const auto &cell, const auto &samples, const auto &points) {
           const unsigned int i         = owned_index[cell->active_cell_index()];
-          const Stiffness   &stiffness = sampling.moduli(i);
+          const Stiffness   &stiffness = stress_space.moduli(i);
           double             dilatation = 0.;
-          if (sampling.mean_dilatation)
+          if (stress_space.mean_dilatation)
             {
               whole.reinit(cell);
               gradients.resize(whole.n_quadrature_points);
@@ -159,11 +159,11 @@ namespace Viscoplastic
                 }
               const auto exact =
                 reduced_strain(g,
-                               sampling.mean_dilatation,
+                               stress_space.mean_dilatation,
                                sample[Samples::dilatation_index]);
               const auto defect =
                 exact - reduced_strain(gradients[q],
-                                       sampling.mean_dilatation,
+                                       stress_space.mean_dilatation,
                                        dilatation);
               error[0] += w * (stiffness.stress(defect) * defect);
               norm[0] += w * (stiffness.stress(exact) * exact);
@@ -271,12 +271,12 @@ namespace Viscoplastic
 
   template <int dim>
   FieldSamples<dim>
-  sample_fields(const StressSampling<dim> &sampling,
-                const State<dim>          &state,
-                const DistributedVector   *multiplier_density)
+  sample_fields(const StressSpace<dim>  &stress_space,
+                const State<dim>        &state,
+                const DistributedVector *multiplier_density)
   {
     using Samples           = FieldSamples<dim>;
-    const auto &space       = sampling.space;
+    const auto &space       = stress_space.space;
     const auto &dof_handler = space.dof_handler;
     Samples     result;
     result.t = state.t;
@@ -295,8 +295,8 @@ namespace Viscoplastic
     std::vector<Tensor<1, dim>> values(fe_values.n_quadrature_points);
     std::vector<Tensor<2, dim>> gradients(fe_values.n_quadrature_points);
     std::vector<Tensor<1, dim>> lambda(face_values.n_quadrature_points);
-    const auto                  stress = sampling.mean_stress(state.u, state.z);
-    const auto                  components = stress_components<dim>();
+    const auto stress     = stress_space.mean_stress(state.u, state.z);
+    const auto components = stress_components<dim>();
 
     std::size_t index = 0;
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -307,7 +307,7 @@ namespace Viscoplastic
         fe_values[displacement].get_function_values(state.u, values);
         fe_values[displacement].get_function_gradients(state.u, gradients);
         double dilatation = trace(gradients[0]);
-        if (sampling.mean_dilatation)
+        if (stress_space.mean_dilatation)
           {
             whole.reinit(cell);
             whole[displacement].get_function_gradients(state.u, all_gradients);
@@ -432,16 +432,17 @@ namespace Viscoplastic
 
   template <int dim>
   SolutionErrors
-  differences(const FieldSamples<dim>   &reference,
-              const StressSampling<dim> &sampling,
-              const State<dim>          &state,
-              const DistributedVector   *multiplier_density)
+  differences(const FieldSamples<dim> &reference,
+              const StressSpace<dim>  &stress_space,
+              const State<dim>        &state,
+              const DistributedVector *multiplier_density)
   {
-    const MPI_Comm communicator = sampling.space.communicator;
+    const MPI_Comm communicator = stress_space.space.communicator;
     Squares        error{}, norm{};
-    add_cells(reference, sampling, state, error, norm);
+    add_cells(reference, stress_space, state, error, norm);
     if (multiplier_density)
-      add_faces(reference, sampling.space, *multiplier_density, error, norm);
+      add_faces(
+        reference, stress_space.space, *multiplier_density, error, norm);
     SolutionErrors result;
     result.error = roots(error, communicator);
     result.exact = roots(norm, communicator);
@@ -461,11 +462,11 @@ namespace Viscoplastic
   template struct FieldSamples<2>;
   template struct FieldSamples<3>;
   template FieldSamples<2>
-  sample_fields<2>(const StressSampling<2> &,
+  sample_fields<2>(const StressSpace<2> &,
                    const State<2> &,
                    const DistributedVector *);
   template FieldSamples<3>
-  sample_fields<3>(const StressSampling<3> &,
+  sample_fields<3>(const StressSpace<3> &,
                    const State<3> &,
                    const DistributedVector *);
   template void
@@ -482,12 +483,12 @@ namespace Viscoplastic
   read_samples<3>(const std::string &, const MPI_Comm);
   template SolutionErrors
   differences<2>(const FieldSamples<2> &,
-                 const StressSampling<2> &,
+                 const StressSpace<2> &,
                  const State<2> &,
                  const DistributedVector *);
   template SolutionErrors
   differences<3>(const FieldSamples<3> &,
-                 const StressSampling<3> &,
+                 const StressSpace<3> &,
                  const State<3> &,
                  const DistributedVector *);
 } // namespace Viscoplastic

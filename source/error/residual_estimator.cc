@@ -82,18 +82,18 @@ namespace Viscoplastic
     const IrreversibleStress &z,
     IrreversibleStress       &means) const
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     // A rank without cells has an empty z in every scene.
     if (Utilities::MPI::max(z.empty() ? 0 : 1, space.communicator) == 0)
       return nullptr;
     const bool is_alone =
       Utilities::MPI::n_mpi_processes(space.communicator) == 1;
-    if (is_alone && sampling.n_samples == 1)
+    if (is_alone && stress_space.n_samples == 1)
       return z.data();
     means.resize(cells.size());
-    const std::size_t n_owned = sampling.n_cells();
+    const std::size_t n_owned = stress_space.n_cells();
     for (std::size_t c = 0; c < n_owned; ++c)
-      means[c] = sampling.mean(c, &z[c * sampling.n_samples]);
+      means[c] = stress_space.mean(c, &z[c * stress_space.n_samples]);
     if (is_alone)
       return means.data();
 
@@ -130,7 +130,7 @@ namespace Viscoplastic
         terms.u[v][d] = u[cells[cell].nodes[v] + d];
     terms.stiffness  = &cells[cell].stiffness;
     terms.dilatation = 0.;
-    if (sampling.mean_dilatation)
+    if (stress_space.mean_dilatation)
       for (unsigned int v = 0; v < n_vertices; ++v)
         terms.dilatation +=
           terms.u[v] * shapes[cells[cell].shape].mean_gradients[v];
@@ -150,7 +150,7 @@ namespace Viscoplastic
                                         Tensor<1, dim>    *tractions) const
   {
     const Stiffness &stiffness       = *terms.stiffness;
-    const bool       mean_dilatation = sampling.mean_dilatation;
+    const bool       mean_dilatation = stress_space.mean_dilatation;
     const double     mu              = stiffness.shear_modulus(),
                  bulk                = stiffness.bulk_modulus();
     for (unsigned int q = 0; q < n_face_points; ++q)
@@ -199,7 +199,7 @@ namespace Viscoplastic
     // From the second derivatives of u_h; z_h has none, and under mean
     // dilatation the volumetric part is constant on the cell.
     const Stiffness &stiffness       = *terms.stiffness;
-    const bool       mean_dilatation = sampling.mean_dilatation;
+    const bool       mean_dilatation = stress_space.mean_dilatation;
     const double     mu              = stiffness.shear_modulus(),
                  lambda = (mean_dilatation ? 0. : stiffness.bulk_modulus()) -
                           2. / 3. * mu;
@@ -301,8 +301,8 @@ namespace Viscoplastic
     const double              t,
     const DistributedVector  *multiplier_density) const
   {
-    const AdmissibleSpace<dim>  &space   = sampling.space;
-    const std::size_t            n_owned = sampling.n_cells();
+    const AdmissibleSpace<dim>  &space   = stress_space.space;
+    const std::size_t            n_owned = stress_space.n_cells();
     const double                *u       = ghosted_u.begin();
     IrreversibleStress           means;
     const SymmetricTensor<2, 3> *mean_z = mean_irreversible_stress(z, means);

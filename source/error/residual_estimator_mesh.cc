@@ -53,8 +53,9 @@ namespace Viscoplastic
 
 
   template <int dim>
-  ResidualEstimator<dim>::ResidualEstimator(const StressSampling<dim> &sampling)
-    : sampling(sampling)
+  ResidualEstimator<dim>::ResidualEstimator(
+    const StressSpace<dim> &stress_space)
+    : stress_space(stress_space)
     , uniform_body_force(false)
   {
     make_cells();
@@ -62,12 +63,12 @@ namespace Viscoplastic
     shape_of_key.clear();
     subface_shape_of.clear();
 
-    const auto &b = sampling.space.scene.body_force;
+    const auto &b = stress_space.space.scene.body_force;
     if (!b)
       return;
     uniform_body_force = !depends_on_position(*b);
     if (!b->depends_on_time() && !uniform_body_force)
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         for (const auto &x : shapes[cells[c].shape].positions)
           body_force.push_back(b->vector(origins[c] + x, 0.));
   }
@@ -136,7 +137,7 @@ namespace Viscoplastic
   void
   ResidualEstimator<dim>::make_cells()
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
     FEValues<dim>               values(fe,
                          QGauss<dim>(2),
@@ -150,7 +151,7 @@ namespace Viscoplastic
             LocalCell here{find_shape(cell, values, on_face),
                            cell->active_cell_index(),
                            {},
-                           owned ? sampling.moduli(cells.size()) :
+                           owned ? stress_space.moduli(cells.size()) :
                                    space.scene.material(cell->material_id())
                                      .stiffness(cell->center())};
             for (unsigned int v = 0; v < n_vertices; ++v)
@@ -170,7 +171,7 @@ namespace Viscoplastic
   void
   ResidualEstimator<dim>::make_faces()
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
     std::vector<unsigned int>   number(
       space.dof_handler.get_triangulation().n_active_cells());

@@ -37,24 +37,26 @@ namespace Viscoplastic
 
     template <int dim>
     void
-    add_cells(const StressSampling<dim> &sampling,
-              const State<dim>          &state,
-              Squares                   &error,
-              Squares                   &exact)
+    add_cells(const StressSpace<dim> &stress_space,
+              const State<dim>       &state,
+              Squares                &error,
+              Squares                &exact)
     {
       const FEValuesExtractors::Vector displacement(0);
-      const auto                      &dof_handler = sampling.space.dof_handler;
-      const ExactSolution<dim> &solution = *sampling.space.scene.exact_solution;
-      FEValues<dim>             fe_values(dof_handler.get_fe(),
+      const auto               &dof_handler = stress_space.space.dof_handler;
+      const ExactSolution<dim> &solution =
+        *stress_space.space.scene.exact_solution;
+      FEValues<dim>                      fe_values(dof_handler.get_fe(),
                               QGauss<dim>(3),
                               update_values | update_gradients |
                                 update_JxW_values | update_quadrature_points);
-      const unsigned int        n = fe_values.n_quadrature_points;
+      const unsigned int                 n = fe_values.n_quadrature_points;
       std::vector<Tensor<1, dim>>        values(n);
       std::vector<Tensor<2, dim>>        gradients(n);
       std::vector<SymmetricTensor<2, 3>> strains(n);
-      const auto stress          = sampling.mean_stress(state.u, state.z);
-      const bool has_mean_memory = sampling.n_samples == 1 && !state.z.empty();
+      const auto stress = stress_space.mean_stress(state.u, state.z);
+      const bool has_mean_memory =
+        stress_space.n_samples == 1 && !state.z.empty();
 
       std::size_t index = 0;
       for (const auto &cell : dof_handler.active_cell_iterators())
@@ -68,9 +70,9 @@ namespace Viscoplastic
             mean_divergence(fe_values.get_JxW_values(), gradients);
           for (unsigned int q = 0; q < n; ++q)
             strains[q] = reduced_strain(gradients[q],
-                                        sampling.mean_dilatation,
+                                        stress_space.mean_dilatation,
                                         dilatation);
-          const Stiffness &stiffness = sampling.moduli(index);
+          const Stiffness &stiffness = stress_space.moduli(index);
           for (unsigned int q = 0; q < n; ++q)
             {
               const Point<dim>    &x = fe_values.quadrature_point(q);
@@ -149,20 +151,22 @@ namespace Viscoplastic
 
     template <int dim>
     double
-    squared_error_at_samples(const StressSampling<dim> &sampling,
-                             const State<dim>          &state)
+    squared_error_at_samples(const StressSpace<dim> &stress_space,
+                             const State<dim>       &state)
     {
-      const ExactSolution<dim> &solution = *sampling.space.scene.exact_solution;
-      double                    sum      = 0.;
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-        for (unsigned int s = 0; s < sampling.n_samples; ++s)
+      const ExactSolution<dim> &solution =
+        *stress_space.space.scene.exact_solution;
+      double sum = 0.;
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        for (unsigned int s = 0; s < stress_space.n_samples; ++s)
           {
-            const Point<dim> &x         = sampling.position(c, s);
-            const Stiffness  &stiffness = sampling.moduli(c);
+            const Point<dim> &x         = stress_space.position(c, s);
+            const Stiffness  &stiffness = stress_space.moduli(c);
             const auto        defect    = solution.stress(x, state.t) -
                                 stiffness.stress(solution.strain(x, state.t)) -
-                                state.z[c * sampling.n_samples + s];
-            sum += sampling.weight(c, s) * (stiffness.strain(defect) * defect);
+                                state.z[c * stress_space.n_samples + s];
+            sum +=
+              stress_space.weight(c, s) * (stiffness.strain(defect) * defect);
           }
       return sum;
     }
@@ -172,23 +176,23 @@ namespace Viscoplastic
 
   template <int dim>
   SolutionErrors
-  solution_errors(const StressSampling<dim> &sampling,
-                  const State<dim>          &state,
-                  const DistributedVector   *multiplier_density)
+  solution_errors(const StressSpace<dim>  &stress_space,
+                  const State<dim>        &state,
+                  const DistributedVector *multiplier_density)
   {
-    const Scene<dim> &scene = sampling.space.scene;
-    const MPI_Comm    comm  = sampling.space.communicator;
+    const Scene<dim> &scene = stress_space.space.scene;
+    const MPI_Comm    comm  = stress_space.space.communicator;
     Squares           error, exact;
-    add_cells(sampling, state, error, exact);
+    add_cells(stress_space, state, error, exact);
     if (multiplier_density && scene.exact_solution->has_stress())
       add_contact_faces(
-        sampling.space, state.t, *multiplier_density, error, exact);
+        stress_space.space, state.t, *multiplier_density, error, exact);
     SolutionErrors result;
     result.error = roots(error, comm);
     result.exact = roots(exact, comm);
-    if (sampling.n_samples > 1 && scene.has_irreversible_stress() &&
+    if (stress_space.n_samples > 1 && scene.has_irreversible_stress() &&
         scene.exact_solution->has_stress())
-      error.memory = squared_error_at_samples(sampling, state);
+      error.memory = squared_error_at_samples(stress_space, state);
     result.memory = std::sqrt(Utilities::MPI::sum(error.memory, comm));
     return result;
   }
@@ -196,11 +200,11 @@ namespace Viscoplastic
 
 
   template SolutionErrors
-  solution_errors<2>(const StressSampling<2> &,
+  solution_errors<2>(const StressSpace<2> &,
                      const State<2> &,
                      const DistributedVector *);
   template SolutionErrors
-  solution_errors<3>(const StressSampling<3> &,
+  solution_errors<3>(const StressSpace<3> &,
                      const State<3> &,
                      const DistributedVector *);
 } // namespace Viscoplastic

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/space_estimator.h>
 
 namespace Viscoplastic
@@ -13,10 +13,10 @@ namespace Viscoplastic
         discretization.scene().parameters.refinement.strategy ==
         RefinementStrategy::residual)
   {
-    if (discretization.scene().parameters.error_control.error_bar ||
+    if (discretization.scene().parameters.error_control.error_estimator ||
         refines_by_residual)
       residual_estimator =
-        std::make_unique<ResidualEstimator<dim>>(discretization.sampling);
+        std::make_unique<ResidualEstimator<dim>>(discretization.stress_space);
   }
 
 
@@ -25,7 +25,8 @@ namespace Viscoplastic
   bool
   SpaceEstimator<dim>::is_needed(const Scene<dim> &scene)
   {
-    return scene.parameters.error_control.error_bar || scene.is_adaptive();
+    return scene.parameters.error_control.error_estimator ||
+           scene.is_adaptive();
   }
 
 

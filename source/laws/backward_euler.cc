@@ -86,7 +86,7 @@ namespace Viscoplastic
   definite_tangent(const SymmetricTensor<4, 3> &tangent,
                    const Stiffness             &stiffness)
   {
-    // Cholesky's factorisation of the matrix of components: its sign is that
+    // Cholesky's factorization of the matrix of components: its sign is that
     // of the tensor, in whatever basis. Relative to the elastic pivots.
     const auto is_definite = [](const SymmetricTensor<4, 3> &C,
                                 const SymmetricTensor<4, 3> &E) {

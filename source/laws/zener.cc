@@ -70,7 +70,7 @@ namespace Viscoplastic
             if (!all_relaxes)
               B -= long_term(point).tensor();
             // Eigenvectors take twenty times longer.
-            if (!factorise(B))
+            if (!factorize(B))
               modes = spectrum(B);
           }
       }
@@ -157,7 +157,7 @@ namespace Viscoplastic
       /// Cholesky's, of the matrix of components, which takes engineering
       /// shears. Whether all pivots are beyond the tolerance.
       bool
-      factorise(const SymmetricTensor<4, 3> &B)
+      factorize(const SymmetricTensor<4, 3> &B)
       {
         for (unsigned int i = 0; i < 6; ++i)
           for (unsigned int j = 0; j <= i; ++j)

@@ -10,7 +10,7 @@ namespace Viscoplastic
   namespace
   {
     /**
-     * Whether the direct solver is expected to win. A factorisation costs about
+     * Whether the direct solver is expected to win. A factorization costs about
      * ten (2D) to eighty (3D) of its own solves and, in 3D, much memory;
      * multigrid is cheap to set up and needs no memory to speak of, but dies of
      * incompressibility.

@@ -183,14 +183,14 @@ namespace Viscoplastic
     , factor(std::make_unique<Factor>())
   {
     AssertDimension(matrix.m(), excluded.size());
-    analyse(excluded, restriction.dofs(), dim);
-    factorise();
+    analyze(excluded, restriction.dofs(), dim);
+    factorize();
   }
 
 
 
   void
-  SchurSolver::analyse(const std::vector<bool>                    &excluded,
+  SchurSolver::analyze(const std::vector<bool>                    &excluded,
                        const std::vector<types::global_dof_index> &face_dofs,
                        const unsigned int                          dim)
   {
@@ -241,7 +241,7 @@ namespace Viscoplastic
 
 
   void
-  SchurSolver::factorise()
+  SchurSolver::factorize()
   {
     cholmod_sparse *A =
       factor->to_cholmod(matrix, unknowns, unknowns.size(), true);
@@ -259,7 +259,7 @@ namespace Viscoplastic
   {
     if (&of != &matrix)
       return false;
-    factorise();
+    factorize();
     return true;
   }
 

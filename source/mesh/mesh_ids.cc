@@ -34,7 +34,7 @@ namespace Viscoplastic
                  const unsigned int                       old_id,
                  const std::string                       &what)
       {
-        // At the center, and near the corners, which neighbours share.
+        // At the center, and near the corners, which neighbors share.
         Point<structdim> xi;
         for (unsigned int d = 0; d < structdim; ++d)
           xi[d] = 0.5;

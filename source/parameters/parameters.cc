@@ -353,7 +353,7 @@ namespace Viscoplastic
   ErrorControlParameters::declare(ParameterHandler &prm)
   {
     prm.add_parameter("Error bar",
-                      error_bar,
+                      error_estimator,
                       "Estimate the error of every step in the energy norm: "
                       "of the mesh, of the time steps, of the iterations and "
                       "of the initial data.");

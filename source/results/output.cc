@@ -328,18 +328,18 @@ namespace Viscoplastic
 
   template <int dim>
   std::vector<std::string>
-  Output<dim>::write_fields(const StressSampling<dim> &sampling,
-                            const State<dim>          &state,
-                            const ContactFace<dim>    *face,
-                            const Vector<double>      *squared_estimate)
+  Output<dim>::write_fields(const StressSpace<dim> &stress_space,
+                            const State<dim>       &state,
+                            const ContactFace<dim> *face,
+                            const Vector<double>   *squared_estimate)
   {
     times.push_back(state.t);
     std::vector<std::string> remarks{
-      write_body(sampling, state, squared_estimate)};
+      write_body(stress_space, state, squared_estimate)};
     write_pvd("solution");
     if (scene.has_contact())
       {
-        remarks.push_back(write_contact(sampling.space, state, face));
+        remarks.push_back(write_contact(stress_space.space, state, face));
         write_pvd("contact");
       }
     remarks.erase(std::remove(remarks.begin(), remarks.end(), ""),
@@ -423,11 +423,11 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  Output<dim>::write_body(const StressSampling<dim> &sampling,
-                          const State<dim>          &state,
-                          const Vector<double>      *squared_estimate)
+  Output<dim>::write_body(const StressSpace<dim> &stress_space,
+                          const State<dim>       &state,
+                          const Vector<double>   *squared_estimate)
   {
-    const DoFHandler<dim> &dof_handler = sampling.space.dof_handler;
+    const DoFHandler<dim> &dof_handler = stress_space.space.dof_handler;
     const auto            &tria        = dof_handler.get_triangulation();
     BodyOutput<dim>        data_out;
     data_out.attach_dof_handler(dof_handler);
@@ -447,7 +447,7 @@ namespace Viscoplastic
     constexpr auto     components = stress_components<dim>();
     const unsigned int n          = components.size();
     const std::vector<SymmetricTensor<2, 3>> stress =
-      sampling.mean_stress(state.u, state.z);
+      stress_space.mean_stress(state.u, state.z);
     std::vector<Vector<double>> stresses(n,
                                          Vector<double>(tria.n_active_cells()));
     std::vector<Vector<double>> irreversible(
@@ -466,9 +466,8 @@ namespace Viscoplastic
               stress[owned_cell][components[c].first][components[c].second];
           if (has_z)
             {
-              const auto z =
-                sampling.mean(owned_cell,
-                              &state.z[owned_cell * sampling.n_samples]);
+              const auto z = stress_space.mean(
+                owned_cell, &state.z[owned_cell * stress_space.n_samples]);
               for (unsigned int c = 0; c < n; ++c)
                 irreversible[c][i] =
                   z[components[c].first][components[c].second];
@@ -525,7 +524,7 @@ namespace Viscoplastic
 
     // Tractions and sets live at the nodes of friction points.
     // Where a frictional piece has none, other conditions prescribe the node.
-    DistributedVector density, bound, utilisation, slipping;
+    DistributedVector density, bound, utilization, slipping;
     if (face != nullptr)
       {
         add_vector("traction");
@@ -540,7 +539,7 @@ namespace Viscoplastic
           values[p] = bounds[p] > 0. ?
                         stable_norm(state.friction.multiplier[p]) / bounds[p] :
                         0.;
-        utilisation = face->nodal_field(values);
+        utilization = face->nodal_field(values);
         for (unsigned int p = 0; p < values.size(); ++p)
           values[p] = state.friction.sticks[p] ? 0. : 1.;
         slipping = face->nodal_field(values);
@@ -605,7 +604,7 @@ namespace Viscoplastic
                     patch.data(row++, v) =
                       frictional ? bound.begin()[node] : 0.;
                     patch.data(row++, v) =
-                      frictional ? utilisation.begin()[node] : 0.;
+                      frictional ? utilization.begin()[node] : 0.;
                     patch.data(row++, v) =
                       frictional ? 1. - slipping.begin()[node] : 0.;
                   }

@@ -32,16 +32,16 @@ namespace Viscoplastic
 
 
     void
-    add_estimates(const ErrorLedger &ledger, Statistics &row)
+    add_estimates(const ErrorEstimate &estimate, Statistics &row)
     {
-      row.add("energy_norm", ledger.energy_norm);
-      row.add("estimate_space", ledger.space);
-      row.add("estimate_time", ledger.time);
-      row.add("estimate_algebraic", ledger.algebraic);
-      row.add("estimate_initial", ledger.initial);
-      row.add("estimate_total", ledger.total());
-      row.add("time_indicator", ledger.time_indicator);
-      row.add("velocity_variation", ledger.velocity_variation);
+      row.add("energy_norm", estimate.energy_norm);
+      row.add("estimate_space", estimate.space);
+      row.add("estimate_time", estimate.time);
+      row.add("estimate_algebraic", estimate.algebraic);
+      row.add("estimate_initial", estimate.initial);
+      row.add("estimate_total", estimate.total());
+      row.add("time_indicator", estimate.time_indicator);
+      row.add("velocity_variation", estimate.velocity_variation);
     }
   } // namespace
 
@@ -56,10 +56,10 @@ namespace Viscoplastic
     , control(control)
     , console(console)
     , timer(timer)
-    , has_error_bar(scene.parameters.error_control.error_bar)
+    , has_error_estimate(scene.parameters.error_control.error_estimator)
     , progress(console, scene.schedule.n_steps())
   {
-    if (has_error_bar)
+    if (has_error_estimate)
       run.errors.emplace();
   }
 
@@ -191,10 +191,11 @@ namespace Viscoplastic
     if (scene.is_adaptive())
       {
         run.adaptation_energy = balance.adaptation_energy();
-        if (!has_error_bar)
+        if (!has_error_estimate)
           run.error_estimate = quantities.refinement_estimate;
       }
-    // Initial data that have not been brought into equilibrium have no ledger.
+    // Initial data that have not been brought into equilibrium have no
+    // estimate.
     if (run.errors && (step.time_step.n > 0 || step.end.is_solution))
       run.errors->update(step.end.errors, t);
     if (const double k_r = step.stiffness(); k_r > run.stiffness.value)
@@ -261,7 +262,7 @@ namespace Viscoplastic
     row.add("force_balance_defect", balance_defect(quantities));
     if (d.face)
       {
-        row.add("max_utilisation", friction.max_utilisation);
+        row.add("max_utilisation", friction.max_utilization);
         row.add("max_stick_slip", friction.max_stick_slip);
         row.add("slip_misalignment", friction.slip_misalignment);
       }
@@ -285,7 +286,7 @@ namespace Viscoplastic
                      dim);
     if (scene.is_adaptive())
       row.add("estimator", quantities.refinement_estimate);
-    if (has_error_bar)
+    if (has_error_estimate)
       add_estimates(step.end.errors, row);
     if (scene.measures_errors())
       add_errors(errors, row);
@@ -303,7 +304,7 @@ namespace Viscoplastic
     for (const RunPhase &phase : run_phases)
       {
         if (!phase.is_in_statistics ||
-            (phase.name == "estimate" && !has_error_bar) ||
+            (phase.name == "estimate" && !has_error_estimate) ||
             (phase.name == "tangent" && !may_be_implicit()))
           continue;
         const auto   entry = total.find(phase.name);
@@ -336,9 +337,9 @@ namespace Viscoplastic
         if (area > 0.)
           present.slipping = friction.slip_area / area;
       }
-    if (scene.is_adaptive() && !has_error_bar)
+    if (scene.is_adaptive() && !has_error_estimate)
       present.error_estimate = quantities.refinement_estimate;
-    if (has_error_bar && step.end.errors.energy_norm > 0.)
+    if (has_error_estimate && step.end.errors.energy_norm > 0.)
       present.relative_error =
         step.end.errors.total() / step.end.errors.energy_norm;
     if (control.may_reject())
@@ -408,7 +409,7 @@ namespace Viscoplastic
     std::vector<std::string> result;
     const double             fluctuation =
       scene.has_viscosity() ?
-                    relative_stress_fluctuation(discretization->sampling, state) :
+                    relative_stress_fluctuation(discretization->stress_space, state) :
                     0.;
     if (fluctuation > 0.2 &&
         scene.parameters.stress.stress_history == StressHistory::cell_means)

@@ -119,9 +119,9 @@ namespace Viscoplastic
 
 
   void
-  Statistics::synchronise()
+  Statistics::synchronize()
   {
     // The stream has no buffer left: end_row() flushes.
-    Viscoplastic::synchronise(name);
+    Viscoplastic::synchronize(name);
   }
 } // namespace Viscoplastic

@@ -3,7 +3,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/number_range.h>
-#include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/results/step_quantities.h>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ namespace Viscoplastic
     const Forces<dim>  &forces     = step.end.forces;
     const bool          is_initial = step.time_step.n == 0;
     StepQuantities<dim> result;
-    result.stress           = summarise_stress(d.laws, old.state, state);
+    result.stress           = summarize_stress(d.laws, old.state, state);
     result.stored_energy    = stored_energy(forces, result.stress);
     result.max_displacement = max_displacement(d.space, forces.u);
     if (d.face)
@@ -126,7 +126,7 @@ namespace Viscoplastic
                 const EvaluatedState<dim> &of)
   {
     return stored_energy(
-      of.forces, summarise_stress(discretization.laws, of.state, of.state));
+      of.forces, summarize_stress(discretization.laws, of.state, of.state));
   }
 
 

@@ -27,7 +27,7 @@ namespace Viscoplastic
                   const double       n_face_dofs,
                   const bool         direct)
     {
-      // 12 bytes an entry, 9 or 27 neighbours a node; some 20 vectors.
+      // 12 bytes an entry, 9 or 27 neighbors a node; some 20 vectors.
       const double matrix  = n_dofs * (dim == 2 ? 18. : 81.) * 12.;
       const double vectors = n_dofs * 20. * 8.;
       if (!direct) // a second matrix without the prescribed rows, and ML
@@ -95,7 +95,7 @@ namespace Viscoplastic
       check_exact_solution(d.space);
     // The initial data, and where they need no solution, the first step.
     accepted.state =
-      make_initial_state(d.sampling, parameters.initial_state.equilibrate);
+      make_initial_state(d.stress_space, parameters.initial_state.equilibrate);
     // Equilibrium at t = 0 would need a solution.
     if (!parameters.initial_state.equilibrate)
       {
@@ -137,7 +137,7 @@ namespace Viscoplastic
       (is_implicit() || changes_scheme() ?
          // A second matrix, and two tensors of rank 4 a sample.
          dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
-           2. * sizeof(SymmetricTensor<4, 3>) * d.sampling.n_samples *
+           2. * sizeof(SymmetricTensor<4, 3>) * d.stress_space.n_samples *
              triangulation.n_global_active_cells() :
          0.);
     out << "Linear solver: "

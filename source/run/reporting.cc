@@ -121,11 +121,11 @@ namespace Viscoplastic
         density     = &multipliers;
       }
     if (writes)
-      write_samples(sample_fields(d.sampling, of, density),
+      write_samples(sample_fields(d.stress_space, of, density),
                     samples_file(output->directory(), phase),
                     communicator);
     if (scene.exact_solution)
-      result = solution_errors(d.sampling, of, density);
+      result = solution_errors(d.stress_space, of, density);
     else if (!reference.empty() && phase > 0)
       {
         const auto samples =
@@ -138,8 +138,8 @@ namespace Viscoplastic
         AssertThrow(std::abs(samples.t - of.t) <= 1e-10 * std::abs(of.t),
                     ExcMessage(message.str()));
         const double nothing = result.memory;
-        result               = differences(samples, d.sampling, of, density);
-        result.memory        = nothing;
+        result        = differences(samples, d.stress_space, of, density);
+        result.memory = nothing;
       }
     return result;
   }

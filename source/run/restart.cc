@@ -91,7 +91,7 @@ namespace Viscoplastic
     archive &state.n &state.t &state.k &accepted.is_solution;
     state.friction.exchange(archive);
     control.exchange(archive);
-    if (error_bar)
+    if (error_estimator)
       accepted.errors.exchange(archive);
     recorder.exchange(archive);
   }
@@ -119,7 +119,7 @@ namespace Viscoplastic
     std::map<std::string, std::string> files;
     files[mesh_file(rank)] = pack_mesh(triangulation);
     files[fields_file(rank)] =
-      pack_fields(discretization->sampling, state, indicators);
+      pack_fields(discretization->stress_space, state, indicators);
     // Collective, as all of it.
     auto memory = time_stepper->method().memory();
     if (rank == 0)
@@ -274,10 +274,10 @@ namespace Viscoplastic
       const bool complete =
         unpack_fields({meshes.begin() + begin, meshes.begin() + end},
                       fields,
-                      d.sampling,
+                      d.stress_space,
                       has_initial_u,
                       has_estimate,
-                      ErrorBar<dim>::n_sample_fields(scene),
+                      ErrorEstimator<dim>::n_sample_fields(scene),
                       state,
                       accepted.space_estimate.squared_indicators);
       return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
@@ -293,8 +293,10 @@ namespace Viscoplastic
                 ExcMessage(name + "' does not fit the scene."));
     time_stepper->method().restore(accepted, memory);
     accepted.is_solution = is_solution;
-    accepted.forces =
-      evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
+    accepted.forces      = evaluate_forces(d.stress_space,
+                                      d.matrix,
+                                      d.loads.assemble(state.t),
+                                      state);
 
     std::string failure;
     if (rank == 0)

@@ -6,7 +6,7 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
-#include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/mesh/mesh.h>
@@ -41,9 +41,9 @@ namespace Viscoplastic
               scene.schedule,
               parameters.time.scheme == TimeScheme::heun ? 2 : 1,
               parameters.output.fields_interval)
-    , error_bar(parameters.error_control.error_bar ?
-                  std::make_unique<ErrorBar<dim>>(scene) :
-                  nullptr)
+    , error_estimator(parameters.error_control.error_estimator ?
+                        std::make_unique<ErrorEstimator<dim>>(scene) :
+                        nullptr)
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
     , recorder(scene, control, console, timer)
   {}
@@ -189,7 +189,7 @@ namespace Viscoplastic
   {
     Viscoplastic::make_mesh(parameters.geometry, triangulation);
     scene.inspect(triangulation);
-    AssertThrow(!control.is_on || !scene.has_viscosity() || error_bar,
+    AssertThrow(!control.is_on || !scene.has_viscosity() || error_estimator,
                 ExcMessage("'Step control/Tolerance' needs an estimate of the "
                            "error; set 'Error control/Error bar' = true."));
     control.set_has_estimate(scene.has_viscosity());
@@ -211,7 +211,7 @@ namespace Viscoplastic
     discretization = std::make_unique<Discretization<dim>>(dof_handler, scene);
     discretization->assemble_matrix();
     time_stepper = std::make_unique<TimeStepper<dim>>(*discretization,
-                                                      error_bar.get(),
+                                                      error_estimator.get(),
                                                       control,
                                                       timer);
     if (accepted.forces.u.size() == 0) // the first time
@@ -229,9 +229,9 @@ namespace Viscoplastic
   {
     const Discretization<dim> &d = *discretization;
     const bool equilibrate       = parameters.initial_state.equilibrate;
-    accepted.state               = make_initial_state(d.sampling, equilibrate);
-    if (error_bar)
-      error_bar->begin(d.sampling, accepted);
+    accepted.state = make_initial_state(d.stress_space, equilibrate);
+    if (error_estimator)
+      error_estimator->begin(d.stress_space, accepted);
     if (equilibrate)
       initial_report = time_stepper->equilibrate(accepted);
     else
@@ -239,12 +239,12 @@ namespace Viscoplastic
         const Load<dim> load = d.loads.assemble(0.);
         check_compatibility(load);
         accepted.forces =
-          evaluate_forces(d.sampling, d.matrix, load, accepted.state);
+          evaluate_forces(d.stress_space, d.matrix, load, accepted.state);
       }
     if (scene.is_adaptive() || equilibrate)
       time_stepper->estimate(accepted);
-    if (error_bar && equilibrate)
-      error_bar->assess_equilibrium(initial_report, accepted);
+    if (error_estimator && equilibrate)
+      error_estimator->assess_equilibrium(initial_report, accepted);
   }
 
 
@@ -297,14 +297,14 @@ namespace Viscoplastic
       density = discretization->face->density(state.friction);
     const double       energy = stored_energy(*discretization, accepted);
     StateTransfer<dim> transfer(triangulation,
-                                discretization->sampling,
+                                discretization->stress_space,
                                 state,
                                 discretization->face ? &density : nullptr);
     triangulation.execute_coarsening_and_refinement();
     set_up();
 
     const Discretization<dim> &d      = *discretization;
-    auto                       result = transfer.unpack(d.sampling);
+    auto                       result = transfer.unpack(d.stress_space);
     state                             = std::move(result.state);
     if (d.face)
       {
@@ -331,11 +331,13 @@ namespace Viscoplastic
               stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
           }
       }
-    accepted.forces =
-      evaluate_forces(d.sampling, d.matrix, d.loads.assemble(state.t), state);
+    accepted.forces = evaluate_forces(d.stress_space,
+                                      d.matrix,
+                                      d.loads.assemble(state.t),
+                                      state);
     accepted.rate.reset();
-    if (error_bar)
-      error_bar->change_mesh(d.space, d.matrix, accepted);
+    if (error_estimator)
+      error_estimator->change_mesh(d.space, d.matrix, accepted);
     recorder.record_mesh_change(stored_energy(d, accepted) - energy);
   }
 
@@ -349,7 +351,7 @@ namespace Viscoplastic
     const Vector<double> &squared_indicators =
       accepted.space_estimate.squared_indicators;
     const std::vector<std::string> remarks =
-      output->write_fields(discretization->sampling,
+      output->write_fields(discretization->stress_space,
                            accepted.state,
                            discretization->face.get(),
                            squared_indicators.size() > 0 ? &squared_indicators :

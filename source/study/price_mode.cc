@@ -112,7 +112,7 @@ namespace Viscoplastic
 
     const Parameters &scene     = runs.scene;
     const bool        has_exact = !scene.exact_solution.displacement.empty();
-    AssertThrow(has_exact || scene.error_control.error_bar,
+    AssertThrow(has_exact || scene.error_control.error_estimator,
                 ExcMessage("--price needs an error to go by: set 'Error "
                            "control/Error bar = true', or give an 'Exact "
                            "solution'."));

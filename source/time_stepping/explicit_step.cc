@@ -129,7 +129,7 @@ namespace Viscoplastic
     State<dim>                &state = solution.state;
     DistributedVector          right_side(problem.load.values);
     if (d.scene().has_irreversible_stress()) // collective, also without cells
-      add_irreversible_load(d.sampling, state.z, right_side);
+      add_irreversible_load(d.stress_space, state.z, right_side);
 
     // An elastic body whose data have not changed does not move.
     if (!d.face && !d.scene().has_viscosity() && problem.old.is_solution &&

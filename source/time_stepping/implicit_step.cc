@@ -18,20 +18,20 @@ namespace Viscoplastic
     /// sum_s w_s stress_s : eps_s(v) for a ghosted v. Collective.
     template <int dim>
     double
-    virtual_work(const StressSampling<dim> &sampling,
-                 const IrreversibleStress  &stress,
-                 const DistributedVector   &ghosted_change)
+    virtual_work(const StressSpace<dim>   &stress_space,
+                 const IrreversibleStress &stress,
+                 const DistributedVector  &ghosted_change)
     {
-      const unsigned int                 n   = sampling.n_samples;
+      const unsigned int                 n   = stress_space.n_samples;
       double                             sum = 0.;
       std::vector<SymmetricTensor<2, 3>> strain(n);
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
-          sampling.strains(c, ghosted_change.begin(), strain.data());
+          stress_space.strains(c, ghosted_change.begin(), strain.data());
           for (unsigned int s = 0; s < n; ++s)
-            sum += sampling.weight(c, s) * (stress[c * n + s] * strain[s]);
+            sum += stress_space.weight(c, s) * (stress[c * n + s] * strain[s]);
         }
-      return Utilities::MPI::sum(sum, sampling.space.communicator);
+      return Utilities::MPI::sum(sum, stress_space.space.communicator);
     }
 
 
@@ -181,7 +181,7 @@ namespace Viscoplastic
   {
     if (d.laws.source_solution)
       fail_together(d.space.communicator, [&] {
-        const unsigned int n = d.sampling.n_samples;
+        const unsigned int n = d.stress_space.n_samples;
         for (std::size_t i = 0; i < target.size(); ++i)
           target[i] +=
             problem.time_step.k *
@@ -238,7 +238,7 @@ namespace Viscoplastic
   {
     TimerOutput::Scope phase(method.timer, "rate");
     return implicit_irreversible_stress<dim>(
-      laws, d.sampling, ghosted_u, target, problem.time_step.k, guess);
+      laws, d.stress_space, ghosted_u, target, problem.time_step.k, guess);
   }
 
 
@@ -270,7 +270,7 @@ namespace Viscoplastic
     {
       TimerOutput::Scope phase(method.timer, "contact");
       DistributedVector  right_side(problem.load.values);
-      add_irreversible_load(d.sampling,
+      add_irreversible_load(d.stress_space,
                             method.tangent.extrapolate(z, at, zero),
                             right_side);
       ContactReport report = method.solver.solve(
@@ -409,7 +409,7 @@ namespace Viscoplastic
                                                (s < 0.5 ? rest : -rest));
         }
       return slope + s * curvature + friction +
-             virtual_work(d.sampling, z_there, ghosted_change);
+             virtual_work(d.stress_space, z_there, ghosted_change);
     };
 
     const double at_0 = derivative(0., z),
@@ -491,7 +491,7 @@ namespace Viscoplastic
     State<dim>       &state = solution.state;
     state.z                 = problem.old.state.z;
     DistributedVector right_side(problem.load.values);
-    add_irreversible_load(discretization.sampling, state.z, right_side);
+    add_irreversible_load(discretization.stress_space, state.z, right_side);
     DistributedVector u =
       solver.initial_guess(problem, problem.old.state, state.friction);
     solution.report =
@@ -510,7 +510,7 @@ namespace Viscoplastic
                                const double              k)
   {
     TimerOutput::Scope phase(timer, "tangent");
-    const bool         is_new = tangent.linearise(ghosted_u, z, t, k);
+    const bool         is_new = tangent.linearize(ghosted_u, z, t, k);
     // A preconditioner that has seen other solves is not a function of what
     // is given; only that of constant tangents goes from step to step, where
     // no steps of other schemes are between.

@@ -21,18 +21,18 @@ namespace Viscoplastic
                   const double              t,
                   const double              k)
     {
-      const StressSampling<dim>         &sampling = laws.sampling;
-      const unsigned int                 n        = sampling.n_samples;
-      const auto                         now      = laws.at(t);
-      std::vector<SymmetricTensor<4, 3>> result(sampling.n_cells() * n);
+      const StressSpace<dim>            &stress_space = laws.stress_space;
+      const unsigned int                 n            = stress_space.n_samples;
+      const auto                         now          = laws.at(t);
+      std::vector<SymmetricTensor<4, 3>> result(stress_space.n_cells() * n);
       std::vector<SymmetricTensor<2, 3>> strain(n);
-      fail_together(sampling.space.communicator, [&] {
-        for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      fail_together(stress_space.space.communicator, [&] {
+        for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
           if (const ViscoplasticLaw *law = now.law(c))
             {
-              const Stiffness            &stiffness = sampling.moduli(c);
+              const Stiffness            &stiffness = stress_space.moduli(c);
               const SymmetricTensor<4, 3> E         = stiffness.tensor();
-              sampling.strains(c, at.ghosted_u.begin(), strain.data());
+              stress_space.strains(c, at.ghosted_u.begin(), strain.data());
               for (unsigned int s = 0; s < n; ++s)
                 result[c * n + s] =
                   algorithmic_tangent(*law,
@@ -57,11 +57,11 @@ namespace Viscoplastic
   {
     const auto now    = laws.at(t);
     bool       result = true;
-    for (std::size_t c = 0; c < laws.sampling.n_cells(); ++c)
+    for (std::size_t c = 0; c < laws.stress_space.n_cells(); ++c)
       if (const ViscoplasticLaw *law = now.law(c))
         result &= law->has_symmetric_tangents();
     return Utilities::MPI::min(result ? 1 : 0,
-                               laws.sampling.space.communicator);
+                               laws.stress_space.space.communicator);
   }
 
 
@@ -78,19 +78,19 @@ namespace Viscoplastic
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
-      const StressSampling<dim> &sampling = step.sampling;
-      const unsigned int         n        = sampling.n_samples;
+      const StressSpace<dim> &stress_space = step.stress_space;
+      const unsigned int      n            = stress_space.n_samples;
       step.d.matrix.vmult(y, x);
       step.space.to_cartesian(x, ghosted);
       IrreversibleStress                 stress(flow.size());
       std::vector<SymmetricTensor<2, 3>> strain(n);
-      for (std::size_t c = 0; c < sampling.n_cells(); ++c)
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
-          sampling.strains(c, ghosted.begin(), strain.data());
+          stress_space.strains(c, ghosted.begin(), strain.data());
           for (unsigned int s = 0; s < n; ++s)
             stress[c * n + s] = -1. * (flow[c * n + s] * strain[s]);
         }
-      add_irreversible_load(sampling, stress, y);
+      add_irreversible_load(stress_space, stress, y);
       if (step.face)
         {
           const FaceRestriction &restriction = step.face->restriction();
@@ -143,7 +143,7 @@ namespace Viscoplastic
     BulkSolver                &solver)
     : d(discretization)
     , problem(problem)
-    , sampling(d.sampling)
+    , stress_space(d.stress_space)
     , space(d.space)
     , face(d.slipping_face())
     , solver(solver)
@@ -173,7 +173,7 @@ namespace Viscoplastic
     DistributedVector r(problem.load.values), product(r);
     d.matrix.vmult(product, iterate.u);
     r -= product;
-    add_irreversible_load(sampling, iterate.z, r);
+    add_irreversible_load(stress_space, iterate.z, r);
     space.restrict_to_unknowns(r);
     if (face)
       {

@@ -41,12 +41,12 @@ namespace Viscoplastic
 
   template <int dim>
   TimeStepper<dim>::TimeStepper(const Discretization<dim> &discretization,
-                                const ErrorBar<dim>       *error_bar,
+                                const ErrorEstimator<dim> *error_estimator,
                                 StepControl               &control,
                                 TimerOutput               &timer)
     : discretization(discretization)
     , scene(discretization.scene())
-    , error_bar(error_bar)
+    , error_estimator(error_estimator)
     , control(control)
     , timer(timer)
     , space_estimator(SpaceEstimator<dim>::is_needed(scene) ?
@@ -63,7 +63,7 @@ namespace Viscoplastic
   {
     return scene.has_viscosity() &&
            (scene.parameters.time.scheme != TimeScheme::backward_euler ||
-            error_bar != nullptr);
+            error_estimator != nullptr);
   }
 
 
@@ -165,12 +165,12 @@ namespace Viscoplastic
     static_cast<StepOutcome &>(step) = solution;
     step.time_step                   = time_step;
     step.end.state                   = std::move(solution.state);
-    step.end.forces                  = evaluate_forces(discretization.sampling,
+    step.end.forces      = evaluate_forces(discretization.stress_space,
                                       discretization.matrix,
                                       std::move(problem.load),
                                       step.end.state);
-    step.end.is_solution             = true;
-    step.foundation_step             = std::move(problem.foundation_step);
+    step.end.is_solution = true;
+    step.foundation_step = std::move(problem.foundation_step);
     return step;
   }
 
@@ -185,7 +185,7 @@ namespace Viscoplastic
     EvaluatedState<dim> &end   = step.end;
     const State<dim>    &state = end.state;
     estimate(end);
-    if (error_bar == nullptr)
+    if (error_estimator == nullptr)
       return {};
     if (scene.has_viscosity())
       {
@@ -196,21 +196,21 @@ namespace Viscoplastic
         });
       }
     TimerOutput::Scope phase(timer, "estimate");
-    error_bar->assess(discretization.sampling,
-                      time_defect(step.is_implicit ?
-                                    TimeScheme::backward_euler :
-                                    scene.parameters.time.scheme),
-                      step.report,
-                      accepted,
-                      old_rate,
-                      end);
-    const ErrorLedger &ledger = end.errors;
-    StepErrors         errors;
-    errors.indicator = ledger.time_indicator;
+    error_estimator->assess(discretization.stress_space,
+                            time_defect(step.is_implicit ?
+                                          TimeScheme::backward_euler :
+                                          scene.parameters.time.scheme),
+                            step.report,
+                            accepted,
+                            old_rate,
+                            end);
+    const ErrorEstimate &estimate = end.errors;
+    StepErrors           errors;
+    errors.indicator = estimate.time_indicator;
     errors.change =
-      std::max(state.k * std::sqrt(std::max(0., ledger.velocity_square)),
-               ledger.irreversible_change);
-    errors.size = std::max(ledger.energy_norm, ledger.irreversible_norm);
+      std::max(state.k * std::sqrt(std::max(0., estimate.velocity_square)),
+               estimate.irreversible_change);
+    errors.size = std::max(estimate.energy_norm, estimate.irreversible_norm);
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
       throw StepFailure(state.n, state.t, "the solution is not finite.");
     return errors;
@@ -228,7 +228,7 @@ namespace Viscoplastic
     const StepProblem<dim> problem =
       make_problem(initial, nullptr, {0, 0., 0., 0.});
     initial.forces =
-      evaluate_forces(d.sampling, d.matrix, problem.load, initial.state);
+      evaluate_forces(d.stress_space, d.matrix, problem.load, initial.state);
     StepSolution<dim> solution = step_method->equilibrate(problem);
     initial.state.friction     = std::move(solution.state.friction);
     initial.state.velocity     = std::move(solution.state.velocity);
@@ -236,7 +236,7 @@ namespace Viscoplastic
     initial.state.initial_u    = initial.state.u;
     initial.is_solution        = true;
     initial.forces =
-      evaluate_forces(d.sampling, d.matrix, problem.load, initial.state);
+      evaluate_forces(d.stress_space, d.matrix, problem.load, initial.state);
     return solution.report;
   }
 
@@ -258,8 +258,8 @@ namespace Viscoplastic
   double
   TimeStepper<dim>::tolerance(const EvaluatedState<dim> &accepted) const
   {
-    return error_bar ? error_bar->tolerance(accepted.errors) :
-                       scene.parameters.solver.strict_tolerance();
+    return error_estimator ? error_estimator->tolerance(accepted.errors) :
+                             scene.parameters.solver.strict_tolerance();
   }
 
 

@@ -7,7 +7,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include "body.h"
-#include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 
@@ -35,16 +35,14 @@ namespace
 
   template <int dim>
   Vector<double>
-  residual_estimate(const StressSampling<dim> &sampling,
-                    const DistributedVector   &u,
-                    const IrreversibleStress  &z,
-                    const double               t,
-                    const DistributedVector   *multiplier_density)
+  residual_estimate(const StressSpace<dim>   &stress_space,
+                    const DistributedVector  &u,
+                    const IrreversibleStress &z,
+                    const double              t,
+                    const DistributedVector  *multiplier_density)
   {
-    return ResidualEstimator<dim>(sampling).estimate(u,
-                                                     z,
-                                                     t,
-                                                     multiplier_density);
+    return ResidualEstimator<dim>(stress_space)
+      .estimate(u, z, t, multiplier_density);
   }
 
 
@@ -66,7 +64,7 @@ namespace
   struct Body : public Testing::Body<dim>
   {
     using Testing::Body<dim>::Body;
-    using Testing::Body<dim>::sampling;
+    using Testing::Body<dim>::stress_space;
 
     /// Move inner points of the box, so that no cell stays a parallelogram.
     void
@@ -89,9 +87,9 @@ namespace
     sample(const std::function<Stress(const Point<dim> &)> &field) const
     {
       IrreversibleStress z;
-      for (std::size_t c = 0; c < sampling->n_cells(); ++c)
-        for (unsigned int s = 0; s < sampling->n_samples; ++s)
-          z.push_back(field(sampling->position(c, s)));
+      for (std::size_t c = 0; c < stress_space->n_cells(); ++c)
+        for (unsigned int s = 0; s < stress_space->n_samples; ++s)
+          z.push_back(field(stress_space->position(c, s)));
       return z;
     }
 
@@ -99,9 +97,10 @@ namespace
     integral(const IrreversibleStress &z) const
     {
       Stress result;
-      for (std::size_t c = 0; c < sampling->n_cells(); ++c)
-        for (unsigned int s = 0; s < sampling->n_samples; ++s)
-          result += sampling->weight(c, s) * z[c * sampling->n_samples + s];
+      for (std::size_t c = 0; c < stress_space->n_cells(); ++c)
+        for (unsigned int s = 0; s < stress_space->n_samples; ++s)
+          result +=
+            stress_space->weight(c, s) * z[c * stress_space->n_samples + s];
       return Utilities::MPI::sum(result, MPI_COMM_WORLD);
     }
 
@@ -191,12 +190,12 @@ namespace
         }
     body.triangulation.prepare_coarsening_and_refinement();
     StateTransfer<dim> transfer(body.triangulation,
-                                *body.sampling,
+                                *body.stress_space,
                                 state,
                                 density);
     body.triangulation.execute_coarsening_and_refinement();
     body.set_up();
-    return transfer.unpack(*body.sampling);
+    return transfer.unpack(*body.stress_space);
   }
 
 
@@ -433,19 +432,19 @@ namespace
               body.interpolate(patch_multiplier<dim>);
             const auto z =
               body.sample([](const Point<dim> &) { return constant_stress(); });
-            EXPECT_LT(total_estimate(
-                        residual_estimate(*body.sampling, u, z, 0., &density),
-                        MPI_COMM_WORLD),
+            EXPECT_LT(total_estimate(residual_estimate(
+                                       *body.stress_space, u, z, 0., &density),
+                                     MPI_COMM_WORLD),
                       1e-13);
             EXPECT_LT(total_estimate(kelly_estimate(*body.space, u),
                                      MPI_COMM_WORLD),
                       1e-13);
             // Friction is seen.
             const DistributedVector none = body.space->ghosted_vector();
-            EXPECT_GT(
-              total_estimate(residual_estimate(*body.sampling, u, z, 0., &none),
-                             MPI_COMM_WORLD),
-              1e-3);
+            EXPECT_GT(total_estimate(
+                        residual_estimate(*body.stress_space, u, z, 0., &none),
+                        MPI_COMM_WORLD),
+                      1e-3);
           }
   }
 
@@ -462,7 +461,7 @@ namespace
     body.set_up();
     const DistributedVector density = body.interpolate(patch_multiplier<dim>);
     const Vector<double>    estimate =
-      residual_estimate(*body.sampling,
+      residual_estimate(*body.stress_space,
                         body.interpolate(linear_displacement<dim>),
                         body.sample(
                           [](const Point<dim> &) { return constant_stress(); }),
@@ -490,7 +489,7 @@ namespace
                    (dim == 3 ? "; 0" : "") + "\nend\n");
     body.set_up();
     const Vector<double> estimate = residual_estimate(
-      *body.sampling, body.space->ghosted_vector(), {}, 0.5, nullptr);
+      *body.stress_space, body.space->ghosted_vector(), {}, 0.5, nullptr);
     for (const auto &cell : body.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -523,7 +522,7 @@ namespace
         for (unsigned int d = 0; d < dim; ++d)
           square += Utilities::fixed_power<2>(2. * constant_stress()[0][d]);
         const Vector<double> estimate = residual_estimate(
-          *body.sampling, body.space->ghosted_vector(), z, 0., nullptr);
+          *body.stress_space, body.space->ghosted_vector(), z, 0., nullptr);
         // Half of it on either side of the interface, which has measure 1.
         double left = 0., right = 0.;
         for (const auto &cell : body.triangulation.active_cell_iterators())
@@ -562,7 +561,7 @@ namespace
       return u;
     });
     const Vector<double>    estimate =
-      residual_estimate(*body.sampling, u, {}, 0., nullptr);
+      residual_estimate(*body.stress_space, u, {}, 0., nullptr);
     const double h      = 0.5 * std::sqrt(dim - 1.);
     const double square = 0.5 * h * 4.; // E = lambda + 2 mu for nu = 0
     double       left = 0., right = 0.;
@@ -594,11 +593,11 @@ namespace
         });
         const double            lambda = 0.3 / (1.3 * 0.4);
         const double            force = mean_dilatation ? mu / 3. : lambda + mu;
-        EXPECT_NEAR(
-          total_estimate(residual_estimate(*body.sampling, u, {}, 0., nullptr),
-                         MPI_COMM_WORLD),
-          std::sqrt(dim * force * force / (2. * mu)),
-          1e-13);
+        EXPECT_NEAR(total_estimate(
+                      residual_estimate(*body.stress_space, u, {}, 0., nullptr),
+                      MPI_COMM_WORLD),
+                    std::sqrt(dim * force * force / (2. * mu)),
+                    1e-13);
       }
   }
 

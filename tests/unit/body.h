@@ -14,7 +14,7 @@
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/loads.h>
-#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 
 #include <gtest/gtest.h>
@@ -141,17 +141,17 @@ namespace Viscoplastic::Testing
       face.reset();
       loads.reset();
       laws.reset();
-      sampling.reset();
+      stress_space.reset();
       scene.inspect(triangulation);
       dof_handler.distribute_dofs(fe);
-      space    = std::make_unique<AdmissibleSpace<dim>>(dof_handler, scene);
-      moduli   = std::make_unique<ElasticModuli<dim>>(*space);
-      sampling = std::make_unique<StressSampling<dim>>(*space,
-                                                       *moduli,
-                                                       at_quadrature_points,
-                                                       mean_dilatation);
-      laws     = std::make_unique<FlowLaws<dim>>(*sampling);
-      loads    = std::make_unique<Loads<dim>>(*space);
+      space        = std::make_unique<AdmissibleSpace<dim>>(dof_handler, scene);
+      moduli       = std::make_unique<ElasticModuli<dim>>(*space);
+      stress_space = std::make_unique<StressSpace<dim>>(*space,
+                                                        *moduli,
+                                                        at_quadrature_points,
+                                                        mean_dilatation);
+      laws         = std::make_unique<FlowLaws<dim>>(*stress_space);
+      loads        = std::make_unique<Loads<dim>>(*space);
       if (scene.has_friction())
         face = std::make_unique<ContactFace<dim>>(*space);
     }
@@ -217,7 +217,7 @@ namespace Viscoplastic::Testing
     const bool                            at_quadrature_points, mean_dilatation;
     std::unique_ptr<AdmissibleSpace<dim>> space;
     std::unique_ptr<ElasticModuli<dim>>   moduli;
-    std::unique_ptr<StressSampling<dim>>  sampling;
+    std::unique_ptr<StressSpace<dim>>     stress_space;
     std::unique_ptr<FlowLaws<dim>>        laws;
     std::unique_ptr<Loads<dim>>           loads;
     std::unique_ptr<ContactFace<dim>>     face;

@@ -545,7 +545,7 @@ namespace
 
   TYPED_TEST(BulkSolvers, MultigridWithSeveralLevels)
   {
-    // Large enough that ML does not just factorise.
+    // Large enough that ML does not just factorize.
     constexpr int       dim = TypeParam::value;
     const Scenario<dim> scenario(dim == 2 ? 28 : 8);
     ASSERT_GT(scenario.dof_handler.n_dofs(), 2500u);

@@ -313,15 +313,16 @@ namespace
         const double form = product * v_frames;
 
         // By the samples of stress and strain, cell by cell: another path.
-        std::vector<SymmetricTensor<2, 3>> strain(body->sampling->n_samples);
-        std::vector<SymmetricTensor<2, 3>> other(body->sampling->n_samples);
+        std::vector<SymmetricTensor<2, 3>> strain(
+          body->stress_space->n_samples);
+        std::vector<SymmetricTensor<2, 3>> other(body->stress_space->n_samples);
         double                             expected = 0.;
-        for (std::size_t c = 0; c < body->sampling->n_cells(); ++c)
+        for (std::size_t c = 0; c < body->stress_space->n_cells(); ++c)
           {
-            body->sampling->strains(c, u.begin(), strain.data());
-            body->sampling->strains(c, v.begin(), other.data());
+            body->stress_space->strains(c, u.begin(), strain.data());
+            body->stress_space->strains(c, v.begin(), other.data());
             for (unsigned int s = 0; s < strain.size(); ++s)
-              expected += body->sampling->weight(c, s) *
+              expected += body->stress_space->weight(c, s) *
                           ((*body->moduli)(c).stress(strain[s]) * other[s]);
           }
         expected = Utilities::MPI::sum(expected, MPI_COMM_WORLD);
@@ -342,17 +343,17 @@ namespace
         const auto body = rotated_body<dim>(mean_dilatation);
         // (z, eps(v)) for z = E eps(u) is a(u, v).
         const DistributedVector u = body->rough_vector(0.3);
-        IrreversibleStress      z(body->sampling->n_cells() *
-                             body->sampling->n_samples);
-        for (std::size_t c = 0; c < body->sampling->n_cells(); ++c)
+        IrreversibleStress      z(body->stress_space->n_cells() *
+                             body->stress_space->n_samples);
+        for (std::size_t c = 0; c < body->stress_space->n_cells(); ++c)
           {
-            auto *samples = &z[c * body->sampling->n_samples];
-            body->sampling->strains(c, u.begin(), samples);
-            for (unsigned int s = 0; s < body->sampling->n_samples; ++s)
+            auto *samples = &z[c * body->stress_space->n_samples];
+            body->stress_space->strains(c, u.begin(), samples);
+            for (unsigned int s = 0; s < body->stress_space->n_samples; ++s)
               samples[s] = (*body->moduli)(c).stress(samples[s]);
           }
         DistributedVector work = body->space->owned_vector();
-        add_irreversible_load(*body->sampling, z, work);
+        add_irreversible_load(*body->stress_space, z, work);
 
         DistributedMatrix matrix;
         assemble_elastic_matrix(*body->space,

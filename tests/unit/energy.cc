@@ -70,7 +70,7 @@ namespace
     strain[0][0] = stretch;
     strain[1][1] = -0.5 * stretch;
     strain[0][1] = 0.5 * stretch;
-    state.z.assign(body.sampling->n_cells() * body.sampling->n_samples,
+    state.z.assign(body.stress_space->n_cells() * body.stress_space->n_samples,
                    stress - (*body.moduli)(0).stress(strain));
     return state;
   }
@@ -93,7 +93,7 @@ namespace
           const Stress     stress     = some_stress(1.8);
           const State<dim> old_state  = homogeneous(body, 0.1, old_stress);
           const State<dim> state      = homogeneous(body, 0.4, stress);
-          const auto summary = summarise_stress(*body.laws, old_state, state);
+          const auto summary = summarize_stress(*body.laws, old_state, state);
 
           // Von Mises by its formula in components.
           const double s = 1.8;
@@ -120,7 +120,7 @@ namespace
                       -0.5 * volume *
                         (inverse(z - old_z) * (stress + old_stress)),
                       1e-13);
-          EXPECT_NEAR(relative_stress_fluctuation(*body.sampling, state),
+          EXPECT_NEAR(relative_stress_fluctuation(*body.stress_space, state),
                       0.,
                       1e-12);
         }
@@ -135,7 +135,7 @@ namespace
     body.set_up();
     State<dim> state = homogeneous(body, 0.1, Stress());
     state.z.clear();
-    const auto summary = summarise_stress(*body.laws, state, state);
+    const auto summary = summarize_stress(*body.laws, state, state);
     EXPECT_EQ(summary.irreversible_energy, 0.);
     EXPECT_EQ(summary.viscous_dissipation, 0.);
     Stress strain;
@@ -159,10 +159,11 @@ namespace
     body.set_up();
     State<dim> state;
     state.u = body.space->ghosted_vector();
-    for (std::size_t c = 0; c < body.sampling->n_cells(); ++c)
-      state.z.push_back(
-        body.sampling->position(c, 0)[0] > middle ? some_stress(1.) : Stress());
-    const auto summary = summarise_stress(*body.laws, state, state);
+    for (std::size_t c = 0; c < body.stress_space->n_cells(); ++c)
+      state.z.push_back(body.stress_space->position(c, 0)[0] > middle ?
+                          some_stress(1.) :
+                          Stress());
+    const auto summary = summarize_stress(*body.laws, state, state);
     EXPECT_NEAR(summary.max_von_mises, von_mises(some_stress(1.)), 1e-14);
     EXPECT_NEAR(summary.mean_von_mises, 0.5 * summary.max_von_mises, 1e-14);
     EXPECT_NEAR(summary.stress_norm, some_stress(1.).norm(), 1e-14);
@@ -196,7 +197,7 @@ namespace
     const double squared =
       shear * 2. * (1.728 - 0.008) / 3. + normal * (9.261 - 0.001) / 3.;
     // Mixed terms vanish: eps_xy and eps_yy are orthogonal.
-    EXPECT_NEAR(relative_stress_fluctuation(*body.sampling, state),
+    EXPECT_NEAR(relative_stress_fluctuation(*body.stress_space, state),
                 std::sqrt(fluctuation / squared),
                 1e-12);
   }
@@ -213,7 +214,7 @@ namespace
       body.set_up();
       State<dim> state = homogeneous(body, 0.1, some_stress(1.));
       state.t          = 2.;
-      return summarise_stress(*body.laws, state, state);
+      return summarize_stress(*body.laws, state, state);
     };
     EXPECT_NO_THROW(summary_of(
       "set Law = maxwell\n" +

@@ -425,7 +425,7 @@ namespace
     EXPECT_EQ(modes.size(), dim == 2 ? 3u : 6u);
     for (const auto &mode : modes)
       {
-        // Where no neighbour is clamped, K times the mode vanishes: the modes
+        // Where no neighbor is clamped, K times the mode vanishes: the modes
         // are zero on excluded components only.
         DistributedVector product = body->space->owned_vector();
         matrix.vmult(product, mode);

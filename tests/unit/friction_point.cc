@@ -32,7 +32,7 @@ namespace
 
 
 
-  /// The minimiser on the circle of radius bound, by a grid that zooms in.
+  /// The minimizer on the circle of radius bound, by a grid that zooms in.
   Tensor<1, 2>
   best_on_circle(const Tensor<2, 2> &C,
                  const Tensor<1, 2> &q,
@@ -47,12 +47,12 @@ namespace
     double best = 0., width = numbers::PI;
     for (unsigned int zoom = 0; zoom < 12; ++zoom)
       {
-        const double centre = best;
+        const double center = best;
         double       lowest = std::numeric_limits<double>::max();
         const int    n      = zoom == 0 ? 2000 : 20;
         for (int i = -n; i <= n; ++i)
           {
-            const double angle  = centre + width * i / n;
+            const double angle  = center + width * i / n;
             const double energy = dual_energy(C, q, at(angle));
             if (energy < lowest)
               {

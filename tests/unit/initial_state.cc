@@ -48,7 +48,7 @@ namespace
                                     "0.4*y*z"));
     body.refine_where([](const Point<dim> &x) { return x[0] < 1.; });
     body.set_up();
-    const State<dim> state = make_initial_state(*body.sampling, false);
+    const State<dim> state = make_initial_state(*body.stress_space, false);
     const auto       exact = body.interpolate([](const Point<dim> &x) {
       Tensor<1, dim> u;
       u[0] = 0.1 * x[1] + 0.2 * x[0] * x[1];
@@ -76,7 +76,7 @@ namespace
                                     "x*y*z"));
     body.refine_where([](const Point<dim> &x) { return x[0] > 1.; });
     body.set_up();
-    const State<dim> state = make_initial_state(*body.sampling, false);
+    const State<dim> state = make_initial_state(*body.stress_space, false);
 
     FEValues<dim>       values(body.fe,
                          QGauss<dim>(3),
@@ -126,7 +126,7 @@ namespace
 
   TYPED_TEST(InitialState, IrreversibleStressIsWhatElasticityDoesNotExplain)
   {
-    // z_0 = P0 sigma0 - P0 E eps(u0h), for linear sigma0 its value at centres.
+    // z_0 = P0 sigma0 - P0 E eps(u0h), for linear sigma0 its value at centers.
     constexpr int     dim          = TypeParam::value;
     const std::string displacement = dim == 2 ?
                                        "set Displacement = 0.1*y; -0.3*y\n" :
@@ -139,17 +139,17 @@ namespace
         Body<dim> body(scene<dim>(displacement + stress), at_quadrature_points);
         body.refine_where([](const Point<dim> &x) { return x[0] < 1.; });
         body.set_up();
-        const State<dim> state = make_initial_state(*body.sampling, false);
+        const State<dim> state = make_initial_state(*body.stress_space, false);
         Stress           strain;
         strain[0][1]         = 0.05;
         strain[1][1]         = -0.3;
         const Stress elastic = Stiffness::isotropic(1., 0.3).stress(strain);
         ASSERT_EQ(state.z.size(),
-                  body.sampling->n_cells() * body.sampling->n_samples);
-        for (std::size_t c = 0, i = 0; c < body.sampling->n_cells(); ++c)
-          for (unsigned int s = 0; s < body.sampling->n_samples; ++s, ++i)
+                  body.stress_space->n_cells() * body.stress_space->n_samples);
+        for (std::size_t c = 0, i = 0; c < body.stress_space->n_cells(); ++c)
+          for (unsigned int s = 0; s < body.stress_space->n_samples; ++s, ++i)
             {
-              const Point<dim> x = body.sampling->position(c, s);
+              const Point<dim> x = body.stress_space->position(c, s);
               Stress           expected;
               expected[0][0] = x[0];
               expected[1][1] = 2. * x[1];
@@ -172,7 +172,7 @@ namespace
     constexpr int dim = TypeParam::value;
     Body<dim>     body(scene<dim>(""));
     body.set_up();
-    const State<dim> state = make_initial_state(*body.sampling, false);
+    const State<dim> state = make_initial_state(*body.stress_space, false);
     EXPECT_TRUE(state.z.empty());
     EXPECT_EQ(state.initial_u.size(), 0u);
     EXPECT_EQ(state.u.linfty_norm(), 0.);
@@ -187,11 +187,11 @@ namespace
       dim == 2 ? "set Displacement = 0.25; y" : "set Displacement = 0.25; y; 0";
     Body<dim> body(scene<dim>(data));
     body.set_up();
-    expect_refusal([&] { make_initial_state(*body.sampling, false); },
+    expect_refusal([&] { make_initial_state(*body.stress_space, false); },
                    "The initial displacement contradicts the displacements "
                    "prescribed at t = 0 by 0.25");
     // Equilibration mends it.
-    EXPECT_EQ(message_of([&] { make_initial_state(*body.sampling, true); }),
+    EXPECT_EQ(message_of([&] { make_initial_state(*body.stress_space, true); }),
               "");
   }
 

@@ -19,7 +19,7 @@ TEST(MeshIds, ByExpression)
   geometry.global_refinements = 1;
   const auto mesh             = make<2>(geometry);
   expect_measures(areas(*mesh), {{0, 1.}, {1, 1.}, {2, 1.}, {12, 1.}, {3, 2.}});
-  // The generator colours cells by quadrant: x, y > 0 is 3.
+  // The generator colors cells by quadrant: x, y > 0 is 3.
   expect_measures(volumes(*mesh), {{7, 0.5}, {4, 1.5}});
   EXPECT_EQ(boundary_ids(*mesh),
             (std::set<types::boundary_id>{0, 1, 2, 3, 12}));

@@ -9,7 +9,7 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/grid_tools.h>
 
-#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 
 #include <vector>
 
@@ -53,9 +53,9 @@ namespace Viscoplastic::Testing
   class StressField
   {
   public:
-    StressField(const StressSampling<dim> &sampling,
-                const DistributedVector   &ghosted_u,
-                const IrreversibleStress  &z);
+    StressField(const StressSpace<dim>   &stress_space,
+                const DistributedVector  &ghosted_u,
+                const IrreversibleStress &z);
 
     const Stiffness &
     stiffness(const Cell<dim> &cell) const
@@ -90,15 +90,15 @@ namespace Viscoplastic::Testing
 
 
   template <int dim>
-  StressField<dim>::StressField(const StressSampling<dim> &sampling,
-                                const DistributedVector   &ghosted_u,
-                                const IrreversibleStress  &z)
-    : mean_dilatation(sampling.mean_dilatation)
+  StressField<dim>::StressField(const StressSpace<dim>   &stress_space,
+                                const DistributedVector  &ghosted_u,
+                                const IrreversibleStress &z)
+    : mean_dilatation(stress_space.mean_dilatation)
     , u(ghosted_u)
-    , data(sampling.space.dof_handler.get_triangulation().n_active_cells(),
+    , data(stress_space.space.dof_handler.get_triangulation().n_active_cells(),
            CellData{Stiffness::isotropic(1., 0.), 0., {}})
   {
-    const AdmissibleSpace<dim> &space       = sampling.space;
+    const AdmissibleSpace<dim> &space       = stress_space.space;
     const DoFHandler<dim>      &dof_handler = space.dof_handler;
 
     FEValues<dim>       fe_values(dof_handler.get_fe(),
@@ -125,9 +125,10 @@ namespace Viscoplastic::Testing
           }
         if (cell->is_locally_owned())
           {
-            here.stiffness = sampling.moduli(index);
+            here.stiffness = stress_space.moduli(index);
             if (!z.empty())
-              here.z = sampling.mean(index, &z[index * sampling.n_samples]);
+              here.z =
+                stress_space.mean(index, &z[index * stress_space.n_samples]);
             ++index;
           }
         else
@@ -249,16 +250,16 @@ namespace Viscoplastic::Testing
 
   template <int dim>
   Vector<double>
-  plain_residual_estimate(const StressSampling<dim> &sampling,
-                          const DistributedVector   &ghosted_u,
-                          const IrreversibleStress  &z,
-                          const double               t,
-                          const DistributedVector   *multiplier_density)
+  plain_residual_estimate(const StressSpace<dim>   &stress_space,
+                          const DistributedVector  &ghosted_u,
+                          const IrreversibleStress &z,
+                          const double              t,
+                          const DistributedVector  *multiplier_density)
   {
-    const AdmissibleSpace<dim> &space = sampling.space;
+    const AdmissibleSpace<dim> &space = stress_space.space;
     const Scene<dim>           &scene = space.scene;
     const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
-    const StressField<dim>      stress(sampling, ghosted_u, z);
+    const StressField<dim>      stress(stress_space, ghosted_u, z);
     Vector<double>              estimate(
       space.dof_handler.get_triangulation().n_active_cells());
 

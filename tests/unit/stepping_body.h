@@ -30,8 +30,8 @@ namespace Viscoplastic::Testing
         std::make_unique<Discretization<dim>>(this->dof_handler, this->scene);
       discretization->assemble_matrix();
       const Parameters &p = *this->parameters;
-      if (p.error_control.error_bar)
-        error_bar = std::make_unique<ErrorBar<dim>>(this->scene);
+      if (p.error_control.error_estimator)
+        error_estimator = std::make_unique<ErrorEstimator<dim>>(this->scene);
       control =
         std::make_unique<StepControl>(p.step_control,
                                       p.time.stiffness_policy,
@@ -40,16 +40,16 @@ namespace Viscoplastic::Testing
                                       0.);
       control->set_has_estimate(this->scene.has_viscosity());
       stepper        = std::make_unique<TimeStepper<dim>>(*discretization,
-                                                   error_bar.get(),
+                                                   error_estimator.get(),
                                                    *control,
                                                    timer);
-      accepted.state = make_initial_state(discretization->sampling, false);
+      accepted.state = make_initial_state(discretization->stress_space, false);
       if (discretization->face)
         accepted.state.friction =
           FrictionState(discretization->face->bounds(0.));
-      if (error_bar)
-        error_bar->begin(discretization->sampling, accepted);
-      accepted.forces = evaluate_forces(discretization->sampling,
+      if (error_estimator)
+        error_estimator->begin(discretization->stress_space, accepted);
+      accepted.forces = evaluate_forces(discretization->stress_space,
                                         discretization->matrix,
                                         discretization->loads.assemble(0.),
                                         accepted.state);
@@ -93,7 +93,7 @@ namespace Viscoplastic::Testing
     std::ostringstream nowhere;
     TimerOutput timer{nowhere, TimerOutput::never, TimerOutput::wall_times};
     std::unique_ptr<Discretization<dim>> discretization;
-    std::unique_ptr<ErrorBar<dim>>       error_bar;
+    std::unique_ptr<ErrorEstimator<dim>> error_estimator;
     std::unique_ptr<StepControl>         control;
     std::unique_ptr<TimeStepper<dim>>    stepper;
     EvaluatedState<dim>                  accepted;

@@ -154,7 +154,7 @@ namespace
                              &at_rest});
             body.accepted.state = start.state;
             body.accepted.forces =
-              evaluate_forces(body.discretization->sampling,
+              evaluate_forces(body.discretization->stress_space,
                               body.discretization->matrix,
                               body.discretization->loads.assemble(0.5),
                               start.state);

@@ -113,8 +113,8 @@ namespace Viscoplastic
   /**
    * Whether somebody sees the standard output on a terminal. Not so under
    * mpirun, which gives its processes terminals even if it writes to a file
-   * itself; it is recognised by environment variables, which MPI libraries
-   * set in all processes later: call this before MPI is initialised.
+   * itself; it is recognized by environment variables, which MPI libraries
+   * set in all processes later: call this before MPI is initialized.
    */
   bool
   stdout_is_terminal();

@@ -34,11 +34,11 @@ namespace Viscoplastic
 
   /// Put a file to disk, with what other streams have written into it.
   void
-  synchronise(const std::string &file);
+  synchronize(const std::string &file);
 
   /// Put the names in a directory to disk.
   void
-  synchronise_directory(const std::string &name);
+  synchronize_directory(const std::string &name);
 
 
 

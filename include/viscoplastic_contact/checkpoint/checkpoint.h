@@ -44,9 +44,9 @@ namespace Viscoplastic
    */
   template <int dim>
   std::string
-  pack_fields(const StressSampling<dim> &sampling,
-              const State<dim>          &state,
-              const Vector<double>      &squared_estimate);
+  pack_fields(const StressSpace<dim> &stress_space,
+              const State<dim>       &state,
+              const Vector<double>   &squared_estimate);
 
   /**
    * The inverse, on the same mesh. @p meshes and @p fields are what pack_mesh()
@@ -62,7 +62,7 @@ namespace Viscoplastic
   bool
   unpack_fields(const std::vector<std::string> &meshes,
                 const std::vector<std::string> &fields,
-                const StressSampling<dim>      &sampling,
+                const StressSpace<dim>         &stress_space,
                 const bool                      has_initial_u,
                 const bool                      has_estimate,
                 const unsigned int              n_sample_fields,

@@ -25,16 +25,16 @@ namespace Viscoplastic
 
 
   /**
-   * Minimises the energy of one step,
+   * Minimizes the energy of one step,
    *
    *     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev),
    *
    * by a primal-dual active set iteration that cannot cycle: (1) nonlinear
-   * Gauss-Seidel over the face nodes, which minimises J node by node, decides
+   * Gauss-Seidel over the face nodes, which minimizes J node by node, decides
    * who sticks and in which direction who slips; (2) a linear solve on the
    * truncated space with the tangent stiffness of turning slip is a semismooth
    * Newton step; (3) increments that would reverse a slip stop at stick, and a
-   * line search minimises J along the rest. Where that is no descent, the
+   * line search minimizes J along the rest. Where that is no descent, the
    * reversing points are brought to rest first, or the correction is taken as
    * it is, which always descends. J never increases, so no set comes twice
    * (compare Kornhuber's monotone multigrid and TNNMG by Graeser and Sander,

@@ -9,7 +9,7 @@
 namespace Viscoplastic
 {
   /**
-   * The frictional problem of a single point: the multiplier that minimises
+   * The frictional problem of a single point: the multiplier that minimizes
    * 1/2 lambda . C lambda - q . lambda over |lambda| <= rho, with C the
    * symmetric flexibility seen by the point and q its slip at lambda = 0.
    * |lambda| < rho (or C lambda = q) means stick, otherwise the slip
@@ -42,7 +42,7 @@ namespace Viscoplastic
 
 
   /**
-   * The nonlinear Gauss-Seidel step at one node: minimise J over the node's
+   * The nonlinear Gauss-Seidel step at one node: minimize J over the node's
    * components. By duality, block by block over the node's points; exact at
    * once for a single point, i.e. away from corners.
    */

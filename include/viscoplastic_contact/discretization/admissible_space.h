@@ -128,7 +128,7 @@ namespace Viscoplastic
 
     /**
      * The rigid body modes (3 or 6) in frames on owned entries, zero where
-     * excluded; each relative to the centre of the body.
+     * excluded; each relative to the center of the body.
      */
     std::vector<DistributedVector>
     rigid_body_modes() const;

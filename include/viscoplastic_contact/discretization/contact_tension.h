@@ -16,7 +16,7 @@ namespace Viscoplastic
   {
   public:
     /// Collective.
-    explicit ContactTension(const StressSampling<dim> &sampling);
+    explicit ContactTension(const StressSpace<dim> &stress_space);
 
     /// Area of the pieces with bilateral contact.
     double
@@ -39,8 +39,8 @@ namespace Viscoplastic
       double         area;
     };
 
-    const StressSampling<dim> &sampling;
-    std::vector<Face>          faces; // of owned cells
-    double                     total_area;
+    const StressSpace<dim> &stress_space;
+    std::vector<Face>       faces; // of owned cells
+    double                  total_area;
   };
 } // namespace Viscoplastic

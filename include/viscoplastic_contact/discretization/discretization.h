@@ -6,7 +6,7 @@
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/loads.h>
-#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 
 #include <memory>
 #include <vector>
@@ -54,7 +54,7 @@ namespace Viscoplastic
     AdmissibleSpace<dim> space;
     ElasticModuli<dim>   moduli;
     bool                 mean_dilatation;
-    StressSampling<dim>  sampling;
+    StressSpace<dim>     stress_space;
     FlowLaws<dim>        laws;
     Loads<dim>           loads;
     /// Null without bilateral contact.

@@ -11,7 +11,7 @@
 namespace Viscoplastic
 {
   /**
-   * The elastic tensor of each owned cell, taken at the cell's centre; one
+   * The elastic tensor of each owned cell, taken at the cell's center; one
    * object if it is the same everywhere.
    */
   template <int dim>

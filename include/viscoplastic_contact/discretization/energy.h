@@ -30,7 +30,7 @@ namespace Viscoplastic
   /// Collective. Without a step (initial state), give the same state twice.
   template <int dim>
   StressSummary
-  summarise_stress(const FlowLaws<dim> &laws,
+  summarize_stress(const FlowLaws<dim> &laws,
                    const State<dim>    &old_state,
                    const State<dim>    &state);
 
@@ -40,6 +40,6 @@ namespace Viscoplastic
    */
   template <int dim>
   double
-  relative_stress_fluctuation(const StressSampling<dim> &sampling,
-                              const State<dim>          &state);
+  relative_stress_fluctuation(const StressSpace<dim> &stress_space,
+                              const State<dim>       &state);
 } // namespace Viscoplastic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <array>
@@ -21,9 +21,9 @@ namespace Viscoplastic
   public:
     /// Throws ExcMessage if a parameter is out of range somewhere, or a law
     /// does not go with the elastic tensor of a cell.
-    explicit FlowLaws(const StressSampling<dim> &sampling);
+    explicit FlowLaws(const StressSpace<dim> &stress_space);
 
-    const StressSampling<dim> &sampling;
+    const StressSpace<dim> &stress_space;
 
     /// Whether any material has a law, and one with a cap on the stress.
     /// Known on all ranks.

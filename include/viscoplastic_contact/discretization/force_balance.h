@@ -27,10 +27,10 @@ namespace Viscoplastic
   /// Collective.
   template <int dim>
   Forces<dim>
-  evaluate_forces(const StressSampling<dim> &sampling,
-                  const DistributedMatrix   &matrix,
-                  Load<dim>                  load,
-                  const State<dim>          &state);
+  evaluate_forces(const StressSpace<dim>  &stress_space,
+                  const DistributedMatrix &matrix,
+                  Load<dim>                load,
+                  const State<dim>        &state);
 
   /**
    * The forces on the body at prescribed components, summed for each boundary
@@ -57,7 +57,7 @@ namespace Viscoplastic
   struct FrictionIdentities
   {
     /// max |lambda_c|/rho_c, at most 1.
-    double max_utilisation = 0.;
+    double max_utilization = 0.;
     /// max |s_c| where sticking, measured on the displacement.
     double max_stick_slip = 0.;
     /// max |lambda_c - rho_c s_c/|s_c||/rho_c where slipping.

@@ -13,9 +13,9 @@ namespace Viscoplastic
   template <int dim>
   IrreversibleStress
   implicit_irreversible_stress(const typename FlowLaws<dim>::AtTime &laws,
-                               const StressSampling<dim>            &sampling,
-                               const DistributedVector              &ghosted_u,
-                               const IrreversibleStress             &old_z,
-                               const double                          k,
-                               const IrreversibleStress             &start);
+                               const StressSpace<dim>   &stress_space,
+                               const DistributedVector  &ghosted_u,
+                               const IrreversibleStress &old_z,
+                               const double              k,
+                               const IrreversibleStress &start);
 } // namespace Viscoplastic

@@ -17,8 +17,8 @@ namespace Viscoplastic
    */
   template <int dim>
   State<dim>
-  make_initial_state(const StressSampling<dim> &sampling,
-                     const bool                 equilibrate);
+  make_initial_state(const StressSpace<dim> &stress_space,
+                     const bool              equilibrate);
 
   /**
    * |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
@@ -28,8 +28,8 @@ namespace Viscoplastic
    */
   template <int dim>
   double
-  initial_data_error(const StressSampling<dim> &sampling,
-                     const State<dim>          &state);
+  initial_data_error(const StressSpace<dim> &stress_space,
+                     const State<dim>       &state);
 
   /**
    * The violation of compatibility (2.12),

@@ -3,7 +3,7 @@
 
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/contact/friction_face.h>
-#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 
 #include <array>
 
@@ -29,7 +29,7 @@ namespace Viscoplastic
 
     /// At the same samples, with viscosity and an error bar only: what the time
     /// scheme has left out of z so far, to leading order, and what its second
-    /// order needs (see ErrorBar).
+    /// order needs (see ErrorEstimator).
     IrreversibleStress time_error, rate_slope;
 
     /// Of the step that led here; no points without friction.

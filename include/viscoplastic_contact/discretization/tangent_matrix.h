@@ -32,7 +32,7 @@ namespace Viscoplastic
      * is another matrix now. Collective.
      */
     bool
-    linearise(const DistributedVector  &ghosted_u,
+    linearize(const DistributedVector  &ghosted_u,
               const IrreversibleStress &z,
               const double              t,
               const double              k);

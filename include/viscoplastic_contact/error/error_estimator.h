@@ -1,20 +1,114 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/vector.h>
-
-#include <viscoplastic_contact/discretization/admissible_space.h>
+#include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/error/evaluated_state.h>
+#include <viscoplastic_contact/parameters/choices.h>
 
 namespace Viscoplastic
 {
-  /// Squared jumps of the displacement gradient after Kelly, weighted by the
-  /// cell size; the layout of ResidualEstimator::estimate().
-  template <int dim>
-  Vector<double>
-  kelly_estimate(const AdmissibleSpace<dim> &space,
-                 const DistributedVector    &ghosted_u);
+  /**
+   * What a scheme for z' = G leaves out of the integral of G over a step, to
+   * leading order:
+   *
+   *     first k_n (G_n - G_{n-1}) + second k_n^3 G''.
+   *
+   * Schemes of first order have first != 0 and need no more; those of second
+   * order have first = 0.
+   */
+  struct TimeDefect
+  {
+    double first, second;
+  };
 
-  /// The root of the sum over all cells of all ranks. Collective.
-  double
-  total_estimate(const Vector<double> &squared_estimate, const MPI_Comm comm);
+  /// Of a value of `Time/Scheme'.
+  TimeDefect
+  time_defect(const TimeScheme scheme);
+
+
+
+  /**
+   * The estimate of errors, step by step, in scenes with `Error control/Error
+   * bar'. Keeps nothing of the run: what has added up is in the states.
+   *
+   * Time: z_n lacks the sum of the defects of all steps. Signed, as tensors at
+   * the samples, they add up to D_n, e.g. for forward Euler
+   * D_n = D_{n-1} + (k_n/2)(G_n - G_{n-1}), and cancel where G returns. Since
+   * a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds their
+   * effect on u. That errors of z relax, too, is left out: where the stress
+   * follows from the loads it does not happen.
+   */
+  template <int dim>
+  class ErrorEstimator
+  {
+  public:
+    /**
+     * From residual estimator to error in the energy norm: one number for all
+     * scenes. How it was found: doc/method.md, section 12.
+     */
+    static constexpr double space_calibration = 0.3;
+
+    /// Bounds of the relative tolerance of coupled iterations.
+    static constexpr double least_tolerance = 1e-10, largest_tolerance = 1e-5;
+
+    explicit ErrorEstimator(const Scene<dim> &scene);
+
+    /// How many of the sample_fields() of a state the scene has.
+    static unsigned int
+    n_sample_fields(const Scene<dim> &scene);
+
+    /// Set the fields of time errors and the estimate of a state that the
+    /// projections of the initial data have made. Collective.
+    void
+    begin(const StressSpace<dim> &stress_space,
+          EvaluatedState<dim>    &initial) const;
+
+    /// Complete the estimate of an initial state that has been brought into
+    /// equilibrium.
+    void
+    assess_equilibrium(const ContactReport &report,
+                       EvaluatedState<dim> &initial) const;
+
+    /// Renew what depends on the mesh in the estimate of a state that has moved
+    /// to a new one. Collective.
+    void
+    change_mesh(const AdmissibleSpace<dim> &space,
+                const DistributedMatrix    &matrix,
+                EvaluatedState<dim>        &accepted) const;
+
+    /**
+     * The relative tolerance for the iterations of the next step: `Algebraic
+     * fraction' of the estimated discretization error of the accepted state, or
+     * a fixed one if the scene gives it or nothing is known yet.
+     */
+    double
+    tolerance(const ErrorEstimate &accepted) const;
+
+    /**
+     * Set the estimate and the fields of time errors of the end of a step. Its
+     * forces and space estimate, and with viscosity the rates of both states,
+     * have been evaluated. @p defect: of the scheme of the step. Collective.
+     */
+    void
+    assess(const StressSpace<dim>    &stress_space,
+           const TimeDefect          &defect,
+           const ContactReport       &report,
+           const EvaluatedState<dim> &accepted,
+           const FlowRate            *accepted_rate,
+           EvaluatedState<dim>       &end) const;
+
+  private:
+    /// Add the defect of a step to the field of time errors, and put the norms
+    /// into the estimate. Collective.
+    void
+    add_defect(const StressSpace<dim> &stress_space,
+               const TimeDefect       &defect,
+               const State<dim>       &accepted,
+               const FlowRate         &accepted_rate,
+               EvaluatedState<dim>    &end) const;
+
+    const Scene<dim>       &scene;
+    const SolverParameters &solver;
+    const double            algebraic_fraction;
+  };
 } // namespace Viscoplastic

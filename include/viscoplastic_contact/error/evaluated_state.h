@@ -4,7 +4,7 @@
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 #include <viscoplastic_contact/discretization/state.h>
-#include <viscoplastic_contact/error/error_ledger.h>
+#include <viscoplastic_contact/error/error_estimate.h>
 #include <viscoplastic_contact/error/space_estimator.h>
 
 #include <optional>
@@ -25,7 +25,7 @@ namespace Viscoplastic
     /// Empty where the scene asks for no estimate.
     SpaceEstimate space_estimate;
     /// Zero without error bar.
-    ErrorLedger errors;
+    ErrorEstimate errors;
     /// Whether u solves the step of this state on the present mesh: neither
     /// initial data do nor what has been carried over from another mesh.
     bool is_solution = false;

@@ -19,7 +19,7 @@ namespace Viscoplastic
    * within the limits of level and number of cells, and prepare the change of
    * the mesh. Of cells beyond the budget the ones with the smallest estimate
    * stay as they are; the budget may be exceeded by the cells that keep
-   * neighbours within one level of each other.
+   * neighbors within one level of each other.
    *
    * @p squared_estimate has an entry for each active cell, of which those of
    * owned cells are read. Returns whether the mesh will change on any rank.
@@ -47,7 +47,7 @@ namespace Viscoplastic
    *
    * Construct it when the cells are marked, change the mesh, distribute the
    * degrees of freedom, then unpack(). Keeps copies of what it carries, but
-   * addresses the DoFHandler of @p old_sampling until unpack().
+   * addresses the DoFHandler of @p old_stress_space until unpack().
    */
   template <int dim>
   class StateTransfer
@@ -55,7 +55,7 @@ namespace Viscoplastic
   public:
     /// @p multiplier_density is ghosted, and null without friction. Collective.
     StateTransfer(parallel::distributed::Triangulation<dim> &triangulation,
-                  const StressSampling<dim>                 &old_sampling,
+                  const StressSpace<dim>                    &old_stress_space,
                   const State<dim>                          &state,
                   const DistributedVector *multiplier_density);
 
@@ -74,7 +74,7 @@ namespace Viscoplastic
 
     /// To be called once. Collective.
     Result
-    unpack(const StressSampling<dim> &new_sampling);
+    unpack(const StressSpace<dim> &new_sampling);
 
   private:
     using CellIterator = typename Triangulation<dim>::cell_iterator;

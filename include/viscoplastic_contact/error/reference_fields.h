@@ -10,7 +10,7 @@
 namespace Viscoplastic
 {
   /**
-   * The fields of one state at the centres of its cells, free of the mesh: a
+   * The fields of one state at the centers of its cells, free of the mesh: a
    * stand-in for the exact solution that runs on other meshes, with other time
    * steps and on other numbers of ranks compare themselves with.
    */
@@ -37,14 +37,14 @@ namespace Viscoplastic
     std::vector<FacePoint> faces;
   };
 
-  /// Of the owned cells. Gradients are more accurate at their centres than
+  /// Of the owned cells. Gradients are more accurate at their centers than
   /// elsewhere, and points cost time. @p multiplier_density is null without
   /// friction.
   template <int dim>
   FieldSamples<dim>
-  sample_fields(const StressSampling<dim> &sampling,
-                const State<dim>          &state,
-                const DistributedVector   *multiplier_density);
+  sample_fields(const StressSpace<dim>  &stress_space,
+                const State<dim>        &state,
+                const DistributedVector *multiplier_density);
 
   /// Write the samples of all ranks to one file, whole or not at all. Throws
   /// ExcMessage. Collective.
@@ -68,10 +68,10 @@ namespace Viscoplastic
    */
   template <int dim>
   SolutionErrors
-  differences(const FieldSamples<dim>   &reference,
-              const StressSampling<dim> &sampling,
-              const State<dim>          &state,
-              const DistributedVector   *multiplier_density);
+  differences(const FieldSamples<dim> &reference,
+              const StressSpace<dim>  &stress_space,
+              const State<dim>        &state,
+              const DistributedVector *multiplier_density);
 
   /// The file for the end of a phase of `Time/Phases', counted from 1.
   std::string

@@ -4,7 +4,7 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/vector.h>
 
-#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
 
 #include <array>
@@ -46,7 +46,7 @@ namespace Viscoplastic
   class ResidualEstimator
   {
   public:
-    explicit ResidualEstimator(const StressSampling<dim> &sampling);
+    explicit ResidualEstimator(const StressSpace<dim> &stress_space);
 
     /**
      * eta_K^2 for each active cell, zero on cells of other ranks.
@@ -90,7 +90,7 @@ namespace Viscoplastic
     };
 
     /// A cell of this rank or a ghost: the owned ones first, in the order of
-    /// the sampling.
+    /// the stress_space.
     struct LocalCell
     {
       unsigned int                         shape, active_index;
@@ -177,7 +177,7 @@ namespace Viscoplastic
     mean_irreversible_stress(const IrreversibleStress &z,
                              IrreversibleStress       &means) const;
 
-    const StressSampling<dim> &sampling;
+    const StressSpace<dim> &stress_space;
     /// Whether b is the same in the whole body.
     bool uniform_body_force;
 

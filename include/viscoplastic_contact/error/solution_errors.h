@@ -2,7 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/discretization/state.h>
-#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 #include <viscoplastic_contact/error/solution_norms.h>
 
 namespace Viscoplastic
@@ -27,9 +27,9 @@ namespace Viscoplastic
    */
   template <int dim>
   SolutionErrors
-  solution_errors(const StressSampling<dim> &sampling,
-                  const State<dim>          &state,
-                  const DistributedVector   *multiplier_density);
+  solution_errors(const StressSpace<dim>  &stress_space,
+                  const State<dim>        &state,
+                  const DistributedVector *multiplier_density);
 
   /**
    * Hold the exact solution against the scene whose data it makes: what is

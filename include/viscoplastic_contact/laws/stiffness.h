@@ -98,7 +98,7 @@ namespace Viscoplastic
     double
     poissons_ratio() const;
 
-    /// E itself, for linearisations; stress() is the cheaper way to apply it.
+    /// E itself, for linearizations; stress() is the cheaper way to apply it.
     SymmetricTensor<4, 3>
     tensor() const;
 

@@ -12,8 +12,8 @@
 namespace Viscoplastic
 {
   /**
-   * Direct solver on one rank: a sparse Cholesky factorisation (CHOLMOD) with
-   * the face ordered last, K = L L^T. The last block of L then factorises the
+   * Direct solver on one rank: a sparse Cholesky factorization (CHOLMOD) with
+   * the face ordered last, K = L L^T. The last block of L then factorizes the
    * Schur complement S = L_cc L_cc^T of the bulk on the face, so that a step is
    *
    *     one forward substitution, a dense problem on the face, one backward
@@ -97,14 +97,14 @@ namespace Viscoplastic
     /// CHOLMOD's data, hidden from those who include this file.
     struct Factor;
 
-    /// Order the unknowns, interior first, and analyse the pattern.
+    /// Order the unknowns, interior first, and analyze the pattern.
     void
-    analyse(const std::vector<bool>                    &excluded,
+    analyze(const std::vector<bool>                    &excluded,
             const std::vector<types::global_dof_index> &face_dofs,
             const unsigned int                          dim);
 
     void
-    factorise();
+    factorize();
 
     void
     extract_schur_complement();
@@ -120,7 +120,7 @@ namespace Viscoplastic
     const DistributedMatrix &matrix;
     const FrictionFace      &face;
     std::unique_ptr<Factor>  factor;
-    /// Position in u of each unknown in the order of the factorisation.
+    /// Position in u of each unknown in the order of the factorization.
     std::vector<unsigned int> unknowns;
     /// Factor of the Schur complement, lower triangular.
     LAPACKFullMatrix<double>         face_factor;

@@ -44,7 +44,7 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
-  /// How stresses are discretised, the same for all materials.
+  /// How stresses are discretized, the same for all materials.
   struct StressParameters
   {
     VolumetricIntegration volumetric_integration =
@@ -132,7 +132,7 @@ namespace Viscoplastic
   struct SolverParameters
   {
     LinearSolver linear_solver = LinearSolver::automatic;
-    /// 0: coupled to the estimated discretisation error.
+    /// 0: coupled to the estimated discretization error.
     double       contact_tolerance  = 0.;
     unsigned int maximal_iterations = 200;
 
@@ -149,7 +149,7 @@ namespace Viscoplastic
 
   struct ErrorControlParameters
   {
-    bool   error_bar            = true;
+    bool   error_estimator      = true;
     double algebraic_fraction   = 0.05;
     bool   two_level_comparison = false;
 

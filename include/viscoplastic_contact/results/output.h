@@ -3,7 +3,7 @@
 
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/discretization/state.h>
-#include <viscoplastic_contact/error/error_ledger.h>
+#include <viscoplastic_contact/error/error_estimate.h>
 
 #include <optional>
 #include <set>
@@ -70,17 +70,17 @@ namespace Viscoplastic
      * that are beyond the range of the files for the first time. Collective.
      */
     std::vector<std::string>
-    write_fields(const StressSampling<dim> &sampling,
-                 const State<dim>          &state,
-                 const ContactFace<dim>    *face,
-                 const Vector<double>      *squared_estimate);
+    write_fields(const StressSpace<dim> &stress_space,
+                 const State<dim>       &state,
+                 const ContactFace<dim> *face,
+                 const Vector<double>   *squared_estimate);
 
   private:
     // What these return: see write_fields().
     std::string
-    write_body(const StressSampling<dim> &sampling,
-               const State<dim>          &state,
-               const Vector<double>      *squared_estimate);
+    write_body(const StressSpace<dim> &stress_space,
+               const State<dim>       &state,
+               const Vector<double>   *squared_estimate);
     std::string
     write_contact(const AdmissibleSpace<dim> &space,
                   const State<dim>           &state,

@@ -48,7 +48,7 @@ namespace Viscoplastic
     void
     synchronize()
     {
-      statistics->synchronise();
+      statistics->synchronize();
     }
 
     /// Record a step from @p old; step 0 is the initial state. @p errors are
@@ -164,7 +164,7 @@ namespace Viscoplastic
     const StepControl &control;
     Console           &console;
     TimerOutput       &timer;
-    const bool         has_error_bar;
+    const bool         has_error_estimate;
 
     const Discretization<dim>   *discretization = nullptr; // the present one
     std::vector<PointProbe<dim>> probes;

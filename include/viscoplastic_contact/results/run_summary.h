@@ -5,7 +5,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
-#include <viscoplastic_contact/error/error_ledger.h>
+#include <viscoplastic_contact/error/error_estimate.h>
 #include <viscoplastic_contact/error/solution_norms.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 

@@ -48,7 +48,7 @@ namespace Viscoplastic
 
     /// Put all rows to disk. Throws ExcMessage.
     void
-    synchronise();
+    synchronize();
 
   private:
     std::string                                 name;

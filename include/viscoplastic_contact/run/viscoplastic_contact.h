@@ -32,7 +32,7 @@ namespace Viscoplastic
    *                      -> mesh adaptation, before the next step
    *
    * Displacements are FE_Q(1). Stresses and z are FE_DGQ(0), or live at the
-   * quadrature points: tensors for each owned cell (see StressSampling), whose
+   * quadrature points: tensors for each owned cell (see StressSpace), whose
    * cell means are what is reported.
    */
   template <int dim>
@@ -211,7 +211,7 @@ namespace Viscoplastic
     const FESystem<dim>                       fe;
     DoFHandler<dim>                           dof_handler;
     StepControl                               control;
-    std::unique_ptr<ErrorBar<dim>>            error_bar; // null if not wanted
+    std::unique_ptr<ErrorEstimator<dim>> error_estimator; // null if not wanted
 
     // Made anew on each mesh.
     std::unique_ptr<Discretization<dim>> discretization;

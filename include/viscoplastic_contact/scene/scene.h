@@ -22,7 +22,7 @@ namespace Viscoplastic
   /**
    * What is simulated: the body, its material, the roles of its boundary, the
    * loads and the time steps, as functions of x and t and free of any
-   * discretisation. The members that a scene does not need are empty.
+   * discretization. The members that a scene does not need are empty.
    */
   template <int dim>
   class Scene

@@ -16,7 +16,7 @@ namespace Viscoplastic
    *
    *     a(u, v) + (z_m + C (eps(u) - eps(u_m)), eps(v)) + friction = L(v).
    *
-   * With a potential this is one convex minimisation, J(u) -> min, and a step
+   * With a potential this is one convex minimization, J(u) -> min, and a step
    * along d = u - u_m is shortened where J' d = 0 if the whole one overshoots,
    * which J' tells without J; then J decreases always. Without one, the same
    * rule looks for a zero of the residual along d.

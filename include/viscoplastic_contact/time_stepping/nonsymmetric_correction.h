@@ -98,7 +98,7 @@ namespace Viscoplastic
 
     const Discretization<dim>  &d;
     const StepProblem<dim>     &problem;
-    const StressSampling<dim>  &sampling;
+    const StressSpace<dim>     &stress_space;
     const AdmissibleSpace<dim> &space;
     const ContactFace<dim>     *face; // null where nothing can slip
     BulkSolver                 &solver;

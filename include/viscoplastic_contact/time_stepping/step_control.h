@@ -55,7 +55,7 @@ namespace Viscoplastic
    * step size alone.
    *
    * With `Step control/Tolerance' = TOL, a step is accepted if its contribution
-   * d to the time error (ErrorLedger::time_indicator) satisfies
+   * d to the time error (ErrorEstimate::time_indicator) satisfies
    *
    *     d <= TOL max(size k/T, change),
    *

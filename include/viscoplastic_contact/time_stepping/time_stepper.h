@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/error/error_bar.h>
+#include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 #include <viscoplastic_contact/time_stepping/step_method.h>
 
@@ -49,9 +49,9 @@ namespace Viscoplastic
   class TimeStepper
   {
   public:
-    /// All arguments stay in use. @p error_bar is null if there is none.
+    /// All arguments stay in use. @p error_estimator is null if there is none.
     TimeStepper(const Discretization<dim> &discretization,
-                const ErrorBar<dim>       *error_bar,
+                const ErrorEstimator<dim> *error_estimator,
                 StepControl               &control,
                 TimerOutput               &timer);
 
@@ -112,7 +112,7 @@ namespace Viscoplastic
 
     const Discretization<dim> &discretization;
     const Scene<dim>          &scene;
-    const ErrorBar<dim>       *error_bar;
+    const ErrorEstimator<dim> *error_estimator;
     StepControl               &control;
     TimerOutput               &timer;
     /// Null where a scene asks for no estimate.

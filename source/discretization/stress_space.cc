@@ -2,15 +2,15 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <viscoplastic_contact/discretization/stress_history.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 
 namespace Viscoplastic
 {
   template <int dim>
-  StressSampling<dim>::StressSampling(const AdmissibleSpace<dim> &space,
-                                      const ElasticModuli<dim>   &moduli,
-                                      const bool at_quadrature_points,
-                                      const bool mean_dilatation)
+  StressSpace<dim>::StressSpace(const AdmissibleSpace<dim> &space,
+                                const ElasticModuli<dim>   &moduli,
+                                const bool at_quadrature_points,
+                                const bool mean_dilatation)
     : space(space)
     , moduli(moduli)
     , mean_dilatation(mean_dilatation)
@@ -60,9 +60,9 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  StressSampling<dim>::strains(const std::size_t      cell,
-                               const double          *u,
-                               SymmetricTensor<2, 3> *strain) const
+  StressSpace<dim>::strains(const std::size_t      cell,
+                            const double          *u,
+                            SymmetricTensor<2, 3> *strain) const
   {
     const unsigned int *node = &nodes[cell * n_vertices];
     double              mean = 0.;
@@ -97,10 +97,10 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  StressSampling<dim>::add_virtual_work(const std::size_t            cell,
-                                        const SymmetricTensor<2, 3> *stress,
-                                        const double                 factor,
-                                        double                      *load) const
+  StressSpace<dim>::add_virtual_work(const std::size_t            cell,
+                                     const SymmetricTensor<2, 3> *stress,
+                                     const double                 factor,
+                                     double                      *load) const
   {
     const unsigned int *node          = &nodes[cell * n_vertices];
     const bool          mean_pressure = mean_dilatation && n_samples > 1;
@@ -135,9 +135,9 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  StressSampling<dim>::add_stiffness(const std::size_t            cell,
-                                     const SymmetricTensor<4, 3> *tangent,
-                                     FullMatrix<double> &cell_matrix) const
+  StressSpace<dim>::add_stiffness(const std::size_t            cell,
+                                  const SymmetricTensor<4, 3> *tangent,
+                                  FullMatrix<double> &cell_matrix) const
   {
     constexpr unsigned int n             = n_vertices * dim;
     const bool             mean_pressure = mean_dilatation && n_samples > 1;
@@ -181,8 +181,8 @@ namespace Viscoplastic
 
   template <int dim>
   SymmetricTensor<2, 3>
-  StressSampling<dim>::mean(const std::size_t            cell,
-                            const SymmetricTensor<2, 3> *samples) const
+  StressSpace<dim>::mean(const std::size_t            cell,
+                         const SymmetricTensor<2, 3> *samples) const
   {
     if (n_samples == 1)
       return samples[0];
@@ -196,8 +196,8 @@ namespace Viscoplastic
 
   template <int dim>
   std::vector<SymmetricTensor<2, 3>>
-  StressSampling<dim>::mean_stress(const DistributedVector  &ghosted_u,
-                                   const IrreversibleStress &z) const
+  StressSpace<dim>::mean_stress(const DistributedVector  &ghosted_u,
+                                const IrreversibleStress &z) const
   {
     std::vector<SymmetricTensor<2, 3>> result(n_cells());
     std::vector<SymmetricTensor<2, 3>> strain(n_samples);
@@ -215,30 +215,30 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  add_irreversible_load(const StressSampling<dim> &sampling,
-                        const IrreversibleStress  &z,
-                        DistributedVector         &load)
+  add_irreversible_load(const StressSpace<dim>   &stress_space,
+                        const IrreversibleStress &z,
+                        DistributedVector        &load)
   {
-    std::vector<double> cartesian(sampling.space.relevant.n_elements());
-    for (std::size_t c = 0; c < sampling.n_cells(); ++c)
-      sampling.add_virtual_work(c,
-                                &z[c * sampling.n_samples],
-                                -1.,
-                                cartesian.data());
-    sampling.space.add_cartesian_load(cartesian, load);
+    std::vector<double> cartesian(stress_space.space.relevant.n_elements());
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      stress_space.add_virtual_work(c,
+                                    &z[c * stress_space.n_samples],
+                                    -1.,
+                                    cartesian.data());
+    stress_space.space.add_cartesian_load(cartesian, load);
   }
 
 
 
-  template class StressSampling<2>;
-  template class StressSampling<3>;
+  template class StressSpace<2>;
+  template class StressSpace<3>;
 
   template void
-  add_irreversible_load<2>(const StressSampling<2> &,
+  add_irreversible_load<2>(const StressSpace<2> &,
                            const IrreversibleStress &,
                            DistributedVector &);
   template void
-  add_irreversible_load<3>(const StressSampling<3> &,
+  add_irreversible_load<3>(const StressSpace<3> &,
                            const IrreversibleStress &,
                            DistributedVector &);
 } // namespace Viscoplastic

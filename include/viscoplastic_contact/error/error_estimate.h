@@ -10,7 +10,7 @@ namespace Viscoplastic
    * bounds the error of one step for given z, with the time error of z: the
    * error in space that has accumulated in z is not part of it.
    */
-  struct ErrorLedger
+  struct ErrorEstimate
   {
     /// Of the mesh: space_calibration times the residual estimator.
     double space = 0.;
@@ -57,22 +57,22 @@ namespace Viscoplastic
   /// What there is to say of all steps.
   struct ErrorSummary
   {
-    /// The ledger with the largest total, and its time.
-    ErrorLedger largest;
-    double      t = 0.;
+    /// The estimate with the largest total, and its time.
+    ErrorEstimate largest;
+    double        t = 0.;
     /// Over the run.
     double largest_energy_norm = 0.;
 
     /// Take a state at time t into account.
     void
-    update(const ErrorLedger &ledger, const double at_t)
+    update(const ErrorEstimate &estimate, const double at_t)
     {
-      if (ledger.total() > largest.total())
+      if (estimate.total() > largest.total())
         {
-          largest = ledger;
+          largest = estimate;
           t       = at_t;
         }
-      largest_energy_norm = std::max(largest_energy_norm, ledger.energy_norm);
+      largest_energy_norm = std::max(largest_energy_norm, estimate.energy_norm);
     }
 
     /// 0 for a body that never deforms.

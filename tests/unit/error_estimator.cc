@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// The residual estimator against its plain form, and the ledger of errors.
+// The residual estimator against its plain form, and the estimate of errors.
 // Every test holds on any number of ranks.
 
 #include <deal.II/grid/grid_tools.h>
 
 #include "body.h"
 #include "plain_estimator.h"
-#include <viscoplastic_contact/error/error_bar.h>
+#include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 
 namespace
@@ -85,23 +85,23 @@ namespace
                 body.triangulation);
             body.set_up();
             IrreversibleStress z;
-            for (std::size_t c = 0; c < body.sampling->n_cells(); ++c)
-              for (unsigned int s = 0; s < body.sampling->n_samples; ++s)
+            for (std::size_t c = 0; c < body.stress_space->n_cells(); ++c)
+              for (unsigned int s = 0; s < body.stress_space->n_samples; ++s)
                 {
                   SymmetricTensor<2, 3> sample;
                   for (unsigned int i = 0; i < 6; ++i)
                     sample.access_raw_entry(i) =
-                      std::sin(i + 5. * body.sampling->position(c, s)[0] +
-                               9. * body.sampling->position(c, s)[1]);
+                      std::sin(i + 5. * body.stress_space->position(c, s)[0] +
+                               9. * body.stress_space->position(c, s)[1]);
                   z.push_back(sample);
                 }
             const DistributedVector u       = body.rough_vector(),
                                     density = body.rough_vector(0.7);
-            const ResidualEstimator<dim> estimator(*body.sampling);
+            const ResidualEstimator<dim> estimator(*body.stress_space);
             for (const double t : {0., 0.4})
               {
                 const Vector<double> plain = plain_residual_estimate(
-                                       *body.sampling, u, z, t, &density),
+                                       *body.stress_space, u, z, t, &density),
                                      fast =
                                        estimator.estimate(u, z, t, &density);
                 ASSERT_EQ(plain.size(), fast.size());

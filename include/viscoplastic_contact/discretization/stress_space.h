@@ -25,13 +25,13 @@ namespace Viscoplastic
    * and stresses act on such strains, as in the elastic form.
    */
   template <int dim>
-  class StressSampling
+  class StressSpace
   {
   public:
-    StressSampling(const AdmissibleSpace<dim> &space,
-                   const ElasticModuli<dim>   &moduli,
-                   const bool                  at_quadrature_points,
-                   const bool                  mean_dilatation);
+    StressSpace(const AdmissibleSpace<dim> &space,
+                const ElasticModuli<dim>   &moduli,
+                const bool                  at_quadrature_points,
+                const bool                  mean_dilatation);
 
     const AdmissibleSpace<dim> &space;
     const ElasticModuli<dim>   &moduli;
@@ -109,7 +109,7 @@ namespace Viscoplastic
   /// Add -(z, eps(v)) to a load vector in frames. Collective.
   template <int dim>
   void
-  add_irreversible_load(const StressSampling<dim> &sampling,
-                        const IrreversibleStress  &z,
-                        DistributedVector         &load);
+  add_irreversible_load(const StressSpace<dim>   &stress_space,
+                        const IrreversibleStress &z,
+                        DistributedVector        &load);
 } // namespace Viscoplastic

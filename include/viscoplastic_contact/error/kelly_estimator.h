@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/lac/vector.h>
+
+#include <viscoplastic_contact/discretization/admissible_space.h>
+
+namespace Viscoplastic
+{
+  /// Squared jumps of the displacement gradient after Kelly, weighted by the
+  /// cell size; the layout of ResidualEstimator::estimate().
+  template <int dim>
+  Vector<double>
+  kelly_estimate(const AdmissibleSpace<dim> &space,
+                 const DistributedVector    &ghosted_u);
+
+  /// The root of the sum over all cells of all ranks. Collective.
+  double
+  total_estimate(const Vector<double> &squared_estimate, const MPI_Comm comm);
+} // namespace Viscoplastic

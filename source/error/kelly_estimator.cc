@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/numerics/error_estimator.h>
+
+#include <viscoplastic_contact/error/kelly_estimator.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  Vector<double>
+  kelly_estimate(const AdmissibleSpace<dim> &space,
+                 const DistributedVector    &ghosted_u)
+  {
+    const Triangulation<dim> &triangulation =
+      space.dof_handler.get_triangulation();
+    // Estimates come with single precision, whose range the units of a scene
+    // must not meet: scale to 1 by a power of two, which changes no digit.
+    double size = 0.;
+    for (std::size_t i = 0; i < space.relevant.n_elements(); ++i)
+      size = std::max(size, std::abs(ghosted_u.begin()[i]));
+    size = Utilities::MPI::max(size, space.communicator);
+    const double unit =
+      size > 0. ? std::ldexp(1., std::max(std::ilogb(size), -1000)) : 1.;
+    DistributedVector scaled_u(ghosted_u);
+    scaled_u /= unit;
+    Vector<float> estimate(triangulation.n_active_cells());
+    KellyErrorEstimator<dim>::estimate(space.dof_handler,
+                                       QGauss<dim - 1>(2),
+                                       {},
+                                       scaled_u,
+                                       estimate,
+                                       ComponentMask(),
+                                       nullptr,
+                                       numbers::invalid_unsigned_int,
+                                       triangulation.locally_owned_subdomain());
+    Vector<double> result(estimate.size());
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] = Utilities::fixed_power<2>(unit * estimate[i]);
+    return result;
+  }
+
+
+
+  double
+  total_estimate(const Vector<double> &squared_estimate, const MPI_Comm comm)
+  {
+    return std::sqrt(Utilities::MPI::sum(
+      std::accumulate(squared_estimate.begin(), squared_estimate.end(), 0.),
+      comm));
+  }
+
+
+
+  template Vector<double>
+  kelly_estimate<2>(const AdmissibleSpace<2> &, const DistributedVector &);
+  template Vector<double>
+  kelly_estimate<3>(const AdmissibleSpace<3> &, const DistributedVector &);
+} // namespace Viscoplastic

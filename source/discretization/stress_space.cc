@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_dgq.h>
 #include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/discretization/stress_space.h>
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    template <int dim>
+    std::unique_ptr<const FiniteElement<dim>>
+    make_element(const bool at_quadrature_points)
+    {
+      if (at_quadrature_points)
+        return std::make_unique<FE_DGQArbitraryNodes<dim>>(QGauss<1>(2));
+      return std::make_unique<FE_DGQ<dim>>(0);
+    }
+  } // namespace
+
+
+
   template <int dim>
   StressSpace<dim>::StressSpace(const AdmissibleSpace<dim> &space,
                                 const ElasticModuli<dim>   &moduli,
@@ -14,7 +29,8 @@ namespace Viscoplastic
     : space(space)
     , moduli(moduli)
     , mean_dilatation(mean_dilatation)
-    , n_samples(at_quadrature_points ? Utilities::pow(2, dim) : 1)
+    , element(make_element<dim>(at_quadrature_points))
+    , n_samples(element->n_dofs_per_cell())
   {
     const QGauss<dim> quadrature(2);
     FEValues<dim>     fe_values(space.dof_handler.get_fe(),

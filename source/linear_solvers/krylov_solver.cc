@@ -165,20 +165,20 @@ namespace Viscoplastic
 
 
 
-  std::optional<BulkSolver::Memory>
-  KrylovSolver::memory() const
+  std::optional<PreconditionerState>
+  KrylovSolver::preconditioner_state() const
   {
     if (!amg)
       return {};
-    return Memory{built_for, best_rate, lost_iterations, is_fresh};
+    return PreconditionerState{built_for, best_rate, lost_iterations, is_fresh};
   }
 
 
 
   void
-  KrylovSolver::recall(const std::optional<Memory> &memory)
+  KrylovSolver::restore(const std::optional<PreconditionerState> &state)
   {
-    if (!memory)
+    if (!state)
       {
         amg.reset();
         truncation = built_for = FaceTruncation();
@@ -187,19 +187,19 @@ namespace Viscoplastic
         is_fresh                    = false;
         return;
       }
-    const FaceTruncation &wanted = memory->built_for;
+    const FaceTruncation &wanted = state->built_for;
     AssertThrow(wanted.projector.size() == face.n_nodes() &&
                   wanted.spring.size() == face.n_nodes(),
-                ExcMessage("The memory of the linear solver belongs to another "
+                ExcMessage("The state of the preconditioner belongs to another "
                            "contact face."));
     truncation  = wanted;
     has_springs = truncation.has_springs();
     if (!amg || built_for.projector != wanted.projector ||
         built_for.spring != wanted.spring)
       build_preconditioner();
-    best_rate       = memory->best_rate;
-    lost_iterations = memory->lost_iterations;
-    is_fresh        = memory->is_fresh;
+    best_rate       = state->best_rate;
+    lost_iterations = state->lost_iterations;
+    is_fresh        = state->is_fresh;
   }
 
 

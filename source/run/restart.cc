@@ -30,18 +30,20 @@ namespace Viscoplastic
 
 
 
-    template <typename Archive, typename Memory>
+    template <typename Archive>
     void
-    exchange_memory(Archive &archive, std::optional<Memory> &memory)
+    exchange_preconditioner(Archive                            &archive,
+                            std::optional<PreconditionerState> &preconditioner)
     {
-      bool     has_memory = memory.has_value();
-      archive &has_memory;
-      if (!has_memory)
+      bool     has_state = preconditioner.has_value();
+      archive &has_state;
+      if (!has_state)
         return;
-      if (!memory)
-        memory.emplace();
-      archive & memory->built_for.projector & memory->built_for.spring &
-        memory->best_rate & memory->lost_iterations & memory->is_fresh;
+      if (!preconditioner)
+        preconditioner.emplace();
+      archive & preconditioner->built_for.projector &
+        preconditioner->built_for.spring & preconditioner->best_rate &
+        preconditioner->lost_iterations & preconditioner->is_fresh;
     }
   } // namespace
 
@@ -121,7 +123,7 @@ namespace Viscoplastic
     files[fields_file(rank)] =
       pack_fields(discretization->stress_space, state, indicators);
     // Collective, as all of it.
-    auto memory = time_stepper->method().memory();
+    auto preconditioner = time_stepper->method().preconditioner_state();
     if (rank == 0)
       {
         const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
@@ -132,7 +134,7 @@ namespace Viscoplastic
         archive & output->output_times();
         archive &recorder.elapsed_in_all();
         exchange(archive);
-        exchange_memory(archive, memory);
+        exchange_preconditioner(archive, preconditioner);
         files[run_file] = archive.bytes();
         recorder.synchronize(); // whose rows the checkpoint relies on
       }
@@ -241,8 +243,8 @@ namespace Viscoplastic
                 ExcMessage(name + "' belongs to another coarse mesh."));
     archive &has_initial_u &has_estimate &output_times &earlier_seconds;
     exchange(archive);
-    std::optional<BulkSolver::Memory> memory;
-    exchange_memory(archive, memory);
+    std::optional<PreconditionerState> preconditioner;
+    exchange_preconditioner(archive, preconditioner);
 
     // Steps of the phases must be there; others, chosen by the run, must not
     // pass its end.
@@ -291,7 +293,7 @@ namespace Viscoplastic
                   state.friction.sticks.size() == n_points &&
                   archive.is_at_end(),
                 ExcMessage(name + "' does not fit the scene."));
-    time_stepper->method().restore(accepted, memory);
+    time_stepper->method().restore(accepted, preconditioner);
     accepted.is_solution = is_solution;
     accepted.forces      = evaluate_forces(d.stress_space,
                                       d.matrix,

@@ -153,21 +153,22 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::optional<BulkSolver::Memory>
-  ExplicitStep<dim>::memory() const
+  std::optional<PreconditionerState>
+  ExplicitStep<dim>::preconditioner_state() const
   {
-    return solver.bulk().memory();
+    return solver.bulk().preconditioner_state();
   }
 
 
 
   template <int dim>
   void
-  ExplicitStep<dim>::restore(const EvaluatedState<dim> &,
-                             const std::optional<BulkSolver::Memory> &memory)
+  ExplicitStep<dim>::restore(
+    const EvaluatedState<dim> &,
+    const std::optional<PreconditionerState> &preconditioner)
   {
     if (!solver.bulk().is_exact())
-      solver.bulk().recall(memory);
+      solver.bulk().restore(preconditioner);
   }
 
 

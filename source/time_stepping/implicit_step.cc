@@ -522,31 +522,32 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::optional<BulkSolver::Memory>
-  ImplicitStep<dim>::memory() const
+  std::optional<PreconditionerState>
+  ImplicitStep<dim>::preconditioner_state() const
   {
     // Where each step makes its own matrix, there is nothing to remember.
     if (!solver.is_ready() || !tangent.is_constant || !takes_all_steps)
       return {};
-    return solver.bulk().memory();
+    return solver.bulk().preconditioner_state();
   }
 
 
 
   template <int dim>
   void
-  ImplicitStep<dim>::restore(const EvaluatedState<dim>               &accepted,
-                             const std::optional<BulkSolver::Memory> &memory)
+  ImplicitStep<dim>::restore(
+    const EvaluatedState<dim>                &accepted,
+    const std::optional<PreconditionerState> &preconditioner)
   {
     if (!tangent.is_constant)
       return;
-    if (memory)
+    if (preconditioner)
       {
         const State<dim> &state = accepted.state;
         linearize(state.u, state.z, state.t, state.k);
-        solver.bulk().recall(memory);
+        solver.bulk().restore(preconditioner);
       }
-    // An exact solver has the factor of the last matrix, and no memory.
+    // An exact solver has the factor of the last matrix, and no such state.
     else if (solver.is_ready() && !solver.bulk().is_exact())
       solver.clear();
   }

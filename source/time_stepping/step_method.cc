@@ -40,17 +40,17 @@ namespace Viscoplastic
       }
 
       // Implicit steps among others keep nothing.
-      std::optional<BulkSolver::Memory>
-      memory() const override
+      std::optional<PreconditionerState>
+      preconditioner_state() const override
       {
-        return explicit_step.memory();
+        return explicit_step.preconditioner_state();
       }
 
       void
-      restore(const EvaluatedState<dim>               &accepted,
-              const std::optional<BulkSolver::Memory> &memory) override
+      restore(const EvaluatedState<dim>                &accepted,
+              const std::optional<PreconditionerState> &preconditioner) override
       {
-        explicit_step.restore(accepted, memory);
+        explicit_step.restore(accepted, preconditioner);
       }
 
       std::string

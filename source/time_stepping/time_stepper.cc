@@ -89,9 +89,9 @@ namespace Viscoplastic
         scene.parameters.time.scheme != TimeScheme::backward_euler)
       limit = 2. / rate->relaxation_rate;
 
-    const auto memory = control.may_reject() ?
-                          step_method->memory() :
-                          std::optional<BulkSolver::Memory>();
+    const auto preconditioner = control.may_reject() ?
+                                  step_method->preconditioner_state() :
+                                  std::optional<PreconditionerState>();
     for (unsigned int n_rejections = 0;; ++n_rejections)
       {
         const TimeStep time_step = control.propose(state.n, state.t, limit);
@@ -117,7 +117,7 @@ namespace Viscoplastic
             if (!control.retries(time_step, for_stability))
               throw;
           }
-        step_method->restore(accepted, memory);
+        step_method->restore(accepted, preconditioner);
       }
   }
 

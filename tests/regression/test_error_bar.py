@@ -12,7 +12,7 @@ from test_restart import EVERY_STEP, Job, without_wall_times
 from test_shear_layer import MU, THETA, tau
 
 PARTS = ("space", "time", "algebraic", "initial")
-LEDGER = {
+ESTIMATE = {
     "energy_norm",
     "estimate_total",
     "time_indicator",
@@ -46,14 +46,14 @@ def manufactured(name, law=None, **overrides):
     return run(name, {"Output/Fields every": 0, **overrides}, text=text)
 
 
-class Ledger(TestCase):
+class Estimate(TestCase):
     @classmethod
     def setUpClass(cls):
         cls.result = run("slab", SLAB)
 
     def test_parts_add_up(self):
         result = self.result
-        self.assertLessEqual(LEDGER, set(result.statistics))
+        self.assertLessEqual(ESTIMATE, set(result.statistics))
         total = sum(result[f"estimate_{part}"] for part in PARTS)
         self.assertClose(result["estimate_total"], total, relative=1e-10)
         self.assertClose(
@@ -89,7 +89,7 @@ class Ledger(TestCase):
     def test_without_error_bar_the_same_results(self):
         """And nothing else."""
         plain = run("slab", {**SLAB, "Error control/Error bar": "false"})
-        self.assertEqual(set(plain.statistics) & LEDGER, set())
+        self.assertEqual(set(plain.statistics) & ESTIMATE, set())
         self.assertNotIn("Estimated error", plain.stdout)
         self.assertNotIn("estimated_error", plain.info)
         for name, column in plain.statistics.items():
@@ -273,7 +273,7 @@ class CoupledTolerance(TestCase):
 
 
 class Ranks(TestCase):
-    def test_ledger_on_1_2_3_ranks(self):
+    def test_estimate_on_1_2_3_ranks(self):
         alone = run("slab", ADAPTIVE)
         for ranks in 2, 3:
             several = run("slab", ADAPTIVE, ranks=ranks)
@@ -289,7 +289,7 @@ class Ranks(TestCase):
 
 
 class Restart(TestCase):
-    """The ledger is part of the state: the tolerance of a step depends on it."""
+    """The estimate is part of the state: the tolerance of a step depends on it."""
 
     def check(self, ranks, **overrides):
         scene = {**ADAPTIVE, "Solver/Contact tolerance": 0, **overrides}

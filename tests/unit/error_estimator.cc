@@ -19,9 +19,9 @@ namespace
 
 
   template <typename Dimension>
-  class ErrorBars : public testing::Test
+  class ErrorEstimators : public testing::Test
   {};
-  TYPED_TEST_SUITE(ErrorBars, Dimensions);
+  TYPED_TEST_SUITE(ErrorEstimators, Dimensions);
 
 
 
@@ -52,7 +52,7 @@ namespace
 
 
 
-  TYPED_TEST(ErrorBars, FastEstimatorIsThePlainOne)
+  TYPED_TEST(ErrorEstimators, FastEstimatorIsThePlainOne)
   {
     constexpr int     dim = TypeParam::value;
     const std::string anisotropic =

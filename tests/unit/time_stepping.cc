@@ -72,18 +72,19 @@ namespace
                                  solver(linear_solver));
           body.advance(3);
           const EvaluatedState<dim> before = body.accepted;
-          const auto                memory = body.stepper->method().memory();
-          const FlowRate            rate   = body.rate();
-          const double              t      = before.state.t;
-          const auto                once =
+          const auto                preconditioner =
+            body.stepper->method().preconditioner_state();
+          const FlowRate rate = body.rate();
+          const double   t    = before.state.t;
+          const auto     once =
             body.stepper->try_step(before, &rate, {4, t, t + 0.125, 0.125});
           // Another one between, longer and with other points that slip.
-          body.stepper->method().restore(before, memory);
+          body.stepper->method().restore(before, preconditioner);
           const auto other =
             body.stepper->try_step(before, &rate, {4, t, t + 0.6, 0.6});
           EXPECT_GT(difference(other.end.state.u, once.end.state.u), 1e-3);
           expect_same(body.accepted, before);
-          body.stepper->method().restore(before, memory);
+          body.stepper->method().restore(before, preconditioner);
           const auto again =
             body.stepper->try_step(before, &rate, {4, t, t + 0.125, 0.125});
           expect_same(again.end, once.end);

@@ -49,9 +49,9 @@ namespace Viscoplastic
     /// the area.
     std::optional<unsigned int> contact_iterations = {};
     std::optional<double>       slipping           = {};
-    /// In adaptive scenes without error bar.
+    /// In adaptive scenes without error estimate.
     std::optional<double> error_estimate = {};
-    /// With an error bar: the estimate over the energy norm of the solution.
+    /// With an error estimate: its total over the energy norm of the solution.
     std::optional<double> relative_error = {};
     /// Where steps are chosen on the way: how many the run may have, and which
     /// part of its time is done.

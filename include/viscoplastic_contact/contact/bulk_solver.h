@@ -10,13 +10,29 @@
 namespace Viscoplastic
 {
   /**
+   * What an iterative solver has learnt from earlier solves with a matrix and
+   * uses in later ones: how its preconditioner was built, and how it is doing.
+   */
+  struct PreconditionerState
+  {
+    /// The truncation for which it was built.
+    FaceTruncation built_for;
+    /// Iterations a decade right after a set-up, the best so far; iterations
+    /// lost against that since the last set-up.
+    double best_rate = 0., lost_iterations = 0.;
+    /// Whether it has not been used since.
+    bool is_fresh = false;
+  };
+
+
+  /**
    * The constant elastic operator as solvers of contact see it: the energy
    * 1/2 a(u,u) - l(u) with everything but friction. It is set up once a mesh;
    * only the truncation of the face changes from solve to solve.
    *
    * The displacement stays inside. A contact solver moves it by the calls below
    * and sees only its values on the face, so it needs neither a mesh nor
-   * distributed vectors, and a new way to solve linear systems (a multigrid
+   * distributed vectors, and another method for linear systems (a multigrid
    * with masks on all levels) is a new derived class and nothing else.
    *
    * All calls are collective; results are the same on all ranks.
@@ -26,27 +42,17 @@ namespace Viscoplastic
   public:
     virtual ~BulkSolver() = default;
 
-    /// What a solver knows from earlier solves and uses in later ones, beyond
-    /// the matrix: how a preconditioner was built, and how it is doing.
-    struct Memory
-    {
-      /// For which truncation.
-      FaceTruncation built_for;
-      double         best_rate = 0., lost_iterations = 0.;
-      bool           is_fresh = false;
-    };
-
     /// Nothing if all solves are alike.
-    virtual std::optional<Memory>
-    memory() const
+    virtual std::optional<PreconditionerState>
+    preconditioner_state() const
     {
       return {};
     }
 
-    /// Go on like the solver that had this memory, on the same mesh; without
+    /// Go on like the solver that was in this state, on the same mesh; without
     /// one like a new solver.
     virtual void
-    recall(const std::optional<Memory> &)
+    restore(const std::optional<PreconditionerState> &)
     {}
 
     /**

@@ -11,9 +11,10 @@
 namespace Viscoplastic
 {
   /**
-   * The space U^h of admissible displacements and its translates: hanging
-   * nodes, prescribed components in nodal frames of any orientation, and their
-   * values at time t. Displacement vectors come in two forms:
+   * The space V_h of admissible displacements, the paper's U^h, and its
+   * translates: continuous, FE_Q(1) in each component, with hanging nodes,
+   * prescribed components in nodal frames of any orientation, and their values
+   * at time t. Displacement vectors come in two forms:
    *
    * - Cartesian: for evaluation and output;
    * - in frames: each independent node in the components of its NodalFrame,

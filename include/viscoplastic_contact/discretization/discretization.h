@@ -51,12 +51,14 @@ namespace Viscoplastic
       return face ? face->restriction() : no_face;
     }
 
+    /// V_h.
     AdmissibleSpace<dim> space;
     ElasticModuli<dim>   moduli;
     bool                 mean_dilatation;
-    StressSpace<dim>     stress_space;
-    FlowLaws<dim>        laws;
-    Loads<dim>           loads;
+    /// Q_h.
+    StressSpace<dim> stress_space;
+    FlowLaws<dim>    laws;
+    Loads<dim>       loads;
     /// Null without bilateral contact.
     std::unique_ptr<ContactTension<dim>> tension;
     /// Null without friction.

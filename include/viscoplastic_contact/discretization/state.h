@@ -27,9 +27,9 @@ namespace Viscoplastic
     /// initial stress.
     IrreversibleStress z;
 
-    /// At the same samples, with viscosity and an error bar only: what the time
-    /// scheme has left out of z so far, to leading order, and what its second
-    /// order needs (see ErrorEstimator).
+    /// At the same samples, with viscosity and an error estimate only: what the
+    /// time scheme has left out of z so far, to leading order, and what its
+    /// second order needs (see ErrorEstimator).
     IrreversibleStress time_error, rate_slope;
 
     /// Of the step that led here; no points without friction.

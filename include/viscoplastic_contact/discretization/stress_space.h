@@ -1,25 +1,34 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/fe/fe.h>
+
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/elasticity.h>
 
+#include <memory>
 #include <vector>
 
 namespace Viscoplastic
 {
   /**
-   * The irreversible stress z = sigma - E eps(u), sample by sample of the owned
-   * cells. Always a 3D tensor: plane strain has z_zz.
+   * The irreversible stress z = sigma - E eps(u), an element of Q_h by its
+   * coefficients: StressSpace::n_samples tensors for each owned cell. Always
+   * tensors of three dimensions: plane strain has z_zz.
    */
   using IrreversibleStress = std::vector<SymmetricTensor<2, 3>>;
 
 
   /**
-   * Where stresses are sampled: once a cell, with the cell's mean strain (the
-   * paper's piecewise constant stress), or at the quadrature points. Keeps the
-   * gradients of the shape functions there, so that the time loop needs no
-   * FEValues: 2^dim (dim + 1/2) doubles a sample.
+   * The space Q_h of stresses, the paper's H^h: symmetric tensors that are
+   * constant in each cell, FE_DGQ(0). As its refinement, tensors at the Gauss
+   * points of each cell, FE_DGQArbitraryNodes of QGauss(2). An element of the
+   * space is a list of coefficients, its samples.
+   *
+   * The space knows the projection P_Qh of strains, (3.1), and its transpose,
+   * the virtual work of stresses. It keeps the gradients of the shape functions
+   * of V_h, projected, so that the time loop needs no FEValues: 2^dim (dim +
+   * 1/2) doubles a sample.
    *
    * With mean dilatation, the strain has the volumetric part of its cell mean
    * and stresses act on such strains, as in the elastic form.
@@ -36,7 +45,9 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space;
     const ElasticModuli<dim>   &moduli;
     const bool                  mean_dilatation;
-    /// Samples a cell: 1, or 2^dim quadrature points.
+    /// Of each component of a stress.
+    const std::unique_ptr<const FiniteElement<dim>> element;
+    /// Coefficients of a cell: 1, or those at 2^dim Gauss points.
     const unsigned int n_samples;
 
     /// Owned cells.
@@ -64,7 +75,8 @@ namespace Viscoplastic
       return positions[cell * n_samples + s];
     }
 
-    /// Strains at the samples of a cell; @p u: local array of a ghosted vector.
+    /// P_Qh eps(u) in a cell: the mean strain, or that at the Gauss points.
+    /// @p u: local array of a ghosted vector.
     void
     strains(const std::size_t      cell,
             const double          *u,
@@ -85,7 +97,7 @@ namespace Viscoplastic
                   const SymmetricTensor<4, 3> *tangent,
                   FullMatrix<double>          &cell_matrix) const;
 
-    /// Mean of a cell's samples.
+    /// The mean of a cell's samples: the projection to piecewise constants.
     SymmetricTensor<2, 3>
     mean(const std::size_t cell, const SymmetricTensor<2, 3> *samples) const;
 

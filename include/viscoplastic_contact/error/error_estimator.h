@@ -28,8 +28,10 @@ namespace Viscoplastic
 
 
   /**
-   * The estimate of errors, step by step, in scenes with `Error control/Error
-   * bar'. Keeps nothing of the run: what has added up is in the states.
+   * Estimates the error of each state in the energy norm, by its causes, in
+   * scenes with `Error control/Error bar': the mesh, the time steps, the
+   * iterations, the initial data. It keeps nothing of the run; what has added
+   * up is in the states.
    *
    * Time: z_n lacks the sum of the defects of all steps. Signed, as tensors at
    * the samples, they add up to D_n, e.g. for forward Euler

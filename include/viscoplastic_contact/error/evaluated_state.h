@@ -24,7 +24,7 @@ namespace Viscoplastic
     std::optional<FlowRate> rate;
     /// Empty where the scene asks for no estimate.
     SpaceEstimate space_estimate;
-    /// Zero without error bar.
+    /// Zero without error estimate.
     ErrorEstimate errors;
     /// Whether u solves the step of this state on the present mesh: neither
     /// initial data do nor what has been carried over from another mesh.

@@ -23,7 +23,7 @@ namespace Viscoplastic
 
   /**
    * Makes the estimates that a scene asks for on one mesh: the residual
-   * estimator for the error bar or for refinement, Kelly's for refinement.
+   * estimator for the error estimate or for refinement, Kelly's for refinement.
    */
   template <int dim>
   class SpaceEstimator

@@ -44,11 +44,11 @@ namespace Viscoplastic
     std::string
     name() const override;
 
-    std::optional<Memory>
-    memory() const override;
+    std::optional<PreconditionerState>
+    preconditioner_state() const override;
 
     void
-    recall(const std::optional<Memory> &memory) override;
+    restore(const std::optional<PreconditionerState> &state) override;
 
     unsigned int
     solve(const DistributedVector &load,

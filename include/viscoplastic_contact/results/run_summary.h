@@ -55,9 +55,9 @@ namespace Viscoplastic
     std::optional<double>       slipping_area;
     std::vector<Tensor<1, dim>> point_displacements;
     double                      max_displacement = 0.;
-    /// Of an adaptive scene without error bar.
+    /// Of an adaptive scene without error estimate.
     std::optional<double> error_estimate;
-    /// Of a scene with error bar.
+    /// Of a scene with error estimate.
     std::optional<ErrorSummary> errors;
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,

@@ -31,9 +31,10 @@ namespace Viscoplastic
    *                      -> statistics, output, checkpoint
    *                      -> mesh adaptation, before the next step
    *
-   * Displacements are FE_Q(1). Stresses and z are FE_DGQ(0), or live at the
-   * quadrature points: tensors for each owned cell (see StressSpace), whose
-   * cell means are what is reported.
+   * Displacements are in V_h, FE_Q(1) in each component (AdmissibleSpace).
+   * Stresses and z are in Q_h, symmetric tensors of FE_DGQ(0), or of its
+   * refinement at the Gauss points, whose cell means are what is reported
+   * (StressSpace).
    */
   template <int dim>
   class ViscoplasticContact
@@ -208,7 +209,7 @@ namespace Viscoplastic
     ConditionalOStream                        out; // the console on rank 0
     Scene<dim>                                scene;
     parallel::distributed::Triangulation<dim> triangulation;
-    const FESystem<dim>                       fe;
+    const FESystem<dim>                       fe; // of V_h
     DoFHandler<dim>                           dof_handler;
     StepControl                               control;
     std::unique_ptr<ErrorEstimator<dim>> error_estimator; // null if not wanted

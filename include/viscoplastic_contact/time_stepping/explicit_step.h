@@ -24,12 +24,12 @@ namespace Viscoplastic
     StepSolution<dim>
     equilibrate(const StepProblem<dim> &problem) override;
 
-    std::optional<BulkSolver::Memory>
-    memory() const override;
+    std::optional<PreconditionerState>
+    preconditioner_state() const override;
 
     void
-    restore(const EvaluatedState<dim>               &accepted,
-            const std::optional<BulkSolver::Memory> &memory) override;
+    restore(const EvaluatedState<dim>                &accepted,
+            const std::optional<PreconditionerState> &preconditioner) override;
 
     std::string
     solver_name() const override;

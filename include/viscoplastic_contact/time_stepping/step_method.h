@@ -15,7 +15,7 @@ namespace Viscoplastic
   /**
    * A scheme for one step, on one mesh. A step is a function of its problem
    * alone, up to what an iterative linear solver has learnt from earlier solves
-   * (BulkSolver::Memory): with that restored, the same problem gives the same
+   * (PreconditionerState): with that restored, the same problem gives the same
    * bits.
    */
   template <int dim>
@@ -36,14 +36,14 @@ namespace Viscoplastic
 
     /// What the linear solver has learnt, at an accepted state. Nothing where
     /// all solves are alike. Collective.
-    virtual std::optional<BulkSolver::Memory>
-    memory() const = 0;
+    virtual std::optional<PreconditionerState>
+    preconditioner_state() const = 0;
 
     /// Go on from an accepted state on this mesh as the method did that had
-    /// this memory there. Collective.
+    /// this state of its preconditioner there. Collective.
     virtual void
-    restore(const EvaluatedState<dim>               &accepted,
-            const std::optional<BulkSolver::Memory> &memory) = 0;
+    restore(const EvaluatedState<dim>                &accepted,
+            const std::optional<PreconditionerState> &preconditioner) = 0;
 
     /// The linear solver in use; empty before there is one.
     virtual std::string

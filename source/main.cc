@@ -30,20 +30,19 @@ namespace
     const bool compares = parameters.error_control.two_level_comparison;
     if (compares)
       coarser_scene(parameters); // throws
-    if (command_line.task == CommandLine::Task::run)
+    if (command_line.task == CommandLine::Task::check)
       {
-        if (compares)
-          {
-            console.stream() << "First with twice the mesh width and twice the "
-                                "time steps, to compare."
-                             << std::endl;
-            problem.compare_with(
-              run_coarser_scene<dim>(parameters, command_line));
-          }
-        return problem.run(command_line.restart);
+        problem.check();
+        return "";
       }
-    problem.check();
-    return "";
+    if (!compares)
+      return problem.run(command_line.restart);
+    console.stream() << "First with twice the mesh width and twice the time "
+                        "steps, to compare."
+                     << std::endl;
+    const RunSummary<dim> coarser =
+      run_coarser_scene<dim>(parameters, command_line);
+    return problem.run(command_line.restart, &coarser);
   }
 
 

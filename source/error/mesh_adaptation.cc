@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_dgq.h>
-
+#include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/mesh/marking_threshold.h>
 
@@ -208,20 +206,18 @@ namespace Viscoplastic
           old_cell[cell->active_cell_index()] = index++;
         }
 
-    // The samples are nodes of a polynomial on the reference cell: constant, or
-    // (bi-, tri-)linear through the Gauss points.
-    const QGauss<1>                 points(n_samples == 1 ? 1 : 2);
-    const QGauss<dim>               quadrature(points.size());
-    const FE_DGQArbitraryNodes<dim> nodal(points);
+    // The samples belong to the support points of the element of Q_h, whose
+    // shape functions are constant or (bi-, tri-)linear.
+    const FiniteElement<dim> &element = *old_stress_space.element;
     prolongation.assign(GeometryInfo<dim>::max_children_per_cell,
                         FullMatrix<double>(n_samples, n_samples));
     for (unsigned int child = 0; child < prolongation.size(); ++child)
       for (unsigned int s = 0; s < n_samples; ++s)
         for (unsigned int r = 0; r < n_samples; ++r)
           prolongation[child](s, r) =
-            nodal.shape_value(r,
-                              GeometryInfo<dim>::child_to_cell_coordinates(
-                                quadrature.point(s), child));
+            element.shape_value(r,
+                                GeometryInfo<dim>::child_to_cell_coordinates(
+                                  element.get_unit_support_points()[s], child));
 
     handle = triangulation.register_data_attach(
       [this](const CellIterator &cell, const CellStatus status) {
@@ -385,6 +381,37 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  FrictionState
+  friction_on_new_mesh(const Discretization<dim> &discretization,
+                       const State<dim>          &state,
+                       const DistributedVector   &multiplier_density)
+  {
+    const ContactFace<dim> &face = *discretization.face;
+    FrictionState           friction(face.bounds(state.t));
+    friction.multiplier        = face.multipliers(multiplier_density);
+    DistributedVector velocity = discretization.space.owned_vector();
+    discretization.space.to_frames(state.velocity, velocity);
+    Vector<double> carried = face.foundation_step(state.t - state.k, state.t);
+    if (carried.size() > 0)
+      carried /= state.k;
+    const auto   slip_rates = face.slips(velocity, carried);
+    const double max_speed  = velocity.linfty_norm();
+    for (unsigned int p = 0; p < friction.n_points(); ++p)
+      {
+        const double bound      = friction.bound[p];
+        auto        &multiplier = friction.multiplier[p];
+        const double size       = stable_norm(multiplier);
+        if (size > bound)
+          multiplier *= bound / size;
+        friction.sticks[p] = size < (1. - 1e-6) * bound ||
+                             stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
+      }
+    return friction;
+  }
+
+
+
   template bool
   mark_cells<2>(parallel::distributed::Triangulation<2> &,
                 const Vector<double> &,
@@ -395,4 +422,12 @@ namespace Viscoplastic
                 const RefinementParameters &);
   template class StateTransfer<2>;
   template class StateTransfer<3>;
+  template FrictionState
+  friction_on_new_mesh<2>(const Discretization<2> &,
+                          const State<2> &,
+                          const DistributedVector &);
+  template FrictionState
+  friction_on_new_mesh<3>(const Discretization<3> &,
+                          const State<3> &,
+                          const DistributedVector &);
 } // namespace Viscoplastic

@@ -86,11 +86,11 @@ namespace Viscoplastic
     dof_handler.distribute_dofs(fe);
     discretization = std::make_unique<Discretization<dim>>(dof_handler, scene);
     const Discretization<dim> &d = *discretization;
-    announce_mesh();
-    announce_held_faces();
+    announcer.announce(d);
+    announcer.warn_of_held_faces(d);
     recorder.set_mesh(d);
 
-    check_references();
+    known_solution.check();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(d.space);
     // The initial data, and where they need no solution, the first step.

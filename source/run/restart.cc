@@ -50,40 +50,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  CheckpointStore
-  ViscoplasticContact<dim>::checkpoints() const
-  {
-    const std::string &directory = parameters.checkpoint.directory;
-    return CheckpointStore(directory.empty() ?
-                             results_directory(parameters) + "checkpoint" :
-                             directory,
-                           communicator);
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::begin_checkpoints()
-  {
-    const CheckpointStore       store  = checkpoints();
-    const CheckpointParameters &wanted = parameters.checkpoint;
-    if (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.)
-      {
-        store.make_directory();
-        lock_directories();
-      }
-    const CheckpointStore::Removal removal = store.remove_all();
-    for (const std::string &remark : removal.remarks)
-      console.remark(remark);
-    if (removal.n_checkpoints > 0)
-      console.remark("Note: the checkpoints of an earlier run in '" +
-                     store.directory + "' have been removed.");
-  }
-
-
-
-  template <int dim>
   template <typename Archive>
   void
   ViscoplasticContact<dim>::exchange(Archive &archive)
@@ -138,12 +104,7 @@ namespace Viscoplastic
         files[run_file] = archive.bytes();
         recorder.synchronize(); // whose rows the checkpoint relies on
       }
-    const CheckpointStore store = checkpoints();
-    store.make_directory(); // unless the scene has asked for checkpoints
-    lock_directories();
-    for (const std::string &remark :
-         store.write(manifest, files, parameters.checkpoint.keep))
-      console.remark(remark);
+    directories.write_checkpoint(manifest, files);
   }
 
 
@@ -174,7 +135,7 @@ namespace Viscoplastic
     last_checkpoint = recorder.elapsed();
     std::ostringstream text;
     text << "step " << state.n << " (t = " << state.t << "): '"
-         << checkpoints().path(state.n) << "'";
+         << directories.checkpoints.path(state.n) << "'";
     if (!stops)
       {
         // Regular ones need no words.
@@ -193,38 +154,13 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::optional<CheckpointManifest>
-  ViscoplasticContact<dim>::find_checkpoint(const CommandLine::Restart restart)
-  {
-    using Restart = CommandLine::Restart;
-    if (restart == Restart::no)
-      return {};
-    std::vector<std::string> remarks;
-    auto                     found = checkpoints().newest(remarks);
-    for (const std::string &remark : remarks)
-      console.remark("Warning: " + remark + '.');
-    const std::string directory = checkpoints().directory;
-    AssertThrow(found || remarks.empty(),
-                ExcMessage("None of the " + std::to_string(remarks.size()) +
-                           " checkpoint(s) in '" + directory +
-                           "' can be used: " + remarks[0] + '.'));
-    AssertThrow(found || restart == Restart::automatic,
-                ExcMessage("There is no checkpoint in '" + directory +
-                           "'; begin without --restart, or name the place in "
-                           "'Checkpoint/Directory' or 'Output/Directory'."));
-    return found;
-  }
-
-
-
-  template <int dim>
   void
   ViscoplasticContact<dim>::resume(const CheckpointManifest &checkpoint)
   {
-    State<dim>           &state = accepted.state;
-    const CheckpointStore store = checkpoints();
-    const std::string     name  = "The checkpoint '" + store.path(checkpoint.n);
-    const unsigned int    rank = Utilities::MPI::this_mpi_process(communicator);
+    State<dim>            &state = accepted.state;
+    const CheckpointStore &store = directories.checkpoints;
+    const std::string      name = "The checkpoint '" + store.path(checkpoint.n);
+    const unsigned int rank    = Utilities::MPI::this_mpi_process(communicator);
     const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
 
     const ParameterChanges changes =

@@ -3,7 +3,6 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
@@ -26,7 +25,8 @@ namespace Viscoplastic
     : communicator(MPI_COMM_WORLD)
     , parameters(parameters)
     , console(console)
-    , out(console.stream(), Utilities::MPI::this_mpi_process(communicator) == 0)
+    , out(console.stream())
+    , announcer(console)
     , scene(parameters)
     // Always rebuilt from its coarse cells: then the order of cells, and with
     // it the rounding of sums, does not depend on the history of the mesh.
@@ -36,6 +36,7 @@ namespace Viscoplastic
                       dim>::mesh_reconstruction_after_repartitioning)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
+    , directories(parameters, console, communicator)
     , control(parameters.step_control,
               parameters.time.stiffness_policy,
               scene.schedule,
@@ -45,6 +46,7 @@ namespace Viscoplastic
                         std::make_unique<ErrorEstimator<dim>>(scene) :
                         nullptr)
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
+    , known_solution(scene, timer)
     , recorder(scene, control, console, timer)
   {}
 
@@ -52,12 +54,13 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  ViscoplasticContact<dim>::run(const CommandLine::Restart restart)
+  ViscoplasticContact<dim>::run(const CommandLine::Restart restart,
+                                const RunSummary<dim>     *coarser)
   {
     make_mesh();
-    check_references();
-    lock_directories();
-    if (const auto checkpoint = find_checkpoint(restart))
+    known_solution.check();
+    directories.lock();
+    if (const auto checkpoint = directories.find_checkpoint(restart))
       {
         resume(*checkpoint);
         if (is_finished())
@@ -73,7 +76,7 @@ namespace Viscoplastic
     const SignalRequests signals;
     const std::string    interruption = make_steps(&signals);
     if (interruption.empty())
-      close();
+      close(coarser);
     return interruption;
   }
 
@@ -88,11 +91,16 @@ namespace Viscoplastic
         if (adaptation_is_due())
           adapt_mesh();
         AcceptedStep<dim> step = time_stepper->next(accepted);
-        announce_solver();
-        recorder.record(accepted, step, measure_errors(step.end.state));
+        announcer.announce_solver(time_stepper->method().solver_name());
+        recorder.record(accepted,
+                        step,
+                        known_solution.errors(*discretization, step.end.state));
         accepted = std::move(step.end);
         if (signals == nullptr)
           continue;
+        known_solution.write_reference(*discretization,
+                                       accepted.state,
+                                       output->directory());
         if (output->is_due(step.time_step))
           write_fields();
         const std::string interruption = keep_checkpoints(*signals);
@@ -100,26 +108,6 @@ namespace Viscoplastic
           return interruption;
       }
     return "";
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::lock_directories(const bool make_results)
-  {
-    const std::string results = results_directory(parameters),
-                      saved   = checkpoints().directory;
-    fail_together(communicator, [&]() {
-      if (Utilities::MPI::this_mpi_process(communicator) != 0)
-        return;
-      if (make_results)
-        make_results_directory(results);
-      results_lock.acquire(results);
-      std::error_code none;
-      if (!std::filesystem::equivalent(results, saved, none))
-        checkpoint_lock.acquire(saved);
-    });
   }
 
 
@@ -142,15 +130,6 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::compare_with(const RunSummary<dim> &coarser)
-  {
-    coarser_summary = coarser;
-  }
-
-
-
-  template <int dim>
-  void
   ViscoplasticContact<dim>::begin()
   {
     set_up();
@@ -158,9 +137,9 @@ namespace Viscoplastic
       check_exact_solution(discretization->space);
     set_initial_state();
     check_steps();
-    lock_directories(/* make_results = */ true);
+    directories.begin();
     output.emplace(scene, communicator);
-    begin_checkpoints();
+    directories.begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       recorder.write_to(
         std::make_unique<Statistics>(output->directory() + "statistics.csv"));
@@ -178,7 +157,9 @@ namespace Viscoplastic
     initial.time_step = {0, 0., 0., 0.};
     initial.end       = accepted;
     initial.report    = initial_report;
-    recorder.record(accepted, initial, measure_errors(accepted.state));
+    recorder.record(accepted,
+                    initial,
+                    known_solution.errors(*discretization, accepted.state));
   }
 
 
@@ -193,7 +174,7 @@ namespace Viscoplastic
                 ExcMessage("'Step control/Tolerance' needs an estimate of the "
                            "error; set 'Error control/Error bar' = true."));
     control.set_has_estimate(scene.has_viscosity());
-    announce();
+    announcer.announce(scene);
   }
 
 
@@ -215,9 +196,9 @@ namespace Viscoplastic
                                                       control,
                                                       timer);
     if (accepted.forces.u.size() == 0) // the first time
-      announce_mesh();
-    announce_held_faces();
-    announce_solver();
+      announcer.announce(*discretization);
+    announcer.warn_of_held_faces(*discretization);
+    announcer.announce_solver(time_stepper->method().solver_name());
     recorder.set_mesh(*discretization);
   }
 
@@ -307,30 +288,8 @@ namespace Viscoplastic
     auto                       result = transfer.unpack(d.stress_space);
     state                             = std::move(result.state);
     if (d.face)
-      {
-        // Sets by what the multipliers and velocities say.
-        FrictionState &friction = state.friction;
-        friction                = FrictionState(d.face->bounds(state.t));
-        friction.multiplier = d.face->multipliers(result.multiplier_density);
-        DistributedVector velocity = d.space.owned_vector();
-        d.space.to_frames(state.velocity, velocity);
-        Vector<double> carried =
-          d.face->foundation_step(state.t - state.k, state.t);
-        if (carried.size() > 0)
-          carried /= state.k;
-        const auto   slip_rates = d.face->slips(velocity, carried);
-        const double max_speed  = velocity.linfty_norm();
-        for (unsigned int p = 0; p < friction.n_points(); ++p)
-          {
-            auto        &multiplier = friction.multiplier[p];
-            const double size       = stable_norm(multiplier);
-            if (size > friction.bound[p])
-              multiplier *= friction.bound[p] / size;
-            friction.sticks[p] =
-              size < (1. - 1e-6) * friction.bound[p] ||
-              stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
-          }
-      }
+      state.friction =
+        friction_on_new_mesh(d, state, result.multiplier_density);
     accepted.forces = evaluate_forces(d.stress_space,
                                       d.matrix,
                                       d.loads.assemble(state.t),
@@ -358,6 +317,29 @@ namespace Viscoplastic
                                                            nullptr);
     for (const std::string &remark : remarks)
       console.remark(remark);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::close(const RunSummary<dim> *coarser)
+  {
+    recorder.check_sizes(/* at_end = */ true);
+    std::vector<std::string> remarks = console.remarks();
+    for (const std::string &remark : recorder.remarks(accepted.state))
+      remarks.push_back(remark);
+    recorder.print(out, coarser);
+    if (coarser != nullptr &&
+        Utilities::MPI::this_mpi_process(communicator) == 0)
+      write_uncertainties(output->directory() + "uncertainty.csv",
+                          recorder.summary(),
+                          *coarser);
+    if (const auto &errors = recorder.summary().errors)
+      output->record_errors(*errors);
+    for (const std::string &remark : remarks)
+      out << remark << '\n';
+    out << "Results in " << output->directory() << std::endl;
   }
 
 

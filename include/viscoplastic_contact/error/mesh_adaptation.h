@@ -6,6 +6,7 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
+#include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/discretization/state.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 
@@ -105,4 +106,16 @@ namespace Viscoplastic
     unsigned int n;
     double       t, k;
   };
+
+
+  /**
+   * The friction of a state that a StateTransfer has brought to a new mesh: the
+   * multipliers from their density, within the bounds, and the sets by what
+   * multipliers and velocities say. Collective.
+   */
+  template <int dim>
+  FrictionState
+  friction_on_new_mesh(const Discretization<dim> &discretization,
+                       const State<dim>          &state,
+                       const DistributedVector   &multiplier_density);
 } // namespace Viscoplastic

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/timer.h>
 #include <deal.II/distributed/tria.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 
 #include <viscoplastic_contact/base/console.h>
-#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/signals.h>
-#include <viscoplastic_contact/checkpoint/checkpoint_store.h>
+#include <viscoplastic_contact/error/known_solution.h>
 #include <viscoplastic_contact/results/output.h>
 #include <viscoplastic_contact/results/recorder.h>
+#include <viscoplastic_contact/run/announcer.h>
 #include <viscoplastic_contact/run/command_line.h>
+#include <viscoplastic_contact/run/run_directories.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <memory>
 #include <optional>
-#include <set>
 
 namespace Viscoplastic
 {
@@ -43,19 +42,17 @@ namespace Viscoplastic
     /// Throws ExcMessage with a sentence for the user, as run() does.
     ViscoplasticContact(const Parameters &parameters, Console &console);
 
-    /// Returns a sentence if a signal has ended the run early, after a
-    /// checkpoint.
+    /// Simulate, from the start or from a checkpoint. The closing words give
+    /// each quantity with its difference from that of @p coarser, a run with
+    /// twice the mesh width and time steps, unless that is null. Returns a
+    /// sentence if a signal has ended the run early, after a checkpoint.
     std::string
-    run(const CommandLine::Restart restart = CommandLine::Restart::no);
+    run(const CommandLine::Restart restart = CommandLine::Restart::no,
+        const RunSummary<dim>     *coarser = nullptr);
 
     /// All steps without any file, and what is known at the end.
     RunSummary<dim>
     run_without_files();
-
-    /// The closing words of run() give each quantity with its difference from
-    /// that of a run with twice the mesh width and twice the time steps.
-    void
-    compare_with(const RunSummary<dim> &coarser);
 
     /**
      * Everything that can be known without solving: validates the scene with
@@ -136,24 +133,7 @@ namespace Viscoplastic
     void
     adapt_mesh();
 
-    /// Keep other processes out of the directories that this run writes into,
-    /// as far as they exist and have no lock yet.
-    void
-    lock_directories(const bool make_results = false);
-
     // Checkpoints: source/run/restart.cc.
-
-    /// Where the scene keeps its checkpoints.
-    CheckpointStore
-    checkpoints() const;
-
-    /// Remove those of an earlier run, which go with its results.
-    void
-    begin_checkpoints();
-
-    /// The checkpoint to go on from, if the run is to go on and there is one.
-    std::optional<CheckpointManifest>
-    find_checkpoint(const CommandLine::Restart restart);
 
     /// From a checkpoint: what begin() does, and all steps up to there.
     void
@@ -172,45 +152,23 @@ namespace Viscoplastic
     void
     exchange(Archive &archive);
 
-    // Reporting: source/run/reporting.cc.
-
-    void
-    announce() const;
-
-    void
-    announce_mesh() const;
-
-    /// Name the frictional boundaries without friction points, each once.
-    void
-    announce_held_faces();
-
-    /// Name the linear solver if it is another one.
-    void
-    announce_solver();
-
-    /// Against the exact solution, or a reference at the ends of phases; not
-    /// a number where there is none. Writes such a reference where wanted.
-    SolutionErrors
-    measure_errors(const State<dim> &of);
-
-    /// Refuse missing references before the run.
-    void
-    check_references() const;
-
     void
     write_fields();
 
+    /// The closing words.
     void
-    close();
+    close(const RunSummary<dim> *coarser);
 
     const MPI_Comm                            communicator;
     const Parameters                         &parameters;
     Console                                  &console;
-    ConditionalOStream                        out; // the console on rank 0
+    std::ostream                             &out; // of the console
+    Announcer<dim>                            announcer;
     Scene<dim>                                scene;
     parallel::distributed::Triangulation<dim> triangulation;
     const FESystem<dim>                       fe; // of V_h
     DoFHandler<dim>                           dof_handler;
+    RunDirectories                            directories;
     StepControl                               control;
     std::unique_ptr<ErrorEstimator<dim>> error_estimator; // null if not wanted
 
@@ -219,18 +177,12 @@ namespace Viscoplastic
     std::unique_ptr<TimeStepper<dim>>    time_stepper;
 
     /// The last state that will do.
-    EvaluatedState<dim> accepted;
-    ContactReport       initial_report;
-    /// The linear solver, and the frictional boundaries without friction
-    /// points, that the user has been told of.
-    std::string                  announced_solver;
-    std::set<types::boundary_id> announced_held_faces;
-    DirectoryLock                results_lock, checkpoint_lock; // on rank 0
-    std::optional<Output<dim>>   output; // absent without files
-    TimerOutput                  timer;  // wall time by phase
-    Recorder<dim>                recorder;
-    /// What compare_with() was given.
-    std::optional<RunSummary<dim>> coarser_summary;
+    EvaluatedState<dim>        accepted;
+    ContactReport              initial_report;
+    std::optional<Output<dim>> output; // absent without files
+    TimerOutput                timer;  // wall time by phase
+    KnownSolution<dim>         known_solution;
+    Recorder<dim>              recorder;
     /// When the last checkpoint was written, as the recorder's clock has it.
     double last_checkpoint = 0.;
   };

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/base/console.h>
+#include <viscoplastic_contact/discretization/discretization.h>
+
+#include <set>
+#include <string>
+
+namespace Viscoplastic
+{
+  /**
+   * Tells the user what is simulated: the effects of a scene, the size of its
+   * mesh, the linear solver, and what is unusual about them. What may come up
+   * again on later meshes is said once.
+   */
+  template <int dim>
+  class Announcer
+  {
+  public:
+    explicit Announcer(Console &console)
+      : console(console)
+    {}
+
+    void
+    announce(const Scene<dim> &scene);
+
+    /// The size of the first mesh.
+    void
+    announce(const Discretization<dim> &discretization);
+
+    /// Name the frictional boundaries without friction points. Collective.
+    void
+    warn_of_held_faces(const Discretization<dim> &discretization);
+
+    /// @p name may be empty, as long as there is no solver.
+    void
+    announce_solver(const std::string &name);
+
+  private:
+    Console                     &console;
+    std::string                  solver;
+    std::set<types::boundary_id> held_faces;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/blas_kernel.h>
+#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/run/announcer.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  Announcer<dim>::announce(const Scene<dim> &scene)
+  {
+    std::ostream &out = console.stream();
+    out << "viscoplastic_contact " << VISCOPLASTIC_CONTACT_VERSION << " ("
+        << VISCOPLASTIC_CONTACT_GIT_REVISION << "), " << scene.parameters.file
+        << " on " << Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD)
+        << " MPI rank(s)\nEffects:\n";
+    for (const std::string &effect : scene.effects())
+      out << "  " << effect << '\n';
+    for (const std::string &warning : scene.warnings)
+      console.remark("Warning: " + warning);
+    const std::string advice = advice_on_blas_kernel();
+    if (!advice.empty())
+      out << "Note: " << advice << '\n';
+    out << std::flush;
+  }
+
+
+
+  template <int dim>
+  void
+  Announcer<dim>::announce(const Discretization<dim> &discretization)
+  {
+    const DoFHandler<dim> &dof_handler = discretization.space.dof_handler;
+    std::ostream          &out         = console.stream();
+    out << "Mesh: " << dof_handler.get_triangulation().n_global_active_cells()
+        << " cells, " << dof_handler.n_dofs() << " degrees of freedom";
+    if (discretization.face)
+      out << ", " << discretization.face->layout().points.size()
+          << " friction points";
+    out << (discretization.mean_dilatation ? ", mean dilatation\n" : "\n");
+  }
+
+
+
+  template <int dim>
+  void
+  Announcer<dim>::warn_of_held_faces(const Discretization<dim> &discretization)
+  {
+    if (!discretization.face)
+      return;
+    for (const types::boundary_id id : discretization.face->held_boundaries())
+      if (held_faces.insert(id).second)
+        console.remark(
+          "Note: nothing slips on boundary " + std::to_string(id) +
+          ", although it has friction: other conditions hold all of its nodes "
+          "on the present mesh; refine it there, or release another boundary.");
+  }
+
+
+
+  template <int dim>
+  void
+  Announcer<dim>::announce_solver(const std::string &name)
+  {
+    if (name.empty() || name == solver)
+      return;
+    solver = name;
+    console.stream() << "Linear solver: " << solver << std::endl;
+  }
+
+
+
+  template class Announcer<2>;
+  template class Announcer<3>;
+} // namespace Viscoplastic

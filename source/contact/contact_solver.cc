@@ -10,7 +10,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Of linear solves as long as the sets change, relative.
+    /// The relative tolerance of linear solves as long as the sets change.
     constexpr double loose_tolerance = 0.05;
     /// A linear solve that shall bring the error below the tolerance aims at
     /// this part of it.
@@ -18,7 +18,7 @@ namespace Viscoplastic
     /// A correction that stops at reversing slips is taken as it is if it goes
     /// that far; otherwise something better is tried.
     constexpr double least_limited_step = 0.5;
-    /// Of J in a correction, relative to the duality gap.
+    /// The least decrease of J in a correction, relative to the duality gap.
     constexpr double least_descent = 0.1;
 
 

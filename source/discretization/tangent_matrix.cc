@@ -23,7 +23,7 @@ namespace Viscoplastic
 
 
 
-    /// Of the product of two tensors, as a map.
+    /// The trace of the product of two tensors, as a map.
     double
     trace(const SymmetricTensor<4, 3> &a, const SymmetricTensor<4, 3> &b)
     {
@@ -37,7 +37,7 @@ namespace Viscoplastic
 
 
 
-    /// Of the isotropic tensor next to this one.
+    /// Poisson's ratio of the isotropic tensor next to this one.
     double
     poissons_ratio(const SymmetricTensor<4, 3> &tangent)
     {

@@ -278,10 +278,10 @@ namespace Viscoplastic
 
   template <int dim>
   typename StateTransfer<dim>::Result
-  StateTransfer<dim>::unpack(const StressSpace<dim> &new_sampling)
+  StateTransfer<dim>::unpack(const StressSpace<dim> &new_stress_space)
   {
-    AssertDimension(new_sampling.n_samples, n_samples);
-    const AdmissibleSpace<dim> &space = new_sampling.space;
+    AssertDimension(new_stress_space.n_samples, n_samples);
+    const AdmissibleSpace<dim> &space = new_stress_space.space;
 
     Result result;
     result.state.n = n;
@@ -313,13 +313,13 @@ namespace Viscoplastic
       return result;
     const auto sampled = sample_fields(result.state);
     for (const unsigned int f : carried)
-      sampled[f]->resize(new_sampling.n_cells() * n_samples);
+      sampled[f]->resize(new_stress_space.n_cells() * n_samples);
     std::vector<unsigned int> new_cell(triangulation.n_active_cells());
     unsigned int              index = 0;
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         new_cell[cell->active_cell_index()] = index++;
-    AssertDimension(index, new_sampling.n_cells());
+    AssertDimension(index, new_stress_space.n_cells());
 
     const auto unpack_field = [&](const CellIterator          &cell,
                                   const CellStatus             status,
@@ -335,13 +335,13 @@ namespace Viscoplastic
             {
               const std::size_t c =
                 new_cell[cell->child(child)->active_cell_index()];
-              volume += new_sampling.volume(c);
+              volume += new_stress_space.volume(c);
               for (unsigned int s = 0; s < n_samples; ++s)
                 {
                   SymmetricTensor<2, 3> &sample = z[c * n_samples + s];
                   for (unsigned int r = 0; r < n_samples; ++r)
                     sample += prolongation[child](s, r) * values[r];
-                  missing -= new_sampling.weight(c, s) * sample;
+                  missing -= new_stress_space.weight(c, s) * sample;
                 }
             }
           for (const auto &child : cell->child_iterators())
@@ -354,7 +354,7 @@ namespace Viscoplastic
           const std::size_t c = new_cell[cell->active_cell_index()];
           for (unsigned int s = 0; s < n_samples; ++s)
             z[c * n_samples + s] = status == Triangulation<dim>::CELL_COARSEN ?
-                                     values[s] / new_sampling.weight(c, s) :
+                                     values[s] / new_stress_space.weight(c, s) :
                                      values[s];
         }
     };

@@ -75,7 +75,8 @@ namespace Viscoplastic
           }
       }
 
-      /// Of B; infinite if none is below the tolerance and it is not known.
+      /// The smallest eigenvalue of B; infinite if none is below the tolerance
+      /// and it is not known.
       double
       smallest_eigenvalue() const
       {

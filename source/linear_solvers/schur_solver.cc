@@ -151,7 +151,7 @@ namespace Viscoplastic
       return A;
     }
 
-    /// In place: x := L^{-1} x or L^{-T} x.
+    /// Solve in place: x := L^{-1} x or L^{-T} x.
     void
     solve(const int system, Vector<double> &x)
     {

@@ -49,7 +49,7 @@ namespace Viscoplastic
 
 
 
-    /// From the integrals of the stress.
+    /// The stored energy, from the integrals of the stress.
     template <int dim>
     double
     stored_energy(const Forces<dim> &forces, const StressSummary &stress)

@@ -82,7 +82,8 @@ namespace Viscoplastic
 
 
 
-    /// Of the exact solution: all, or those that are not `free'.
+    /// The components that the exact solution gives: all, or those that are not
+    /// `free'.
     template <int dim>
     std::array<std::optional<Expression<dim>>, dim>
     derived_components(const std::string        &text,

@@ -13,9 +13,10 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Of the largest values in the run: less is not called a jump.
+    /// A change by less than this part of the largest values is not called a
+    /// jump.
     constexpr double smallest_share = 0.05;
-    /// Of the end time: where a change within that is called a jump.
+    /// A change within this part of the end time is called a jump.
     constexpr double width = 1e-12;
     /// Intervals between which jumps are looked for, in all and in a phase.
     constexpr unsigned int n_intervals = 200, least_intervals = 10;
@@ -24,8 +25,8 @@ namespace Viscoplastic
     /// So many places, or a few more, stand for a piece of the boundary or for
     /// the body.
     constexpr unsigned int n_places = 64;
-    /// Of the range of the values in the run: how far these have to leave those
-    /// at both ends of a step to be called unseen. A sine goes that far with
+    /// Values have to leave those at both ends of a step by this part of their
+    /// range in the run to be called unseen. A sine goes that far with
     /// about two steps a period, not with three.
     constexpr double unseen_share = 0.4;
     /// Steps that are looked into, or one a phase, and where, as shares
@@ -157,7 +158,7 @@ namespace Viscoplastic
 
 
 
-    /// On the coarse mesh, which all ranks know.
+    /// Points on the coarse mesh, which all ranks know.
     template <int dim>
     std::vector<Point<dim>>
     places_on_boundary(const Triangulation<dim> &triangulation,

@@ -156,7 +156,7 @@ namespace Viscoplastic
     IrreversibleStress z;
     DistributedVector  base;
 
-    /// Of the present matrix.
+    /// The tolerance in the energy norm of the present matrix.
     double tolerance = 0.;
     double error = 0., size = 0.,
            last_error = std::numeric_limits<double>::infinity(),

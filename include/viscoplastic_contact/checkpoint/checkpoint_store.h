@@ -18,7 +18,7 @@ namespace Viscoplastic
     unsigned int n         = 0;
     double       t         = 0.;
     unsigned int dimension = 0, n_ranks = 0;
-    /// Of the program that wrote it.
+    /// The version of the program that wrote it.
     std::string version;
     /// Every parameter of the run, by `Section/Entry'.
     std::map<std::string, std::string> parameters;
@@ -112,8 +112,8 @@ namespace Viscoplastic
       bool is_complete = true;
     };
 
-    /// By ascending steps. Empty if there is no directory; throws ExcMessage if
-    /// it cannot be read. Not collective.
+    /// All of them by ascending steps. Empty if there is no directory; throws
+    /// ExcMessage if it cannot be read. Not collective.
     std::vector<Entry>
     entries() const;
 

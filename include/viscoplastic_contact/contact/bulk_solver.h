@@ -42,7 +42,7 @@ namespace Viscoplastic
   public:
     virtual ~BulkSolver() = default;
 
-    /// Nothing if all solves are alike.
+    /// The state to go on from later; nothing if all solves are alike.
     virtual std::optional<PreconditionerState>
     preconditioner_state() const
     {
@@ -70,7 +70,7 @@ namespace Viscoplastic
     virtual bool
     is_exact() const = 0;
 
-    /// For the user: "direct (CHOLMOD)".
+    /// What the solver is called in messages, e.g. "direct (CHOLMOD)".
     virtual std::string
     name() const = 0;
 

@@ -15,9 +15,10 @@ namespace Viscoplastic
     unsigned int linear_iterations = 0;
     /// Primal minus dual energy, a bound on half the squared energy error.
     double duality_gap = 0.;
-    /// That bound on the error over the energy norm of the solution.
+    /// The bound on the energy error that follows from the duality gap, over
+    /// the energy norm of the solution.
     double relative_error = 0.;
-    /// The bound itself; without friction that of the linear solver.
+    /// The same bound, absolute; without friction that of the linear solver.
     double error = 0.;
     /// The relative tolerance of the solve; zero where nothing was solved.
     double tolerance = 0.;

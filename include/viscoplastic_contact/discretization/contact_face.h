@@ -28,7 +28,7 @@ namespace Viscoplastic
       return face_restriction.face();
     }
 
-    /// Of vectors in frames, to face vectors.
+    /// The restriction of vectors in frames to face vectors.
     const FaceRestriction &
     restriction() const
     {
@@ -80,7 +80,7 @@ namespace Viscoplastic
     slips(const DistributedVector &change,
           const Vector<double>    &foundation_step) const;
 
-    /// The same for a face vector on all ranks.
+    /// The slips that a change means, given as a face vector on all ranks.
     std::vector<Tensor<1, 2>>
     slips(const Vector<double> &change) const;
 

@@ -51,21 +51,21 @@ namespace Viscoplastic
       return face ? face->restriction() : no_face;
     }
 
-    /// V_h.
+    /// V_h, with its boundary conditions.
     AdmissibleSpace<dim> space;
     ElasticModuli<dim>   moduli;
     bool                 mean_dilatation;
-    /// Q_h.
+    /// Q_h, the space of stresses.
     StressSpace<dim> stress_space;
     FlowLaws<dim>    laws;
     Loads<dim>       loads;
-    /// Null without bilateral contact.
+    /// Where bilateral contact pulls; null without bilateral contact.
     std::unique_ptr<ContactTension<dim>> tension;
-    /// Null without friction.
+    /// The friction points; null without friction.
     std::unique_ptr<ContactFace<dim>> face;
     /// How often a linear solver will be used on this mesh at least.
     unsigned int n_solves;
-    /// Of a(.,.), in nodal frames.
+    /// The matrix of a(.,.) in nodal frames.
     DistributedMatrix matrix;
 
   private:

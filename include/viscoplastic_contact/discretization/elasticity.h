@@ -22,7 +22,7 @@ namespace Viscoplastic
     /// Collective.
     explicit ElasticModuli(const AdmissibleSpace<dim> &space);
 
-    /// The same tensor everywhere, e.g. the identity for a projection.
+    /// A body with one tensor everywhere, e.g. the identity for a projection.
     explicit ElasticModuli(const Stiffness &stiffness);
 
     /// @p cell counts the owned active cells in the order of iteration.

@@ -9,9 +9,10 @@ namespace Viscoplastic
   /// Integrals over the stress of a state and of the step that led to it.
   struct StressSummary
   {
-    /// Of cell means; the mean is weighted by volume.
+    /// The von Mises stress of cell means, its largest value and its mean by
+    /// volume.
     double max_von_mises = 0., mean_von_mises = 0.;
-    /// (eps : eps)^(1/2) of cell means.
+    /// The largest (eps : eps)^(1/2) of cell means.
     double max_strain = 0.;
     /// (int sigma : sigma)^(1/2) of cell means.
     double stress_norm = 0.;

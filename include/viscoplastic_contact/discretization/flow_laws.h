@@ -33,7 +33,7 @@ namespace Viscoplastic
     bool
     have_constant_tangents() const;
 
-    /// Null unless a manufactured solution has a source.
+    /// The exact solution whose source is added to G; null if there is none.
     const ExactSolution<dim> *const source_solution;
 
     /// Throws ExcMessage if a parameter is out of range somewhere at time t.
@@ -44,7 +44,7 @@ namespace Viscoplastic
     class AtTime
     {
     public:
-      /// Null where the cell is elastic.
+      /// The law of a cell; null where it is elastic.
       const ViscoplasticLaw *
       law(const std::size_t cell) const
       {
@@ -55,7 +55,7 @@ namespace Viscoplastic
           .law;
       }
 
-      /// For law(cell) at one of the cell's samples.
+      /// The point at which law(cell) is evaluated for one of its samples.
       LawPoint
       point(const std::size_t cell, const unsigned int s) const;
 
@@ -96,8 +96,8 @@ namespace Viscoplastic
     std::vector<Entry> materials;
     /// Index into materials; empty if there is but one.
     std::vector<unsigned int> material_of_cell;
-    /// By sample; empty unless parameters of some law depend on position but
-    /// not on time.
+    /// The parameters at each sample; empty unless those of some law depend on
+    /// position but not on time.
     std::vector<std::array<double, 6>> parameters;
   };
 
@@ -105,7 +105,7 @@ namespace Viscoplastic
   /// G at a state, and what it means for a step from there.
   struct FlowRate
   {
-    /// At each sample.
+    /// G at each sample.
     IrreversibleStress rate;
     /// The largest relaxation rate r; forward Euler is stable for k <= 2/r.
     /// Collective result.

@@ -32,7 +32,8 @@ namespace Viscoplastic
     /// second order needs (see ErrorEstimator).
     IrreversibleStress time_error, rate_slope;
 
-    /// Of the step that led here; no points without friction.
+    /// What friction has done in the step that led here; no points without
+    /// friction.
     FrictionState friction;
 
     /// u_0, Cartesian with ghosts; empty where zero.

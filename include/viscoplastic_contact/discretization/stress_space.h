@@ -45,7 +45,7 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space;
     const ElasticModuli<dim>   &moduli;
     const bool                  mean_dilatation;
-    /// Of each component of a stress.
+    /// The element of each component of a stress.
     const std::unique_ptr<const FiniteElement<dim>> element;
     /// Coefficients of a cell: 1, or those at 2^dim Gauss points.
     const unsigned int n_samples;

@@ -43,7 +43,8 @@ namespace Viscoplastic
       return tangent_matrix;
     }
 
-    /// Where Poisson's ratio would be if the tangents were isotropic.
+    /// The largest Poisson's ratio of the isotropic tensors next to the
+    /// tangents.
     double
     max_poissons_ratio() const
     {

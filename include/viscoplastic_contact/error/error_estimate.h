@@ -12,13 +12,14 @@ namespace Viscoplastic
    */
   struct ErrorEstimate
   {
-    /// Of the mesh: space_calibration times the residual estimator.
+    /// The error of the mesh: space_calibration times the residual estimator.
     double space = 0.;
-    /// Of the time steps up to now: (int E^-1 D : D)^{1/2}.
+    /// The error of the time steps up to now, (int E^-1 D : D)^{1/2}, with D
+    /// the sum of their defects (see ErrorEstimator).
     double time = 0.;
-    /// Of the iterations that solved the step.
+    /// The error of the iterations that solved the step.
     double algebraic = 0.;
-    /// Of the initial data.
+    /// The error of the initial data.
     double initial = 0.;
 
     /// What this step alone has added to D, in the norm of `time'.
@@ -44,7 +45,7 @@ namespace Viscoplastic
         &velocity_variation &energy_norm &velocity_square;
     }
 
-    /// By the triangle inequality.
+    /// The sum, a bound by the triangle inequality.
     double
     total() const
     {

@@ -21,7 +21,7 @@ namespace Viscoplastic
     double first, second;
   };
 
-  /// Of a value of `Time/Scheme'.
+  /// The defect of a scheme.
   TimeDefect
   time_defect(const TimeScheme scheme);
 

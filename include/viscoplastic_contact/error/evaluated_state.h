@@ -22,9 +22,9 @@ namespace Viscoplastic
     Forces<dim> forces;
     /// G at the state; absent where nobody has asked for it yet.
     std::optional<FlowRate> rate;
-    /// Empty where the scene asks for no estimate.
+    /// The error in space; empty where the scene asks for no estimate.
     SpaceEstimate space_estimate;
-    /// Zero without error estimate.
+    /// The error by its causes; zero where the scene asks for no estimate.
     ErrorEstimate errors;
     /// Whether u solves the step of this state on the present mesh: neither
     /// initial data do nor what has been carried over from another mesh.

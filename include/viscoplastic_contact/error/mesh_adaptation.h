@@ -73,9 +73,9 @@ namespace Viscoplastic
       DistributedVector multiplier_density;
     };
 
-    /// To be called once. Collective.
+    /// The state on the new mesh. To be called once. Collective.
     Result
-    unpack(const StressSpace<dim> &new_sampling);
+    unpack(const StressSpace<dim> &new_stress_space);
 
   private:
     using CellIterator = typename Triangulation<dim>::cell_iterator;

@@ -33,13 +33,13 @@ namespace Viscoplastic
 
     double                 t = 0.;
     std::vector<CellPoint> cells;
-    /// Of Gamma_3.
+    /// The samples on Gamma_3.
     std::vector<FacePoint> faces;
   };
 
-  /// Of the owned cells. Gradients are more accurate at their centers than
-  /// elsewhere, and points cost time. @p multiplier_density is null without
-  /// friction.
+  /// Sample the owned cells at their centers, where gradients are more accurate
+  /// than elsewhere; more points would cost time. @p multiplier_density is null
+  /// without friction.
   template <int dim>
   FieldSamples<dim>
   sample_fields(const StressSpace<dim>  &stress_space,

@@ -70,7 +70,7 @@ namespace Viscoplastic
     /// A face or subface at its quadrature points.
     struct FaceShape
     {
-      /// Of the vertices' shape functions.
+      /// The gradients of the vertices' shape functions.
       std::array<NodalValues, n_face_points>    gradients;
       std::array<Tensor<1, dim>, n_face_points> normals;
       std::array<Tensor<1, dim>, n_face_points> positions; // from vertex 0

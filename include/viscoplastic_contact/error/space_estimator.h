@@ -42,7 +42,7 @@ namespace Viscoplastic
   private:
     const Discretization<dim> &discretization;
     const bool                 refines_by_kelly, refines_by_residual;
-    /// Null if only Kelly's estimate is asked for.
+    /// The residual estimator; null if only Kelly's estimate is asked for.
     std::unique_ptr<ResidualEstimator<dim>> residual_estimator;
   };
 } // namespace Viscoplastic

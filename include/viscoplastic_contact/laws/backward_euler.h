@@ -37,7 +37,7 @@ namespace Viscoplastic
         }
     }
 
-    /// In the energy norm of stresses, in which flow with a potential is
+    /// The energy norm of a stress, in which flow with a potential is
     /// monotone.
     double
     norm(const SymmetricTensor<2, 3> &stress) const

@@ -22,7 +22,7 @@ namespace Viscoplastic
     std::array<SymmetricTensor<2, 3>, 6> modes;
   };
 
-  /// Of a tensor T with a : T : b = b : T : a.
+  /// The spectrum of a tensor T with a : T : b = b : T : a.
   Spectrum
   spectrum(const SymmetricTensor<4, 3> &tensor);
 

@@ -28,7 +28,7 @@ namespace Viscoplastic
     /// Names it in messages, such as "Material 2/norton".
     std::string path;
 
-    /// Of the scene: in 2 dimensions there is no z.
+    /// The dimension of the scene: in 2 dimensions there is no z.
     unsigned int dim;
   };
 
@@ -75,7 +75,7 @@ namespace Viscoplastic
       return expression->depends_on_time();
     }
 
-    /// With its section, such as "Material 2/norton/Exponent".
+    /// The name with its section, such as "Material 2/norton/Exponent".
     const std::string &
     get_name() const
     {

@@ -21,7 +21,7 @@ namespace Viscoplastic
     const std::vector<bool> &excluded;
     /// The rigid body modes on owned entries, zero where excluded.
     std::function<std::vector<DistributedVector>()> rigid_body_modes;
-    /// Empty without friction.
+    /// The restriction to the friction face, which is empty without friction.
     const FaceRestriction &face;
   };
 
@@ -30,7 +30,7 @@ namespace Viscoplastic
   struct SolverDemand
   {
     LinearSolver choice = LinearSolver::automatic;
-    /// Of the material that the matrix stands for.
+    /// The largest Poisson's ratio of the material that the matrix stands for.
     double max_poissons_ratio = 0.;
     /// How often the solver will be used at least.
     unsigned int n_solves = 1;

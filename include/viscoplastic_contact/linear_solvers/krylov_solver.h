@@ -131,7 +131,7 @@ namespace Viscoplastic
     std::vector<double> near_null_space;
     /// The preconditioner's matrix, which ML refers to.
     DistributedMatrix masked_matrix;
-    /// For which truncation it was built.
+    /// The truncation for which it was built.
     FaceTruncation built_for;
     /// Iterations a decade right after a set-up, the best so far; iterations
     /// lost against that since the last set-up.

@@ -9,9 +9,10 @@ namespace Viscoplastic
   /// The energies of one step.
   struct StepEnergies
   {
-    /// At its end.
+    /// The energy stored at its end.
     double stored;
-    /// In the step; see StressSummary and FrictionIdentities.
+    /// What has come and gone in the step; see StressSummary and
+    /// FrictionIdentities.
     double external_work, viscous_dissipation, friction_dissipation;
   };
 

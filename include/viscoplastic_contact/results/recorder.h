@@ -104,7 +104,7 @@ namespace Viscoplastic
       return clock.wall_time();
     }
 
-    /// The same with that of the parts of the run before restarts.
+    /// Wall time of the whole run, with the parts before restarts.
     double
     elapsed_in_all() const
     {

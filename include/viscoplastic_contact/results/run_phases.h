@@ -9,13 +9,13 @@ namespace Viscoplastic
   /// A part of a run whose wall time is taken by itself.
   struct RunPhase
   {
-    /// Of the section of the timer of a run.
+    /// The name of the section of the timer of a run.
     std::string name;
     /// What it is, for the lines at the end of a run.
     std::string effect;
     /// Whether statistics.csv has its seconds in each step, as wall_<name>.
     bool is_in_statistics;
-    /// That of study.csv; several phases may share one.
+    /// The column of study.csv; several phases may share one.
     std::string study_column;
     /// Whether a study counts its seconds as those of the run: neither fields
     /// nor the comparison with a solution are what a user would pay for.

@@ -55,19 +55,21 @@ namespace Viscoplastic
     std::optional<double>       slipping_area;
     std::vector<Tensor<1, dim>> point_displacements;
     double                      max_displacement = 0.;
-    /// Of an adaptive scene without error estimate.
+    /// The estimate by which an adaptive scene without error estimate refines.
     std::optional<double> error_estimate;
-    /// Of a scene with error estimate.
+    /// The errors of a scene with error estimate.
     std::optional<ErrorSummary> errors;
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,
       tension_area;
-    /// Of all friction points, on the mesh on which slip_area was reached.
+    /// The area of all friction points on the mesh on which slip_area was
+    /// reached.
     double friction_area = 0.;
-    /// k r, and where r was that large.
+    /// The largest k r, and where r was that large.
     Largest    stiffness;
     Point<dim> critical_position;
-    /// Of all steps; absent where they are those of the phases.
+    /// The number of steps, and what step control did to them; absent where the
+    /// steps are those of the phases.
     unsigned int                n_steps = 0;
     std::optional<StepCounts>   steps;
     std::optional<unsigned int> implicit_steps;

@@ -14,32 +14,35 @@ namespace Viscoplastic
   struct StepQuantities
   {
     StressSummary stress;
-    /// At the end of the step.
+    /// The energy stored at the end of the step.
     double stored_energy = 0.;
-    /// Of loads, prescribed displacements and moving foundations in the step.
+    /// The work of loads, prescribed displacements and moving foundations in
+    /// the step.
     double external_work = 0.;
-    /// Zero without friction, as the force.
+    /// What friction does, and its resultant force on the body; zero without
+    /// friction.
     FrictionIdentities friction;
     Tensor<1, dim>     friction_force;
-    /// On each boundary with prescribed displacements.
+    /// The reaction on each boundary with prescribed displacements.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
     /// Loads, reactions and friction on the body, which add up to zero, and the
     /// largest of them, or what rounding makes of them if that is more.
     Tensor<1, dim> sum_of_forces;
     double         largest_force    = 0.;
     double         max_displacement = 0.;
-    /// Where bilateral contact pulls at the body.
+    /// The area on which bilateral contact pulls at the body.
     double tension_area = 0.;
-    /// By which an adaptive mesh is refined; zero before the first estimate.
+    /// The estimate by which an adaptive mesh is refined; zero before the first
+    /// one.
     double refinement_estimate = 0.;
-    /// At the points of `Output/Points'.
+    /// The displacements of the points of `Output/Points'.
     std::vector<Tensor<1, dim>> point_displacements;
   };
 
 
 
-  /// Of a step that leads from @p old, but for the displacements of points.
-  /// Collective.
+  /// Measure a step that leads from @p old, but for the displacements of
+  /// points. Collective.
   template <int dim>
   StepQuantities<dim>
   measure_step(const Discretization<dim> &discretization,

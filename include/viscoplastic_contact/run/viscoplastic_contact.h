@@ -71,7 +71,7 @@ namespace Viscoplastic
     }
 
   private:
-    /// From the start: everything up to the initial state.
+    /// Begin from the start: everything up to the initial state.
     void
     begin();
 
@@ -135,7 +135,7 @@ namespace Viscoplastic
 
     // Checkpoints: source/run/restart.cc.
 
-    /// From a checkpoint: what begin() does, and all steps up to there.
+    /// Begin from a checkpoint: what begin() does, and all steps up to there.
     void
     resume(const CheckpointManifest &checkpoint);
 

@@ -42,9 +42,9 @@ namespace Viscoplastic
       return given_stress.has_value();
     }
 
-    /// Of the body: its size is the scale of differences. @p elastic is its
-    /// material, if that is one without a law, and gives the stress
-    /// E eps(u) if there is no other.
+    /// Tell the solution of the body: its size is the scale of differences.
+    /// @p elastic is its material, if that is one without a law, and gives the
+    /// stress E eps(u) if there is no other.
     void
     set_body(const double size, const Material<dim> *elastic);
 

@@ -43,7 +43,7 @@ namespace Viscoplastic
     is_uniform() const;
 
     const std::string section, law_name;
-    /// Null: elastic.
+    /// The law of flow; null for an elastic material.
     std::unique_ptr<const ViscoplasticLaw> law;
 
   private:

@@ -96,10 +96,10 @@ namespace Viscoplastic
 
     const Parameters &parameters;
     TimeSchedule      schedule;
-    /// Null if not known.
+    /// The exact solution; null if none is known.
     std::unique_ptr<ExactSolution<dim>>                  exact_solution;
     std::map<types::boundary_id, BoundaryCondition<dim>> boundary;
-    /// Those that some cell has.
+    /// The materials that some cell has.
     std::vector<std::unique_ptr<const Material<dim>>> materials;
     /// b, u0, sigma0; absent where identically zero.
     std::optional<VectorExpression<dim>> body_force;

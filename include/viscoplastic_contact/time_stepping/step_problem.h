@@ -53,9 +53,9 @@ namespace Viscoplastic
     /// 2/r; infinite without viscosity. Backward Euler, which may pass it,
     /// reports that of the end of the step.
     double step_limit = std::numeric_limits<double>::infinity();
-    /// Where r is that large; the origin where it is zero.
+    /// The place where r is largest; the origin where r is zero.
     Point<3> critical_position;
-    /// Volume beyond the cap of a law.
+    /// The volume in which stresses are beyond the cap of their law.
     double capped_volume = 0.;
     /// Whether it is a step of backward Euler, and of how many iterations.
     bool         is_implicit       = false;

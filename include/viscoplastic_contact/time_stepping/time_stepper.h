@@ -16,7 +16,7 @@ namespace Viscoplastic
     TimeStep time_step;
     /// The state that the step leads to.
     EvaluatedState<dim> end;
-    /// As in StepProblem.
+    /// What the foundation moved in the step, see StepProblem.
     Vector<double> foundation_step;
     /// How often a longer step has been tried.
     unsigned int n_rejections = 0;
@@ -28,7 +28,7 @@ namespace Viscoplastic
       return 2. * time_step.k / step_limit;
     }
 
-    /// To which r belongs: the rate of an explicit step is that of its
+    /// The time to which r belongs: the rate of an explicit step is that of its
     /// beginning.
     double
     time_of_rate() const
@@ -80,8 +80,8 @@ namespace Viscoplastic
     bool
     needs_rate() const;
 
-    /// At which the iterations of a step from a state stop, relative to the
-    /// solution.
+    /// The error at which the iterations of a step from a state stop, relative
+    /// to the solution.
     double
     tolerance(const EvaluatedState<dim> &accepted) const;
 
@@ -115,7 +115,7 @@ namespace Viscoplastic
     const ErrorEstimator<dim> *error_estimator;
     StepControl               &control;
     TimerOutput               &timer;
-    /// Null where a scene asks for no estimate.
+    /// The estimator; null where a scene asks for no estimate.
     std::unique_ptr<SpaceEstimator<dim>> space_estimator;
     std::unique_ptr<StepMethod<dim>>     step_method;
   };

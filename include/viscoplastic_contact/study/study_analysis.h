@@ -20,7 +20,7 @@ namespace Viscoplastic
 
   /**
    * The error of a run in a measure: a column of study.csv that holds errors
-   * or estimates, `<quantity>_error', or `quantities', the largest error of all
+   * or estimates, `QUANTITY_error', or `quantities', the largest error of all
    * quantities of interest. Not a number where it is not known.
    */
   double

@@ -60,6 +60,7 @@ namespace Viscoplastic
   {
     make_cells();
     make_faces();
+    make_face_values();
     shape_of_key.clear();
     subface_shape_of.clear();
 
@@ -254,26 +255,7 @@ namespace Viscoplastic
                 space.scene.boundary.at(cell->face(f)->boundary_id());
               if (condition.prescribes_all())
                 continue;
-              BoundaryFace     face{number_of(cell),
-                                f,
-                                &condition,
-                                cell->face(f)->diameter(),
-                                {},
-                                {},
-                                {}};
-              const FaceShape &shape = shapes[cells[face.cell].shape].faces[f];
-              for (unsigned int q = 0; q < n_face_points; ++q)
-                {
-                  const Point<dim> x = cell->vertex(0) + shape.positions[q];
-                  face.positions[q]  = x;
-                  if (condition.carries_load() &&
-                      !condition.load_depends_on_time())
-                    face.data[q] = condition.load(x, shape.normals[q], 0.);
-                  if (condition.has_friction() &&
-                      !condition.bound_depends_on_time())
-                    face.bounds[q] = condition.bound(x, 0.);
-                }
-              boundary_faces.push_back(face);
+              add_boundary_face(cell, f, number_of(cell), condition);
             }
           else if (cell->face(f)->has_children())
             {
@@ -307,8 +289,41 @@ namespace Viscoplastic
                 }
             }
       }
+  }
 
-    const QGauss<dim - 1> points(2);
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::add_boundary_face(
+    const Cell                   &cell,
+    const unsigned int            f,
+    const unsigned int            number,
+    const BoundaryCondition<dim> &condition)
+  {
+    BoundaryFace face{
+      number, f, &condition, cell->face(f)->diameter(), {}, {}, {}};
+    const FaceShape &shape = shapes[cells[number].shape].faces[f];
+    for (unsigned int q = 0; q < n_face_points; ++q)
+      {
+        const Point<dim> x = cell->vertex(0) + shape.positions[q];
+        face.positions[q]  = x;
+        if (condition.carries_load() && !condition.load_depends_on_time())
+          face.data[q] = condition.load(x, shape.normals[q], 0.);
+        if (condition.has_friction() && !condition.bound_depends_on_time())
+          face.bounds[q] = condition.bound(x, 0.);
+      }
+    boundary_faces.push_back(face);
+  }
+
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::make_face_values()
+  {
+    const FiniteElement<dim> &fe = stress_space.space.dof_handler.get_fe();
+    const QGauss<dim - 1>     points(2);
     for (unsigned int f = 0; f < n_faces; ++f)
       {
         const Quadrature<dim> on_face =

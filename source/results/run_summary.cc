@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/results/run_summary.h>
 
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <utility>
@@ -60,6 +60,177 @@ namespace Viscoplastic
       out << "  " << std::left << std::setw(26) << name << std::right << value
           << '\n';
     }
+
+
+    std::string
+    with_time(const Largest &largest)
+    {
+      return number(largest.value) + " at t = " + number(largest.t);
+    }
+
+
+
+    /// The quantities at the end of the run.
+    template <int dim>
+    void
+    print_end(std::ostream          &out,
+              const RunSummary<dim> &run,
+              const RunSummary<dim> *coarser)
+    {
+      using Summary  = RunSummary<dim>;
+      const auto row = [&](const std::string &name, const auto member) {
+        const auto &value = run.*member;
+        if (value)
+          print_row(out,
+                    name,
+                    with_uncertainty(*value,
+                                     coarser ? &*(coarser->*member) : nullptr));
+      };
+      out << "At t = " << number(run.t)
+          << (coarser ? " (+- what twice the mesh width and the time steps "
+                        "change):\n" :
+                        ":\n");
+      if (run.friction_force)
+        print_row(out,
+                  "friction force",
+                  components(*run.friction_force,
+                             coarser ? &*coarser->friction_force : nullptr));
+      if (coarser)
+        row("slipping area", &Summary::slipping_area);
+      for (const auto &[id, force] : run.reactions)
+        print_row(out,
+                  "reaction of boundary " + std::to_string(id),
+                  components(force,
+                             coarser ? &coarser->reactions.at(id) : nullptr));
+      if (coarser)
+        for (unsigned int i = 0; i < run.point_displacements.size(); ++i)
+          print_row(out,
+                    "displacement of point " + std::to_string(i),
+                    components(run.point_displacements[i],
+                               &coarser->point_displacements[i]));
+      print_row(out,
+                "external work",
+                with_uncertainty(run.external_work,
+                                 coarser ? &coarser->external_work : nullptr));
+      print_row(out,
+                "stored energy",
+                with_uncertainty(run.stored_energy,
+                                 coarser ? &coarser->stored_energy : nullptr));
+      row("viscous dissipation", &Summary::viscous_dissipation);
+      row("friction dissipation", &Summary::friction_dissipation);
+      if (run.adaptation_energy)
+        print_row(out,
+                  "energy from new meshes",
+                  number(*run.adaptation_energy));
+      print_row(out,
+                "energy balance defect",
+                number(run.energy_balance_defect));
+      if (run.error_estimate)
+        print_row(out, "error estimate", number(*run.error_estimate));
+    }
+
+
+
+    /// The largest values of the run.
+    template <int dim>
+    void
+    print_largest(std::ostream &out, const RunSummary<dim> &run)
+    {
+      out << "Largest in the run:\n";
+      print_row(out, "displacement", with_time(run.displacement));
+      print_row(out, "von Mises stress", with_time(run.von_mises));
+      if (run.friction_force)
+        print_row(out,
+                  "slipping area",
+                  number(run.slip_area.value) + " of " +
+                    number(run.friction_area) +
+                    " at t = " + number(run.slip_area.t));
+      if (run.capped_volume.value > 0.)
+        print_row(out, "volume beyond the cap", with_time(run.capped_volume));
+      if (run.stiffness.value > 0.)
+        {
+          std::ostringstream place;
+          place << std::setprecision(3) << run.critical_position;
+          print_row(out,
+                    "time step times r",
+                    with_time(run.stiffness) + ", x = (" + place.str() + ")");
+        }
+    }
+
+
+
+    /// What step control and the stability limit did to the steps.
+    template <int dim>
+    void
+    print_steps(std::ostream &out, const RunSummary<dim> &run)
+    {
+      if (run.steps)
+        {
+          std::string text = std::to_string(run.n_steps) + " accepted";
+          const auto  add = [&](const unsigned int n, const std::string &what) {
+            if (n > 0)
+              text += ", " + std::to_string(n) + ' ' + what;
+          };
+          add(run.steps->rejected, "rejected for their error");
+          add(run.steps->events, "rejected to resolve events of slip");
+          add(run.steps->failed, "that failed");
+          out << "Steps: " << text << '\n';
+          if (run.steps->unresolved > 0)
+            out << "Note: " << run.steps->unresolved
+                << " steps of the smallest size have larger errors than 'Step "
+                   "control/Tolerance' allows: where the data jump, or because "
+                   "'Smallest step' is too large.\n";
+        }
+      if (run.implicit_steps)
+        out << "Steps by backward Euler, beyond the limit 2/r: "
+            << *run.implicit_steps << " of " << run.n_steps << '\n';
+    }
+
+
+
+    /// The errors against a known solution, and the estimated ones.
+    template <int dim>
+    void
+    print_errors(std::ostream &out, const RunSummary<dim> &run)
+    {
+      const auto error =
+        [&](const std::string &name, const double value, const double norm) {
+          if (norm > 0.)
+            print_row(out,
+                      "error of " + name,
+                      number(value) + " (" + number(100. * value / norm) +
+                        " % of the exact solution)");
+        };
+      const SolutionNorms &errors = run.largest_error,
+                          &exact  = run.largest_exact;
+      error("u in energy", errors.energy, exact.energy);
+      error("u in H1", errors.h1, exact.h1);
+      error("stress in L2", errors.stress, exact.stress);
+      error("multiplier in L2", errors.multiplier, exact.multiplier);
+      if (!run.errors)
+        return;
+
+      const auto part = [&](const std::string &name, const double value) {
+        const double       size = run.errors->largest_energy_norm;
+        std::ostringstream text;
+        text << std::setprecision(2) << value;
+        if (size > 0.)
+          text << " (" << 100. * value / size << " %)";
+        print_row(out, name, text.str());
+      };
+      const ErrorEstimate &largest = run.errors->largest;
+      out << "Estimated error in the energy norm, largest at t = "
+          << number(run.errors->t)
+          << " (without what the mesh\nhas done to the memory z of earlier "
+             "steps), and relative to the solution:\n";
+      part("mesh", largest.space);
+      if (run.viscous_dissipation)
+        part("time steps", largest.time);
+      part("iterations", largest.algebraic);
+      if (largest.initial > 0.)
+        part("initial data", largest.initial);
+      part("sum", largest.total());
+    }
   } // namespace
 
 
@@ -68,130 +239,10 @@ namespace Viscoplastic
   void
   RunSummary<dim>::print(std::ostream &out, const RunSummary *coarser) const
   {
-    const auto row = [&](const std::string &name, const auto member) {
-      const auto &value = this->*member;
-      if (value)
-        print_row(out,
-                  name,
-                  with_uncertainty(*value,
-                                   coarser ? &*(coarser->*member) : nullptr));
-    };
-    out << "At t = " << number(t)
-        << (coarser ? " (+- what twice the mesh width and the time steps "
-                      "change):\n" :
-                      ":\n");
-    if (friction_force)
-      print_row(out,
-                "friction force",
-                components(*friction_force,
-                           coarser ? &*coarser->friction_force : nullptr));
-    if (coarser)
-      row("slipping area", &RunSummary::slipping_area);
-    for (const auto &[id, force] : reactions)
-      print_row(out,
-                "reaction of boundary " + std::to_string(id),
-                components(force,
-                           coarser ? &coarser->reactions.at(id) : nullptr));
-    if (coarser)
-      for (unsigned int i = 0; i < point_displacements.size(); ++i)
-        print_row(out,
-                  "displacement of point " + std::to_string(i),
-                  components(point_displacements[i],
-                             &coarser->point_displacements[i]));
-    print_row(out,
-              "external work",
-              with_uncertainty(external_work,
-                               coarser ? &coarser->external_work : nullptr));
-    print_row(out,
-              "stored energy",
-              with_uncertainty(stored_energy,
-                               coarser ? &coarser->stored_energy : nullptr));
-    row("viscous dissipation", &RunSummary::viscous_dissipation);
-    row("friction dissipation", &RunSummary::friction_dissipation);
-    if (adaptation_energy)
-      print_row(out, "energy from new meshes", number(*adaptation_energy));
-    print_row(out, "energy balance defect", number(energy_balance_defect));
-    if (error_estimate)
-      print_row(out, "error estimate", number(*error_estimate));
-
-    const auto with_time = [](const Largest &largest) {
-      return number(largest.value) + " at t = " + number(largest.t);
-    };
-    out << "Largest in the run:\n";
-    print_row(out, "displacement", with_time(displacement));
-    print_row(out, "von Mises stress", with_time(von_mises));
-    if (friction_force)
-      print_row(out,
-                "slipping area",
-                number(slip_area.value) + " of " + number(friction_area) +
-                  " at t = " + number(slip_area.t));
-    if (capped_volume.value > 0.)
-      print_row(out, "volume beyond the cap", with_time(capped_volume));
-    if (stiffness.value > 0.)
-      {
-        std::ostringstream place;
-        place << std::setprecision(3) << critical_position;
-        print_row(out,
-                  "time step times r",
-                  with_time(stiffness) + ", x = (" + place.str() + ")");
-      }
-    if (steps)
-      {
-        std::string text = std::to_string(n_steps) + " accepted";
-        const auto  add  = [&](const unsigned int n, const std::string &what) {
-          if (n > 0)
-            text += ", " + std::to_string(n) + ' ' + what;
-        };
-        add(steps->rejected, "rejected for their error");
-        add(steps->events, "rejected to resolve events of slip");
-        add(steps->failed, "that failed");
-        out << "Steps: " << text << '\n';
-        if (steps->unresolved > 0)
-          out << "Note: " << steps->unresolved
-              << " steps of the smallest size have larger errors than 'Step "
-                 "control/Tolerance' allows: where the data jump, or because "
-                 "'Smallest step' is too large.\n";
-      }
-    if (implicit_steps)
-      out << "Steps by backward Euler, beyond the limit 2/r: "
-          << *implicit_steps << " of " << n_steps << '\n';
-
-    const auto error =
-      [&](const std::string &name, const double value, const double norm) {
-        if (norm > 0.)
-          print_row(out,
-                    "error of " + name,
-                    number(value) + " (" + number(100. * value / norm) +
-                      " % of the exact solution)");
-      };
-    error("u in energy", largest_error.energy, largest_exact.energy);
-    error("u in H1", largest_error.h1, largest_exact.h1);
-    error("stress in L2", largest_error.stress, largest_exact.stress);
-    error("multiplier in L2",
-          largest_error.multiplier,
-          largest_exact.multiplier);
-    if (errors)
-      {
-        const auto part = [&](const std::string &name, const double value) {
-          const double       size = errors->largest_energy_norm;
-          std::ostringstream text;
-          text << std::setprecision(2) << value;
-          if (size > 0.)
-            text << " (" << 100. * value / size << " %)";
-          print_row(out, name, text.str());
-        };
-        out << "Estimated error in the energy norm, largest at t = "
-            << number(errors->t)
-            << " (without what the mesh\nhas done to the memory z of earlier "
-               "steps), and relative to the solution:\n";
-        part("mesh", errors->largest.space);
-        if (viscous_dissipation)
-          part("time steps", errors->largest.time);
-        part("iterations", errors->largest.algebraic);
-        if (errors->largest.initial > 0.)
-          part("initial data", errors->largest.initial);
-        part("sum", errors->largest.total());
-      }
+    print_end(out, *this, coarser);
+    print_largest(out, *this);
+    print_steps(out, *this);
+    print_errors(out, *this);
   }
 
 
@@ -231,15 +282,14 @@ namespace Viscoplastic
                       const RunSummary<dim> &summary,
                       const RunSummary<dim> &coarser)
   {
-    std::ofstream out(file);
+    std::ostringstream out;
     out << std::setprecision(12) << "quantity,value,uncertainty\n";
     const auto fine = summary.quantities(), coarse = coarser.quantities();
     AssertDimension(fine.size(), coarse.size());
     for (unsigned int i = 0; i < fine.size(); ++i)
       out << fine[i].first << ',' << fine[i].second << ','
           << std::abs(fine[i].second - coarse[i].second) << '\n';
-    out.close();
-    AssertThrow(out, ExcMessage("'" + file + "' cannot be written."));
+    replace_file(file, out.str());
   }
 
 

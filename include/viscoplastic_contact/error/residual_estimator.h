@@ -141,6 +141,15 @@ namespace Viscoplastic
     make_cells();
     void
     make_faces();
+    void
+    make_face_values();
+
+    /// Face @p f of a cell with this number.
+    void
+    add_boundary_face(const Cell                   &cell,
+                      const unsigned int            f,
+                      const unsigned int            number,
+                      const BoundaryCondition<dim> &condition);
 
     /// The number of a cell's shape, made if it is new.
     unsigned int

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <viscoplastic_contact/contact/contact_solver.h>
 
 #include <cmath>
@@ -28,14 +30,6 @@ namespace Viscoplastic
     sweeps_of_iteration(const unsigned int iteration)
     {
       return iteration < 10 ? 1 : iteration < 30 ? 5 : 50;
-    }
-
-
-
-    double
-    square(const double a)
-    {
-      return a * a;
     }
 
 
@@ -80,7 +74,8 @@ namespace Viscoplastic
           const Tensor<1, 3> here = face.node_values(x, node);
           const Tensor<1, 3> part =
             node_force(face.points[p], slip(face.points[p], here));
-          if (part * (diagonal[node] * part) > square(rounding))
+          if (part * (diagonal[node] * part) >
+              Utilities::fixed_power<2>(rounding))
             continue;
           face.set_node_values(here - part, node, x);
           face.set_node_values(face.node_values(change, node) - part,
@@ -477,10 +472,11 @@ namespace Viscoplastic
   ContactSolver::Iteration::bound(const double       dual_norm,
                                   const Certificate &certificate)
   {
-    report.duality_gap = 0.5 * square(dual_norm) + certificate.defect;
+    report.duality_gap =
+      0.5 * Utilities::fixed_power<2>(dual_norm) + certificate.defect;
     const double result =
-      0.5 *
-      (dual_norm + std::sqrt(square(dual_norm) + 4. * certificate.defect));
+      0.5 * (dual_norm + std::sqrt(Utilities::fixed_power<2>(dual_norm) +
+                                   4. * certificate.defect));
     report.relative_error = size > 0. ? result / size : 0.;
     return result;
   }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/friction_points.h>
 
@@ -9,14 +11,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    double
-    square(const double a)
-    {
-      return a * a;
-    }
-
-
-
     /// Solve (C + shift I) x = q for the leading n x n block, n = 1 or 2.
     Tensor<1, 2>
     solve_block(const Tensor<2, 2> &C,
@@ -170,7 +164,8 @@ namespace Viscoplastic
           break;
         const double slope =
           multiplier * solve_block(flexibility, m, multiplier, n_tangents);
-        const double change = (size / bound - 1.) * square(size) / slope;
+        const double change =
+          (size / bound - 1.) * Utilities::fixed_power<2>(size) / slope;
         if (!(m + change > m))
           break;
         m += change;

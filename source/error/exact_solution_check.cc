@@ -18,15 +18,6 @@ namespace Viscoplastic
 
 
 
-    template <int dim>
-    Tensor<1, dim>
-    tangential(const Tensor<1, dim> &v, const Tensor<1, dim> &normal)
-    {
-      return v - (v * normal) * normal;
-    }
-
-
-
     /// The velocity of the exact solution relative to the foundation.
     template <int dim>
     Tensor<1, dim>

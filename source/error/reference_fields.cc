@@ -83,29 +83,13 @@ namespace Viscoplastic
 
 
 
-    /// Sums of squares in the order of SolutionNorms.
-    using Squares = std::array<double, 4>;
-
-    SolutionNorms
-    roots(const Squares &squares, const MPI_Comm communicator)
-    {
-      std::vector<double> sums(squares.begin(), squares.end());
-      Utilities::MPI::sum(sums, communicator, sums);
-      return {std::sqrt(sums[0]),
-              std::sqrt(sums[1]),
-              std::sqrt(sums[2]),
-              std::sqrt(sums[3])};
-    }
-
-
-
     template <int dim>
     void
     add_cells(const FieldSamples<dim> &reference,
               const StressSpace<dim>  &stress_space,
               const State<dim>        &state,
-              Squares                 &error,
-              Squares                 &norm)
+              SolutionNorms           &error,
+              SolutionNorms           &norm)
     {
       using Samples           = FieldSamples<dim>;
       const auto &dof_handler = stress_space.space.dof_handler;
@@ -165,11 +149,11 @@ namespace Viscoplastic
                 exact - reduced_strain(gradients[q],
                                        stress_space.mean_dilatation,
                                        dilatation);
-              error[0] += w * (stiffness.stress(defect) * defect);
-              norm[0] += w * (stiffness.stress(exact) * exact);
-              error[1] += w * ((u - values[q]).norm_square() +
+              error.energy += w * (stiffness.stress(defect) * defect);
+              norm.energy += w * (stiffness.stress(exact) * exact);
+              error.h1 += w * ((u - values[q]).norm_square() +
                                (g - gradients[q]).norm_square());
-              norm[1] += w * (u.norm_square() + g.norm_square());
+              norm.h1 += w * (u.norm_square() + g.norm_square());
 
               SymmetricTensor<2, 3> sigma;
               const auto            components = stress_components<dim>();
@@ -177,8 +161,8 @@ namespace Viscoplastic
                 sigma[components[c].first][components[c].second] =
                   sample[Samples::stress_index + c];
               const auto difference = sigma - stress[i];
-              error[2] += w * (difference * difference);
-              norm[2] += w * (sigma * sigma);
+              error.stress += w * (difference * difference);
+              norm.stress += w * (sigma * sigma);
             }
         });
     }
@@ -190,8 +174,8 @@ namespace Viscoplastic
     add_faces(const FieldSamples<dim>    &reference,
               const AdmissibleSpace<dim> &space,
               const DistributedVector    &density,
-              Squares                    &error,
-              Squares                    &norm)
+              SolutionNorms              &error,
+              SolutionNorms              &norm)
     {
       const MappingQ1<dim> mapping;
       visit_cells_of(
@@ -210,9 +194,9 @@ namespace Viscoplastic
               Tensor<1, dim> lambda;
               for (unsigned int d = 0; d < dim; ++d)
                 lambda[d] = samples[q][FieldSamples<dim>::multiplier_index + d];
-              error[3] +=
+              error.multiplier +=
                 (lambda - multiplier[q]).norm_square() * samples[q][dim];
-              norm[3] += lambda.norm_square() * samples[q][dim];
+              norm.multiplier += lambda.norm_square() * samples[q][dim];
             }
         });
     }
@@ -438,14 +422,14 @@ namespace Viscoplastic
               const DistributedVector *multiplier_density)
   {
     const MPI_Comm communicator = stress_space.space.communicator;
-    Squares        error{}, norm{};
+    SolutionNorms  error, norm; // squared
     add_cells(reference, stress_space, state, error, norm);
     if (multiplier_density)
       add_faces(
         reference, stress_space.space, *multiplier_density, error, norm);
     SolutionErrors result;
-    result.error = roots(error, communicator);
-    result.exact = roots(norm, communicator);
+    result.error = square_roots(error, communicator);
+    result.exact = square_roots(norm, communicator);
     return result;
   }
 

@@ -13,15 +13,6 @@ namespace Viscoplastic
   {
     template <int dim>
     Tensor<1, dim>
-    tangential(const Tensor<1, dim> &v, const Tensor<1, dim> &normal)
-    {
-      return v - (v * normal) * normal;
-    }
-
-
-
-    template <int dim>
-    Tensor<1, dim>
     in_plane(const SymmetricTensor<2, 3> &stress, const Tensor<1, dim> &normal)
     {
       Tensor<1, dim> traction;

@@ -11,27 +11,10 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// The squares of the norms.
-    struct Squares
+    struct Squares : public SolutionNorms
     {
-      double energy = 0., h1 = 0., stress = 0., multiplier = 0., memory = 0.;
+      double memory = 0.;
     };
-
-
-
-    SolutionNorms
-    roots(const Squares &squares, const MPI_Comm comm)
-    {
-      std::vector<double> sums{squares.energy,
-                               squares.h1,
-                               squares.stress,
-                               squares.multiplier};
-      Utilities::MPI::sum(sums, comm, sums);
-      return {std::sqrt(sums[0]),
-              std::sqrt(sums[1]),
-              std::sqrt(sums[2]),
-              std::sqrt(sums[3])};
-    }
 
 
 
@@ -174,6 +157,22 @@ namespace Viscoplastic
 
 
 
+  SolutionNorms
+  square_roots(const SolutionNorms &squares, const MPI_Comm communicator)
+  {
+    std::vector<double> sums{squares.energy,
+                             squares.h1,
+                             squares.stress,
+                             squares.multiplier};
+    Utilities::MPI::sum(sums, communicator, sums);
+    return {std::sqrt(sums[0]),
+            std::sqrt(sums[1]),
+            std::sqrt(sums[2]),
+            std::sqrt(sums[3])};
+  }
+
+
+
   template <int dim>
   SolutionErrors
   solution_errors(const StressSpace<dim>  &stress_space,
@@ -188,8 +187,8 @@ namespace Viscoplastic
       add_contact_faces(
         stress_space.space, state.t, *multiplier_density, error, exact);
     SolutionErrors result;
-    result.error = roots(error, comm);
-    result.exact = roots(exact, comm);
+    result.error = square_roots(error, comm);
+    result.exact = square_roots(exact, comm);
     if (stress_space.n_samples > 1 && scene.has_irreversible_stress() &&
         scene.exact_solution->has_stress())
       error.memory = squared_error_at_samples(stress_space, state);

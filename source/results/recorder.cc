@@ -206,8 +206,7 @@ namespace Viscoplastic
       }
     if (control.may_reject())
       run.steps = control.counts();
-    if (may_be_implicit() &&
-        scene.parameters.time.scheme != TimeScheme::backward_euler)
+    if (scene.is_implicit_beyond_the_limit())
       run.implicit_steps = implicit_steps;
   }
 

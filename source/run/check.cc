@@ -51,16 +51,17 @@ namespace Viscoplastic
     const State<dim> &state = accepted.state;
     accepted.rate =
       evaluate_flow(discretization->laws, state.u, state.z, state.t);
-    const FlowRate &initial = *accepted.rate;
-    const double    rate    = initial.relaxation_rate;
-    const bool      has_limit =
-      !is_implicit() && !changes_scheme() && !control.needs_limit();
+    const FlowRate &initial   = *accepted.rate;
+    const double    rate      = initial.relaxation_rate;
+    const bool      has_limit = !scene.is_implicit() &&
+                           !scene.is_implicit_beyond_the_limit() &&
+                           !control.needs_limit();
     if (has_limit)
       check_stability<dim>(parameters, initial, scene.schedule.step(1));
     if (rate == 0.)
       return;
     out << "Stability limit 2/r of the initial state: " << 2. / rate
-        << (is_implicit() ? " of explicit schemes\n" : "\n");
+        << (scene.is_implicit() ? " of explicit schemes\n" : "\n");
     if (!has_limit)
       return;
     const TimeStep largest = scene.schedule.largest_step();
@@ -134,7 +135,7 @@ namespace Viscoplastic
       Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
                           communicator) +
       solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct) +
-      (is_implicit() || changes_scheme() ?
+      (scene.is_implicit() || scene.is_implicit_beyond_the_limit() ?
          // A second matrix, and two tensors of rank 4 a sample.
          dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
            2. * sizeof(SymmetricTensor<4, 3>) * d.stress_space.n_samples *

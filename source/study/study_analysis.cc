@@ -10,10 +10,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-
-
     /// "friction_force_x" as "friction_force" and 'x'; others are scalars.
     bool
     is_component(const std::string &quantity)
@@ -70,12 +66,12 @@ namespace Viscoplastic
                  const RunRecord   *reference)
   {
     if (reference == nullptr || record.key == reference->key)
-      return nan;
+      return not_a_number;
     const double size = size_of(*reference, quantity);
     return size > 0. ? std::abs(record.quantity(quantity) -
                                 reference->quantity(quantity)) /
                          size :
-                       nan;
+                       not_a_number;
   }
 
 
@@ -91,7 +87,7 @@ namespace Viscoplastic
       return quantity_error(record,
                             measure.substr(0, measure.rfind("_error")),
                             reference);
-    double largest = nan;
+    double largest = not_a_number;
     for (const auto &entry : record.quantities)
       {
         const double error = quantity_error(record, entry.first, reference);
@@ -255,13 +251,14 @@ namespace Viscoplastic
           continue;
         const double ratio = first / last;
         if (!(std::abs(last) > 1e-12 * size)) // nothing left to converge
-          r = {r.quantity, r.values, nan, r.values[2], 0., true};
+          r = {r.quantity, r.values, not_a_number, r.values[2], 0., true};
         else
           {
-            r.order          = ratio > 0. ? std::log2(ratio) : nan;
+            r.order          = ratio > 0. ? std::log2(ratio) : not_a_number;
             r.is_trustworthy = r.order >= 0.5 && r.order <= 3.;
-            r.extrapolated =
-              r.is_trustworthy ? r.values[2] + last / (ratio - 1.) : nan;
+            r.extrapolated   = r.is_trustworthy ?
+                                 r.values[2] + last / (ratio - 1.) :
+                                 not_a_number;
             r.error =
               std::abs(r.is_trustworthy ? r.extrapolated - r.values[2] : last) /
               size;

@@ -32,10 +32,6 @@ namespace Viscoplastic
 
   namespace
   {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-
-
     /// Whether a column is a quantity of interest, with or without _x, _y, _z.
     bool
     is_quantity(std::string name)
@@ -67,10 +63,10 @@ namespace Viscoplastic
     largest(const Table &table, const std::string &name)
     {
       if (!table.has(name))
-        return nan;
+        return not_a_number;
       double result = 0.;
       for (const double value : table.columns.at(name))
-        result = std::max(result, std::abs(value)); // nan does not win
+        result = std::max(result, std::abs(value)); // NaN does not win
       return result;
     }
 
@@ -79,7 +75,7 @@ namespace Viscoplastic
     double
     relative(const double value, const double size)
     {
-      return size > 0. ? value / size : nan;
+      return size > 0. ? value / size : not_a_number;
     }
   } // namespace
 
@@ -125,7 +121,7 @@ namespace Viscoplastic
           {
             AssertThrow(std::getline(row, item, ','),
                         ExcMessage("A row of '" + file + "' is too short."));
-            double value = nan;
+            double value = not_a_number;
             try
               {
                 value = std::stod(item);
@@ -146,7 +142,7 @@ namespace Viscoplastic
   RunRecord::number(const std::string &column) const
   {
     const auto found = numbers.find(column);
-    return found == numbers.end() ? nan : found->second;
+    return found == numbers.end() ? not_a_number : found->second;
   }
 
 
@@ -157,7 +153,7 @@ namespace Viscoplastic
     for (const auto &[name, value] : quantities)
       if (name == column)
         return value;
-    return nan;
+    return not_a_number;
   }
 
 
@@ -270,7 +266,7 @@ namespace Viscoplastic
   {
     using Json        = nlohmann::ordered_json;
     const auto number = [](const Json &value) {
-      return value.is_null() ? nan : value.get<double>();
+      return value.is_null() ? not_a_number : value.get<double>();
     };
     RunRecord record;
     try

@@ -72,13 +72,10 @@ namespace Viscoplastic
   make_step_method(const Discretization<dim> &discretization,
                    TimerOutput               &timer)
   {
-    const Scene<dim>     &scene = discretization.scene();
-    const TimeParameters &time  = scene.parameters.time;
-    if (!scene.has_viscosity())
-      return std::make_unique<ExplicitStep<dim>>(discretization, timer);
-    if (time.scheme == TimeScheme::backward_euler)
+    const Scene<dim> &scene = discretization.scene();
+    if (scene.is_implicit())
       return std::make_unique<ImplicitStep<dim>>(discretization, timer);
-    if (time.stiffness_policy == StiffnessPolicy::backward_euler)
+    if (scene.is_implicit_beyond_the_limit())
       return std::make_unique<ExplicitUpToTheLimit<dim>>(discretization, timer);
     return std::make_unique<ExplicitStep<dim>>(discretization, timer);
   }

@@ -62,8 +62,7 @@ namespace Viscoplastic
   TimeStepper<dim>::needs_rate() const
   {
     return scene.has_viscosity() &&
-           (scene.parameters.time.scheme != TimeScheme::backward_euler ||
-            error_estimator != nullptr);
+           (!scene.is_implicit() || error_estimator != nullptr);
   }
 
 
@@ -85,8 +84,7 @@ namespace Viscoplastic
       }
     // r is the constant of (2.8), or the larger of its parts.
     double limit = std::numeric_limits<double>::infinity();
-    if (rate != nullptr && rate->relaxation_rate > 0. &&
-        scene.parameters.time.scheme != TimeScheme::backward_euler)
+    if (rate != nullptr && rate->relaxation_rate > 0. && !scene.is_implicit())
       limit = 2. / rate->relaxation_rate;
 
     const auto preconditioner = control.may_reject() ?

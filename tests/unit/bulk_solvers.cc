@@ -575,16 +575,15 @@ namespace
 
   TYPED_TEST(BulkSolvers, WithoutFriction)
   {
-    constexpr int                              dim = TypeParam::value;
-    const Scenario<dim>                        scenario(2);
-    const Dense                                dense(scenario);
-    const FrictionFace                         no_face;
-    const std::vector<types::global_dof_index> no_dofs;
-    Vector<double> exact = dense.solve(dense.residual(dense.start));
+    constexpr int         dim = TypeParam::value;
+    const Scenario<dim>   scenario(2);
+    const Dense           dense(scenario);
+    const FaceRestriction no_face;
+    Vector<double>        exact = dense.solve(dense.residual(dense.start));
     exact += dense.start;
     const bool serial = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
     const BulkSystem system =
-      make_bulk_system(*scenario.space, scenario.matrix, no_face, no_dofs);
+      make_bulk_system(*scenario.space, scenario.matrix, no_face);
     for (const LinearSolver choice : {LinearSolver::direct,
                                       LinearSolver::multigrid,
                                       LinearSolver::automatic})

@@ -20,7 +20,7 @@ namespace
     ExactSolutionParameters parameters;
     parameters.displacement = "sin(t)*x*y; cos(2*x)*t^2";
     parameters.stress       = "x^2*t; y^2; t; sin(x+2*y)*exp(t)";
-    parameters.data         = "solution";
+    parameters.data         = DataSource::solution;
     ExactSolution<2> result(parameters, 2.);
     result.set_body(1.5, nullptr);
     return result;

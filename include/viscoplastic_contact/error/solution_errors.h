@@ -20,9 +20,14 @@ namespace Viscoplastic
     double memory = 0.;
   };
 
+  /// The norms whose squares are the sums of @p squares over all ranks.
+  /// Collective.
+  SolutionNorms
+  square_roots(const SolutionNorms &squares, const MPI_Comm communicator);
+
   /**
-   * By quadrature with three points in each direction. Norms of stress,
-   * multiplier and memory stay zero where the solution has no stress.
+   * The errors by quadrature with three points in each direction. Norms of
+   * stress, multiplier and memory stay zero where the solution has no stress.
    * @p multiplier_density is null without friction. Collective.
    */
   template <int dim>

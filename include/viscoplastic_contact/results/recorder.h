@@ -139,15 +139,11 @@ namespace Viscoplastic
     report_progress(const AcceptedStep<dim>   &step,
                     const StepQuantities<dim> &quantities);
 
-    /// Whether steps of this scene may be of backward Euler; the scene knows
-    /// when it has been held against its mesh.
+    /// Whether steps of this scene may be of backward Euler.
     bool
     may_be_implicit() const
     {
-      const TimeParameters &time = scene.parameters.time;
-      return scene.has_viscosity() &&
-             (time.scheme == TimeScheme::backward_euler ||
-              time.stiffness_policy == StiffnessPolicy::backward_euler);
+      return scene.is_implicit() || scene.is_implicit_beyond_the_limit();
     }
 
     /// How far loads, reactions and friction are from adding up to zero,

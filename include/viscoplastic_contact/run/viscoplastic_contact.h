@@ -116,20 +116,6 @@ namespace Viscoplastic
     void
     check_compatibility(const Load<dim> &load);
 
-    bool
-    is_implicit() const
-    {
-      return parameters.time.scheme == TimeScheme::backward_euler &&
-             scene.has_viscosity();
-    }
-
-    /// Whether some steps may be of backward Euler and others not.
-    bool
-    changes_scheme() const
-    {
-      return control.passes_limit && scene.has_viscosity() && !is_implicit();
-    }
-
     void
     adapt_mesh();
 

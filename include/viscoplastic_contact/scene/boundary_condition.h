@@ -168,4 +168,14 @@ namespace Viscoplastic
               (role == BoundaryRole::displacement && !prescribes_all()));
     }
   };
+
+
+
+  /// v_tau = v - v_nu nu.
+  template <int dim>
+  Tensor<1, dim>
+  tangential(const Tensor<1, dim> &v, const Tensor<1, dim> &normal)
+  {
+    return v - (v * normal) * normal;
+  }
 } // namespace Viscoplastic

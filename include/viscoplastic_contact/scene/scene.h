@@ -63,6 +63,25 @@ namespace Viscoplastic
     bool
     has_viscosity() const;
 
+    /// Whether all steps are of backward Euler; known with the mesh, as the
+    /// viscosity is.
+    bool
+    is_implicit() const
+    {
+      return has_viscosity() &&
+             parameters.time.scheme == TimeScheme::backward_euler;
+    }
+
+    /// Whether steps beyond the stability limit are of backward Euler, and the
+    /// others not.
+    bool
+    is_implicit_beyond_the_limit() const
+    {
+      return has_viscosity() && !is_implicit() &&
+             parameters.time.stiffness_policy ==
+               StiffnessPolicy::backward_euler;
+    }
+
     /// Whether a source makes the exact solution one of the scene.
     bool
     has_source() const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -8,6 +9,10 @@
 
 namespace Viscoplastic
 {
+  /// Stands for a number that is not known.
+  constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+
   /// How the mesh of a run comes about: it is refined everywhere, or where the
   /// error estimator says.
   enum class MeshStrategy

@@ -19,7 +19,7 @@ BOTH = {"lw": 1.0, "marker": "s", "mfc": "white"}
 
 
 def draw(study, error):
-    ways = study.ways()
+    variants = study.variants()
     panels = []
     for axis, (alone, label) in AXES.items():
         ladders = [
@@ -35,7 +35,7 @@ def draw(study, error):
     figure, all_axes = plt.subplots(
         1,
         len(panels),
-        figsize=(5.9 * len(panels) + 0.6, 4.9 + 0.22 * len(ways)),
+        figsize=(5.9 * len(panels) + 0.6, 4.9 + 0.22 * len(variants)),
         sharey=True,
         squeeze=False,
         layout="constrained",
@@ -64,15 +64,15 @@ def draw_panel(axes, study, error, axis, ladders):
     looks = study.looks()
     for ladder in ladders:
         sizes, errors, rows = curve(study, error, axis, ladder)
-        look = looks[ladder.way]
+        look = looks[ladder.variant]
         kind = BOTH if ladder.name == "both" else ALONE
         axes.plot(sizes, errors, ms=6, **look, **kind)
-        fit = study.fit(ladder.way, error)
+        fit = study.fit(ladder.variant, error)
         if fit and len(rows) > 1:
             draw_fit(axes, fit, axis, study, rows, look["color"])
             fitted = True
         curves.append((sizes, errors))
-        orders.setdefault(ladder.way, {})[ladder.name] = rates.final_order(
+        orders.setdefault(ladder.variant, {})[ladder.name] = rates.final_order(
             sizes, errors
         )
     axes.set_xscale("log")
@@ -153,18 +153,18 @@ def draw_triangle(axes, segment, curves, above):
 
 
 def legend(axes, study, ladders, orders, fitted):
-    """Below the panel: a line for each way with its orders, then the looks."""
+    """Below the panel: a line for each variant with its orders, then the looks."""
     handles, looks = [], study.looks()
-    for way, found in orders.items():
+    for variant, found in orders.items():
         texts = [
             f"{order_text(order)} ({LADDERS[name]})"
             for name, order in found.items()
             if order is not None
         ]
-        text = study.way_label(way)
+        text = study.variant_label(variant)
         if texts:
             text += ": order " + ", ".join(texts)
-        handles.append(Line2D([], [], lw=2.5, label=text, **looks[way]))
+        handles.append(Line2D([], [], lw=2.5, label=text, **looks[variant]))
     names = list(dict.fromkeys(ladder.name for ladder in ladders))
     for name in names:
         kind = BOTH if name == "both" else ALONE

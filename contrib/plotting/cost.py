@@ -61,7 +61,7 @@ def shares(columns, total):
 
 
 def chosen(study):
-    """Rows to draw, and a remark: all, or where they are many of each way the
+    """Rows to draw, and a remark: all, or where they are many of each variant the
     finest with h and k refined."""
     ladders = study.ladders()
     timed = {
@@ -150,7 +150,7 @@ def draw(study, error=None):
 
 
 def positions(study, rows):
-    """Where the bars go: a headline before those of each way and ladder.
+    """Where the bars go: a headline before those of each variant and ladder.
 
     Returns the place of each bar, (place, text) of the headlines, and the
     labels of the bars.
@@ -159,11 +159,11 @@ def positions(study, rows):
     at, before = 0.0, None
     names = {"space": "h alone", "time": "k alone", "both": "h and k"}
     for row in rows:
-        way = tuple(study[name][row] for name in ("strategy", "scheme", "history"))
-        group = way, study["ladder"][row]
+        variant = tuple(study[name][row] for name in ("strategy", "scheme", "history"))
+        group = variant, study["ladder"][row]
         if group != before:
             ladder = names.get(group[1], group[1])
-            heads.append((at, f"{study.way_label(way)}: {ladder}"))
+            heads.append((at, f"{study.variant_label(variant)}: {ladder}"))
             at += 1.0
             before = group
         place.append(at)

@@ -14,7 +14,7 @@ from .results import UserError
 TEXT = ("run", "strategy", "scheme", "history", "ladder")
 LEVELS = ("mesh_level", "time_level")
 NEEDED = (*TEXT[1:], *LEVELS, "h", "k", "seconds_total")
-WAY = ("strategy", "scheme", "history")  # what tells one way to compute
+VARIANT = ("strategy", "scheme", "history")  # what tells one variant of the method
 COEFFICIENTS = ("C_h", "p", "C_k", "q", "m")  # of a fit
 
 LADDERS = {"space": "$h$ alone", "time": "$k$ alone", "both": "$h$ and $k$"}
@@ -29,10 +29,10 @@ ERRORS = {
 
 
 class Ladder:
-    """Runs of one way that a study refines step by step, the coarsest first."""
+    """Runs of one variant that a study refines step by step, the coarsest first."""
 
-    def __init__(self, study, way, name, rows):
-        self.way = way
+    def __init__(self, study, variant, name, rows):
+        self.variant = variant
         self.name = name
         self.rows = rows
         self.h = study["h"][rows]
@@ -93,15 +93,15 @@ class Study:
             raise UserError(f'the error "{name}" {what}; there are: {there}')
         return name
 
-    def ways(self):
+    def variants(self):
         """The (strategy, scheme, history) that occur, in their order."""
-        return list(dict.fromkeys(zip(*(self[name] for name in WAY))))
+        return list(dict.fromkeys(zip(*(self[name] for name in VARIANT))))
 
     def ladders(self):
         """All of them; of runs with the same levels the last one counts.
 
         On adaptive meshes h is what came out, hence the levels."""
-        keys = list(zip(*(self[name] for name in (*WAY, "ladder"))))
+        keys = list(zip(*(self[name] for name in (*VARIANT, "ladder"))))
         found = []
         for key in dict.fromkeys(keys):
             rows = {}
@@ -112,40 +112,40 @@ class Study:
             found.append(Ladder(self, key[:3], key[3], rows))
         return found
 
-    def way_label(self, way):
-        """What tells a way from the others of this study, in words."""
-        ways = self.ways()
+    def variant_label(self, variant):
+        """What tells a variant from the others of this study, in words."""
+        variants = self.variants()
         parts = [
             part
-            for i, part in enumerate(way)
-            if len({other[i] for other in ways}) > 1
+            for i, part in enumerate(variant)
+            if len({other[i] for other in variants}) > 1
         ]
-        return style.plain(", ".join(parts or way[:2]))
+        return style.plain(", ".join(parts or variant[:2]))
 
     def looks(self):
-        """{way: colour and dashes}: a colour each, or where they are many one
+        """{variant: colour and dashes}: a colour each, or where they are many one
         for each scheme and history, and dashes for the second strategy."""
-        ways = self.ways()
-        if len(ways) <= len(style.SERIES):
+        variants = self.variants()
+        if len(variants) <= len(style.SERIES):
             return {
-                way: {"color": colour, "ls": "-"}
-                for way, colour in zip(ways, style.SERIES)
+                variant: {"color": colour, "ls": "-"}
+                for variant, colour in zip(variants, style.SERIES)
             }
-        methods = list(dict.fromkeys(way[1:] for way in ways))
-        strategies = list(dict.fromkeys(way[0] for way in ways))
+        methods = list(dict.fromkeys(variant[1:] for variant in variants))
+        strategies = list(dict.fromkeys(variant[0] for variant in variants))
         return {
-            way: {
-                "color": style.SERIES[methods.index(way[1:]) % len(style.SERIES)],
-                "ls": ("-", (0, (4, 1.5)))[strategies.index(way[0]) % 2],
+            variant: {
+                "color": style.SERIES[methods.index(variant[1:]) % len(style.SERIES)],
+                "ls": ("-", (0, (4, 1.5)))[strategies.index(variant[0]) % 2],
             }
-            for way in ways
+            for variant in variants
         }
 
-    def fit(self, way, error):
+    def fit(self, variant, error):
         """The fitted {C_h, p, C_k, q, ...} of study.json, or None."""
         for fit in self.about["fits"]:
             if isinstance(fit, dict) and fit.get("error") == error:
-                if all(fit.get(name) == part for name, part in zip(WAY, way)):
+                if all(fit.get(name) == part for name, part in zip(VARIANT, variant)):
                     return fit
         return None
 

@@ -19,21 +19,21 @@ def draw(study, error):
         raise NoPicture(
             f"no run of {study.directory} has both a known {error} and a time"
         )
-    ways = study.ways()
+    variants = study.variants()
     figure, axes = plt.subplots(
-        figsize=(7.6, 5.2 + 0.24 * (len(ways) + 1)), layout="constrained"
+        figsize=(7.6, 5.2 + 0.24 * (len(variants) + 1)), layout="constrained"
     )
     handles, names, looks = [], [], study.looks()
-    for way in ways:
+    for variant in variants:
         ladders = [
             ladder
             for ladder in study.ladders()
-            if ladder.way == way
+            if ladder.variant == variant
             and rates.known(seconds[ladder.rows], errors[ladder.rows]).any()
         ]
         if not ladders:
             continue
-        colour, dashes = looks[way]["color"], looks[way]["ls"]
+        colour, dashes = looks[variant]["color"], looks[variant]["ls"]
         # A curve through h and k refined together, which is what one does
         # for a better answer; the other runs show what unbalanced ones cost.
         through = [ladder for ladder in ladders if ladder.name == "both"] or ladders
@@ -53,7 +53,7 @@ def draw(study, error):
             )
             names.append(ladder.name)
         handles.append(
-            Line2D([], [], color=colour, ls=dashes, lw=2.5, label=study.way_label(way))
+            Line2D([], [], color=colour, ls=dashes, lw=2.5, label=study.variant_label(variant))
         )
     frontier = rates.efficient_frontier(seconds, errors)
     axes.plot(

@@ -4,7 +4,7 @@
 import numpy as np
 
 from plotting import rates
-from plotting.study import LEVELS, WAY
+from plotting.study import LEVELS, VARIANT
 
 UNKNOWN = "–"
 NORMS = ("error_energy", "error_h1", "error_stress", "error_multiplier")
@@ -55,18 +55,18 @@ def seconds(value):
     return f"{number(value, 2)} s"
 
 
-def ladder_of(study, name, way=None):
-    """The ladder of that name, of the first way if none is given, or None."""
-    way = way or study.ways()[0]
+def ladder_of(study, name, variant=None):
+    """The ladder of that name, of the first variant if none is given, or None."""
+    variant = variant or study.variants()[0]
     for ladder in study.ladders():
-        if ladder.name == name and ladder.way == way:
+        if ladder.name == name and ladder.variant == variant:
             return ladder
     return None
 
 
-def orders(study, name, way=None):
+def orders(study, name, variant=None):
     """The order at the fine end of a ladder, for each of NORMS, or None."""
-    ladder = ladder_of(study, name, way)
+    ladder = ladder_of(study, name, variant)
     if ladder is None:
         return [None] * len(NORMS)
     sizes = ladder.k if name == "time" else ladder.h
@@ -76,17 +76,17 @@ def orders(study, name, way=None):
     ]
 
 
-def of_way(study, name, way):
-    """The known values of a column in the runs of a way."""
+def of_variant(study, name, variant):
+    """The known values of a column in the runs of a variant."""
     if name not in study:
         return np.array([])
-    values = study[name][rows_of(study, way)]
+    values = study[name][rows_of(study, variant)]
     return values[rates.known(values)]
 
 
-def rows_of(study, way):
-    ways = list(zip(*(study[name] for name in WAY)))
-    return np.array([i for i, other in enumerate(ways) if other == way])
+def rows_of(study, variant):
+    variants = list(zip(*(study[name] for name in VARIANT)))
+    return np.array([i for i, other in enumerate(variants) if other == variant])
 
 
 CONVERGENCE_HEADER = (
@@ -105,23 +105,23 @@ CONVERGENCE_HEADER = (
 
 
 def convergence_rows(studies, facts):
-    """Lines of the table of all manufactured solutions, one for each way.
+    """Lines of the table of all manufactured solutions, one for each variant.
 
     studies  {ladder: the study that has it}
     facts    scene, law, friction, d, mesh
     """
     rows = []
-    for way in studies["both"].ways():
+    for variant in studies["both"].variants():
         errors, indices = (
-            np.concatenate([of_way(study, name, way) for study in studies.values()])
+            np.concatenate([of_variant(study, name, variant) for study in studies.values()])
             for name in ("error_energy", "effectivity")
         )
         rows.append(
             [
                 *(facts[name] for name in ("scene", "law", "friction", "d", "mesh")),
-                way[WAY.index("scheme")],
+                variant[VARIANT.index("scheme")],
                 *(
-                    " / ".join(map(order, orders(studies[name], name, way)))
+                    " / ".join(map(order, orders(studies[name], name, variant)))
                     for name in ("space", "time", "both")
                 ),
                 percent(errors.min()) if len(errors) else UNKNOWN,
@@ -150,31 +150,31 @@ def low_regularity_rows(name, why, study):
     facts = dict.fromkeys(("scene", "law", "friction", "d", "mesh"))
     rows = convergence_rows(dict.fromkeys(("space", "time", "both"), study), facts)
     return [
-        [name, why, *way[:2], *row[6:10]] for way, row in zip(study.ways(), rows)
+        [name, why, *variant[:2], *row[6:10]] for variant, row in zip(study.variants(), rows)
     ]
 
 
-def offer(study, way, tolerance, error):
-    """The line of the price list of study.json for a way, or None."""
+def offer(study, variant, tolerance, error):
+    """The line of the price list of study.json for a variant, or None."""
     for offered in study.about.get("prices", ()):
         if (
             isinstance(offered, dict)
             and offered.get("error") == error
-            and all(offered.get(name) == part for name, part in zip(WAY, way))
+            and all(offered.get(name) == part for name, part in zip(VARIANT, variant))
             and abs((offered.get("tolerance") or 0.0) / tolerance - 1) < 1e-6
         ):
             return offered if offered.get("seconds") is not None else None
     return None
 
 
-def price(study, way, tolerance, error):
+def price(study, variant, tolerance, error):
     """What an error of `tolerance` costs: {seconds, cells, steps, memory,
     measured}, or None.
 
     Measured where a run of the study is accurate enough, the cheapest of
     them; otherwise what the price list of the study predicts.
     """
-    rows = rows_of(study, way)
+    rows = rows_of(study, variant)
     best = rates.cheapest_within(
         tolerance, study["seconds_total"][rows], study[error][rows]
     )
@@ -187,7 +187,7 @@ def price(study, way, tolerance, error):
             "memory": float(study["peak_memory_MB"][row]),
             "measured": True,
         }
-    offered = offer(study, way, tolerance, error)
+    offered = offer(study, variant, tolerance, error)
     if offered is None:
         return None
     finest = max(rows, key=lambda row: study["dofs"][row])
@@ -207,7 +207,7 @@ BEYOND_REACH = 3600
 
 
 def price_cell(found, is_cheapest):
-    """Seconds bold where no other way is cheaper, all italic if predicted."""
+    """Seconds bold where no other variant is cheaper, all italic if predicted."""
     if found is None:
         return UNKNOWN
     if not found["measured"] and found["seconds"] > BEYOND_REACH:
@@ -229,7 +229,7 @@ def price_cell(found, is_cheapest):
 
 
 def price_header(tolerances):
-    return ("scene", *WAY, *(percent(tolerance) for tolerance in tolerances))
+    return ("scene", *VARIANT, *(percent(tolerance) for tolerance in tolerances))
 
 
 def best_seconds(prices):
@@ -240,38 +240,38 @@ def best_seconds(prices):
 
 
 def price_rows(name, study, tolerances, error):
-    """A line for each way to compute, a column for each tolerance."""
-    ways = study.ways()
-    found = [[price(study, way, eps, error) for eps in tolerances] for way in ways]
+    """a line for each variant of the method, a column for each tolerance."""
+    variants = study.variants()
+    found = [[price(study, variant, eps, error) for eps in tolerances] for variant in variants]
     cheapest = [best_seconds([line[i] for line in found]) for i in range(len(tolerances))]
     return [
         [
             name,
-            *way,
+            *variant,
             *(
                 price_cell(cell, cell and cell["seconds"] == best)
                 for cell, best in zip(line, cheapest)
             ),
         ]
-        for way, line in zip(ways, found)
+        for variant, line in zip(variants, found)
     ]
 
 
-FIT_HEADER = (*WAY, "$C_h$", "$p$", "$C_k$", "$q$", "off by", "at worst")
+FIT_HEADER = (*VARIANT, "$C_h$", "$p$", "$C_k$", "$q$", "off by", "at worst")
 
 
 def fit_table(study, error):
-    """C_h h^p + C_k k^q of each way, and the factors by which it misses the
+    """C_h h^p + C_k k^q of each variant, and the factors by which it misses the
     runs, or nothing where no fit is known."""
     rows = []
-    for way in study.ways():
-        fit = study.fit(way, error)
+    for variant in study.variants():
+        fit = study.fit(variant, error)
         if fit:
             values = (fit.get(name) for name in ("C_h", "p", "C_k", "q"))
             deviation = fit.get("rms_of_log")
             rows.append(
                 [
-                    *way,
+                    *variant,
                     *map(number, values),
                     number(None if deviation is None else np.exp(deviation)),
                     number(fit.get("worst_factor")),
@@ -306,11 +306,11 @@ def reference_row(case, size, t, quantity, computed, independent):
 
 
 def matched(first, second):
-    """Pairs of rows of two studies with the same way, ladder and levels."""
+    """Pairs of rows of two studies with the same variant, ladder and levels."""
 
     def key(study, i):
         return (
-            *(study[name][i] for name in (*WAY, "ladder")),
+            *(study[name][i] for name in (*VARIANT, "ladder")),
             *(study[name][i] for name in LEVELS),
         )
 

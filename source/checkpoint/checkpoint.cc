@@ -194,22 +194,18 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  unpack_fields(const std::vector<std::string> &meshes,
-                const std::vector<std::string> &fields,
-                const StressSpace<dim>         &stress_space,
-                const bool                      has_initial_u,
-                const bool                      has_estimate,
-                const unsigned int              n_sample_fields,
-                State<dim>                     &state,
-                Vector<double>                 &squared_estimate)
+  unpack_fields(const PackedFields     &packed,
+                const StressSpace<dim> &stress_space,
+                State<dim>             &state,
+                Vector<double>         &squared_estimate)
   {
-    AssertDimension(meshes.size(), fields.size());
+    AssertDimension(packed.meshes.size(), packed.fields.size());
     using Cell = typename DoFHandler<dim>::active_cell_iterator;
     const AdmissibleSpace<dim> &space = stress_space.space;
     const auto        &triangulation  = space.dof_handler.get_triangulation();
-    const unsigned int n_fields       = has_initial_u ? 3 : 2;
+    const unsigned int n_fields       = packed.has_initial_u ? 3 : 2;
     std::vector<IrreversibleStress *> sampled;
-    for (unsigned int f = 0; f < n_sample_fields; ++f)
+    for (unsigned int f = 0; f < packed.n_sample_fields; ++f)
       sampled.push_back(sample_fields(state)[f]);
     const std::size_t n_z = stress_space.n_samples * 6; // a cell and field
 
@@ -235,20 +231,20 @@ namespace Viscoplastic
     std::vector<DistributedVector> values(n_fields, space.owned_vector());
     for (IrreversibleStress *field : sampled)
       field->resize(n_owned * stress_space.n_samples);
-    if (has_estimate)
+    if (packed.has_estimate)
       squared_estimate.reinit(triangulation.n_active_cells());
     std::size_t n_values = 0, n_cells = 0;
-    for (std::size_t part = 0; part < meshes.size(); ++part)
+    for (std::size_t part = 0; part < packed.meshes.size(); ++part)
       {
         const std::vector<CellId> ids =
-          unpack_mesh<dim>(meshes[part], triangulation.n_cells(0));
+          unpack_mesh<dim>(packed.meshes[part], triangulation.n_cells(0));
         std::vector<std::uint8_t>          vertices;
         std::vector<double>                nodal, samples, estimate;
-        BinaryReader                       archive(fields[part]);
+        BinaryReader                       archive(packed.fields[part]);
         archive &vertices &nodal &samples &estimate;
         require(archive.is_at_end() && vertices.size() == ids.size() &&
                 samples.size() == sampled.size() * n_z * ids.size() &&
-                estimate.size() == (has_estimate ? ids.size() : 0));
+                estimate.size() == (packed.has_estimate ? ids.size() : 0));
         std::size_t next = 0;
         for (std::size_t i = 0; i < ids.size(); ++i)
           {
@@ -288,7 +284,7 @@ namespace Viscoplastic
                               j / 6]
                   .begin_raw()[j % 6] =
                   samples[(i * sampled.size() + f) * n_z + j];
-            if (has_estimate)
+            if (packed.has_estimate)
               squared_estimate[local->cell->active_cell_index()] = estimate[i];
           }
         require(next == nodal.size());
@@ -418,24 +414,20 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                                    \
-  template std::string pack_mesh<dim>(                                      \
-    const parallel::distributed::Triangulation<dim> &);                     \
-  template void restore_mesh<dim>(                                          \
-    const std::vector<std::string> &,                                       \
-    parallel::distributed::Triangulation<dim> &);                           \
-  template std::string pack_fields<dim>(const StressSpace<dim> &,           \
-                                        const State<dim> &,                 \
-                                        const Vector<double> &);            \
-  template bool        unpack_fields<dim>(const std::vector<std::string> &, \
-                                   const std::vector<std::string> &, \
-                                   const StressSpace<dim> &,         \
-                                   const bool,                       \
-                                   const bool,                       \
-                                   const unsigned int,               \
-                                   State<dim> &,                     \
-                                   Vector<double> &);                \
-  template CoarseMesh  describe_coarse_mesh<dim>(                           \
+#define INSTANTIATE(dim)                                            \
+  template std::string pack_mesh<dim>(                              \
+    const parallel::distributed::Triangulation<dim> &);             \
+  template void restore_mesh<dim>(                                  \
+    const std::vector<std::string> &,                               \
+    parallel::distributed::Triangulation<dim> &);                   \
+  template std::string pack_fields<dim>(const StressSpace<dim> &,   \
+                                        const State<dim> &,         \
+                                        const Vector<double> &);    \
+  template bool        unpack_fields<dim>(const PackedFields &,     \
+                                   const StressSpace<dim> &, \
+                                   State<dim> &,             \
+                                   Vector<double> &);        \
+  template CoarseMesh  describe_coarse_mesh<dim>(                   \
     const parallel::distributed::Triangulation<dim> &);
 
   INSTANTIATE(2)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <utility>

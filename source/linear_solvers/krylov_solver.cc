@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/trilinos_precondition.h>
 
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
 
@@ -121,6 +122,10 @@ namespace Viscoplastic
     if (face.n_dofs() > 0)
       make_face_matrix();
   }
+
+
+
+  KrylovSolver::~KrylovSolver() = default;
 
 
 

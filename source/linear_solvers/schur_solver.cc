@@ -2,6 +2,7 @@
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
 
+#include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/schur_solver.h>
 
 #include <cholmod.h>

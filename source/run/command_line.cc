@@ -32,6 +32,244 @@ namespace Viscoplastic
       return error || from_here.compare(0, 2, "..") == 0 ? full.string() :
                                                            from_here;
     }
+
+
+    const std::vector<std::string> flags{"--help",
+                                         "--version",
+                                         "--describe",
+                                         "--check",
+                                         "--quiet",
+                                         "--restart"};
+    const std::vector<std::string> with_value{"--set", "--log", "--price"};
+
+    bool
+    contains(const std::vector<std::string> &list, const std::string &item)
+    {
+      return std::find(list.begin(), list.end(), item) != list.end();
+    }
+
+
+
+    using Task    = CommandLine::Task;
+    using Restart = CommandLine::Restart;
+
+
+
+    /// Reads one argument after the other.
+    class Reader
+    {
+    public:
+      /// Throws ExcMessage, as the other functions do.
+      explicit Reader(const std::vector<std::string> &arguments);
+
+      CommandLine result;
+
+    private:
+      void
+      read_file(const std::string &argument);
+
+      /// An option, of which @p value stands behind '=', unless it is null.
+      void
+      read_flag(const std::string &option, const std::string *value);
+
+      void
+      read_option(const std::string &option, const std::string &value);
+
+      void
+      set_task(const std::string &option, const std::string &value);
+
+      /// What excludes each other.
+      void
+      check() const;
+
+      /// The argument that has decided on the task; empty for none.
+      std::string task_option;
+    };
+
+
+
+    Reader::Reader(const std::vector<std::string> &arguments)
+    {
+      if (arguments.empty())
+        result.task = Task::guide;
+      bool only_files = false;
+      for (std::size_t i = 0; i < arguments.size(); ++i)
+        {
+          const std::string &argument = arguments[i];
+          if (!only_files && argument == "study" && result.files.empty())
+            {
+              result.task = Task::study;
+              task_option = "study";
+              continue;
+            }
+          if (only_files || argument.empty() || argument[0] != '-')
+            {
+              read_file(argument);
+              continue;
+            }
+          if (argument == "--")
+            {
+              only_files = true;
+              continue;
+            }
+          const std::size_t equals = argument.find('=');
+          std::string       option = argument.substr(0, equals);
+          if (option == "-h")
+            option = "--help";
+          const bool  has_value = equals != std::string::npos;
+          std::string value     = has_value ? argument.substr(equals + 1) : "";
+          if (!contains(with_value, option))
+            {
+              read_flag(option, has_value ? &value : nullptr);
+              continue;
+            }
+          if (!has_value)
+            {
+              AssertThrow(
+                i + 1 < arguments.size(),
+                ExcMessage("The option " + option +
+                           (option == "--set" ? " needs 'Section/Entry=value'" :
+                            option == "--price" ? " needs a relative error" :
+                                                  " needs the name of a file") +
+                           " after it."));
+              value = arguments[++i];
+            }
+          read_option(option, value);
+        }
+      check();
+    }
+
+
+
+    void
+    Reader::read_file(const std::string &argument)
+    {
+      std::error_code error;
+      AssertThrow(argument.find('=') == std::string::npos ||
+                    std::filesystem::exists(argument, error),
+                  ExcMessage("There is no parameter file '" +
+                             excerpt(argument) +
+                             "'; to give an entry a value write --set '" +
+                             excerpt(argument) + "'."));
+      result.files.push_back(argument);
+    }
+
+
+
+    void
+    Reader::read_option(const std::string &option, const std::string &value)
+    {
+      if (option == "--set")
+        result.overrides.push_back(value);
+      else if (option == "--price")
+        {
+          try
+            {
+              result.price = Utilities::string_to_double(value);
+            }
+          catch (const std::exception &)
+            {
+              result.price = 0.; // refused below
+            }
+          AssertThrow(result.price >= 1e-6 && result.price <= 0.5,
+                      ExcMessage("The option --price needs a relative error "
+                                 "from 1e-6 to 0.5 after it, such as 0.01, "
+                                 "not '" +
+                                 excerpt(value) + "'."));
+        }
+      else
+        {
+          AssertThrow(!value.empty(),
+                      ExcMessage("The option --log needs the name of a file "
+                                 "after it."));
+          AssertThrow(std::filesystem::path(value).extension() != ".prm",
+                      ExcMessage("The option --log would overwrite '" +
+                                 excerpt(value) +
+                                 "', which looks like a parameter file; "
+                                 "choose another name."));
+          result.log = value;
+        }
+    }
+
+
+
+    void
+    Reader::read_flag(const std::string &option, const std::string *value)
+    {
+      if (!contains(flags, option))
+        {
+          std::vector<std::string> options(flags);
+          options.insert(options.end(), with_value.begin(), with_value.end());
+          const std::string nearest = nearest_name(option, options);
+          AssertThrow(false,
+                      ExcMessage(
+                        "There is no option '" + excerpt(option) + "'; " +
+                        (nearest.empty() ?
+                           "the options are " + enumeration(options) + "." :
+                           "did you mean " + nearest + "?")));
+        }
+      const std::string text = value ? *value : "";
+      if (option == "--quiet")
+        result.quiet = true;
+      else if (option == "--restart")
+        result.restart = text == "auto" ? Restart::automatic : Restart::yes;
+      else
+        set_task(option, text);
+      AssertThrow(
+        value == nullptr ||
+          (option == "--describe" && (text == "markdown" || text == "prm")) ||
+          (option == "--restart" && text == "auto"),
+        ExcMessage("The option " + option +
+                   (option == "--describe" ?
+                      " can have the values prm and markdown, not '" :
+                    option == "--restart" ? " can have the value auto, not '" :
+                                            " has no value, such as '") +
+                   excerpt(text) + "'."));
+    }
+
+
+
+    void
+    Reader::set_task(const std::string &option, const std::string &value)
+    {
+      AssertThrow(task_option.empty() || task_option == option,
+                  ExcMessage("The options " + task_option + " and " + option +
+                             " exclude each other."));
+      task_option = option;
+      result.task = option == "--help"    ? Task::help :
+                    option == "--version" ? Task::version :
+                    option == "--check"   ? Task::check :
+                    value == "markdown"   ? Task::describe_as_markdown :
+                                            Task::describe;
+    }
+
+
+
+    void
+    Reader::check() const
+    {
+      const bool reads_scene = result.task == Task::run ||
+                               result.task == Task::check ||
+                               result.task == Task::study;
+      AssertThrow(result.price == 0. || result.task == Task::run ||
+                    result.task == Task::check,
+                  ExcMessage("The options " + task_option +
+                             " and --price exclude each other."));
+      AssertThrow(!reads_scene || !result.files.empty(),
+                  ExcMessage("There is no parameter file among the arguments; "
+                             "write viscoplastic_contact [options] "
+                             "scene.prm."));
+      AssertThrow(result.task == Task::run || result.restart == Restart::no,
+                  ExcMessage(result.task == Task::study ?
+                               "A study finds its finished runs without "
+                               "--restart." :
+                               "The options " + task_option +
+                                 " and --restart exclude each other."));
+      AssertThrow(reads_scene ||
+                    (result.files.empty() && result.overrides.empty()),
+                  ExcMessage("The option " + task_option +
+                             " goes without parameter files and --set."));
+    }
   } // namespace
 
 
@@ -39,164 +277,7 @@ namespace Viscoplastic
   CommandLine
   read_command_line(const std::vector<std::string> &arguments)
   {
-    using Task = CommandLine::Task;
-    const std::vector<std::string> flags{
-      "--help", "--version", "--describe", "--check", "--quiet", "--restart"};
-    const std::vector<std::string> with_value{"--set", "--log", "--price"};
-    const auto contains = [](const std::vector<std::string> &list,
-                             const std::string              &item) {
-      return std::find(list.begin(), list.end(), item) != list.end();
-    };
-
-    CommandLine result;
-    if (arguments.empty())
-      result.task = Task::guide;
-    bool        only_files = false;
-    std::string task_option;
-    for (std::size_t i = 0; i < arguments.size(); ++i)
-      {
-        const std::string &argument = arguments[i];
-        if (!only_files && argument == "study" && result.files.empty())
-          {
-            result.task = Task::study;
-            task_option = "study";
-            continue;
-          }
-        if (only_files || argument.empty() || argument[0] != '-')
-          {
-            std::error_code error;
-            AssertThrow(argument.find('=') == std::string::npos ||
-                          std::filesystem::exists(argument, error),
-                        ExcMessage("There is no parameter file '" +
-                                   excerpt(argument) +
-                                   "'; to give an entry a value write --set '" +
-                                   excerpt(argument) + "'."));
-            result.files.push_back(argument);
-            continue;
-          }
-        if (argument == "--")
-          {
-            only_files = true;
-            continue;
-          }
-        const std::size_t equals = argument.find('=');
-        std::string       option = argument.substr(0, equals);
-        std::string       value =
-          equals == std::string::npos ? "" : argument.substr(equals + 1);
-        if (option == "-h")
-          option = "--help";
-
-        if (contains(with_value, option))
-          {
-            if (equals == std::string::npos)
-              {
-                AssertThrow(i + 1 < arguments.size(),
-                            ExcMessage("The option " + option +
-                                       (option == "--set" ?
-                                          " needs 'Section/Entry=value'" :
-                                        option == "--price" ?
-                                          " needs a relative error" :
-                                          " needs the name of a file") +
-                                       " after it."));
-                value = arguments[++i];
-              }
-            if (option == "--set")
-              result.overrides.push_back(value);
-            else if (option == "--price")
-              {
-                try
-                  {
-                    result.price = Utilities::string_to_double(value);
-                  }
-                catch (const std::exception &)
-                  {
-                    result.price = 0.; // refused below
-                  }
-                AssertThrow(result.price >= 1e-6 && result.price <= 0.5,
-                            ExcMessage("The option --price needs a relative "
-                                       "error from 1e-6 to 0.5 after it, such "
-                                       "as 0.01, not '" +
-                                       excerpt(value) + "'."));
-              }
-            else
-              {
-                AssertThrow(!value.empty(),
-                            ExcMessage("The option --log needs the name of a "
-                                       "file after it."));
-                AssertThrow(std::filesystem::path(value).extension() != ".prm",
-                            ExcMessage("The option --log would overwrite '" +
-                                       excerpt(value) +
-                                       "', which looks like a parameter file; "
-                                       "choose another name."));
-                result.log = value;
-              }
-            continue;
-          }
-
-        if (!contains(flags, option))
-          {
-            std::vector<std::string> options(flags);
-            options.insert(options.end(), with_value.begin(), with_value.end());
-            const std::string nearest = nearest_name(option, options);
-            AssertThrow(false,
-                        ExcMessage(
-                          "There is no option '" + excerpt(option) + "'; " +
-                          (nearest.empty() ?
-                             "the options are " + enumeration(options) + "." :
-                             "did you mean " + nearest + "?")));
-          }
-        if (option == "--quiet")
-          result.quiet = true;
-        else if (option == "--restart")
-          result.restart = value == "auto" ? CommandLine::Restart::automatic :
-                                             CommandLine::Restart::yes;
-        else
-          {
-            AssertThrow(task_option.empty() || task_option == option,
-                        ExcMessage("The options " + task_option + " and " +
-                                   option + " exclude each other."));
-            task_option = option;
-            result.task = option == "--help"    ? Task::help :
-                          option == "--version" ? Task::version :
-                          option == "--check"   ? Task::check :
-                          value == "markdown"   ? Task::describe_as_markdown :
-                                                  Task::describe;
-          }
-        AssertThrow(equals == std::string::npos ||
-                      (option == "--describe" &&
-                       (value == "markdown" || value == "prm")) ||
-                      (option == "--restart" && value == "auto"),
-                    ExcMessage(
-                      "The option " + option +
-                      (option == "--describe" ?
-                         " can have the values prm and markdown, not '" :
-                       option == "--restart" ?
-                         " can have the value auto, not '" :
-                         " has no value, such as '") +
-                      excerpt(value) + "'."));
-      }
-
-    const bool reads_scene = result.task == Task::run ||
-                             result.task == Task::check ||
-                             result.task == Task::study;
-    AssertThrow(result.price == 0. || result.task == Task::run ||
-                  result.task == Task::check,
-                ExcMessage("The options " + task_option +
-                           " and --price exclude each other."));
-    AssertThrow(!reads_scene || !result.files.empty(),
-                ExcMessage("There is no parameter file among the arguments; "
-                           "write viscoplastic_contact [options] scene.prm."));
-    AssertThrow(
-      result.task == Task::run || result.restart == CommandLine::Restart::no,
-      ExcMessage(result.task == Task::study ?
-                   "A study finds its finished runs without --restart." :
-                   "The options " + task_option +
-                     " and --restart exclude each other."));
-    AssertThrow(reads_scene ||
-                  (result.files.empty() && result.overrides.empty()),
-                ExcMessage("The option " + task_option +
-                           " goes without parameter files and --set."));
-    return result;
+    return Reader(arguments).result;
   }
 
 

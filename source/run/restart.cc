@@ -45,6 +45,32 @@ namespace Viscoplastic
         preconditioner->built_for.spring & preconditioner->best_rate &
         preconditioner->lost_iterations & preconditioner->is_fresh;
     }
+
+
+
+    /// Tell what is not as it was when a checkpoint was written.
+    void
+    remark_on_changes(const CheckpointManifest &checkpoint,
+                      const ParameterChanges   &changes,
+                      Console                  &console)
+    {
+      const unsigned int n_ranks =
+        Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+      if (checkpoint.n_ranks != n_ranks)
+        console.remark("Note: the checkpoint is from " +
+                       std::to_string(checkpoint.n_ranks) +
+                       " MPI rank(s), this run has " + std::to_string(n_ranks) +
+                       "; results will differ by the contact tolerance.");
+      const std::string version =
+        VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
+      if (checkpoint.version != version)
+        console.remark("Note: the checkpoint is from version '" +
+                       excerpt(checkpoint.version) + "', this is " + version +
+                       ".");
+      if (!changes.allowed.empty())
+        console.remark("Note: changed since the checkpoint: " +
+                       enumeration(changes.allowed) + ".");
+    }
   } // namespace
 
 
@@ -196,7 +222,7 @@ namespace Viscoplastic
                            store.path(checkpoint.n) +
                            "'; change only what comes after it."));
 
-    std::vector<std::string> meshes, fields;
+    std::vector<std::string> meshes;
     for (unsigned int r = 0; r < checkpoint.n_ranks; ++r)
       meshes.push_back(store.read(checkpoint, mesh_file(r)));
     restore_mesh(meshes, triangulation);
@@ -206,16 +232,16 @@ namespace Viscoplastic
 
     // On as many ranks as before, each finds all in its own file.
     const auto unpack = [&](const unsigned int begin, const unsigned int end) {
-      fields.clear();
+      PackedFields packed{{meshes.begin() + begin, meshes.begin() + end},
+                          {},
+                          has_initial_u,
+                          has_estimate,
+                          ErrorEstimator<dim>::n_sample_fields(scene)};
       for (unsigned int r = begin; r < end; ++r)
-        fields.push_back(store.read(checkpoint, fields_file(r)));
+        packed.fields.push_back(store.read(checkpoint, fields_file(r)));
       const bool complete =
-        unpack_fields({meshes.begin() + begin, meshes.begin() + end},
-                      fields,
+        unpack_fields(packed,
                       d.stress_space,
-                      has_initial_u,
-                      has_estimate,
-                      ErrorEstimator<dim>::n_sample_fields(scene),
                       state,
                       accepted.space_estimate.squared_indicators);
       return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
@@ -258,20 +284,7 @@ namespace Viscoplastic
 
     out << "Restart after step " << state.n << " (t = " << state.t << ") from '"
         << store.path(state.n) << "'" << std::endl;
-    if (checkpoint.n_ranks != n_ranks)
-      console.remark("Note: the checkpoint is from " +
-                     std::to_string(checkpoint.n_ranks) +
-                     " MPI rank(s), this run has " + std::to_string(n_ranks) +
-                     "; results will differ by the contact tolerance.");
-    const std::string version =
-      VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
-    if (checkpoint.version != version)
-      console.remark("Note: the checkpoint is from version '" +
-                     excerpt(checkpoint.version) + "', this is " + version +
-                     ".");
-    if (!changes.allowed.empty())
-      console.remark("Note: changed since the checkpoint: " +
-                     enumeration(changes.allowed) + ".");
+    remark_on_changes(checkpoint, changes, console);
 
     recorder.resume(state, earlier_seconds);
     last_checkpoint = recorder.elapsed();

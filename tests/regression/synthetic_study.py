@@ -29,9 +29,9 @@ PHASES = {  # parts of the total; the rest nobody measured
 ERRORS = {"energy": 1.0, "h1": 1.2, "stress": 0.8, "multiplier": 2.0}
 
 
-def run(way, ladder, level, h, k, model, dimension=2, known=ERRORS, effectivity=1.5):
+def run(variant, ladder, level, h, k, model, dimension=2, known=ERRORS, effectivity=1.5):
     """One row of study.csv, as a dictionary."""
-    strategy, scheme, history = way
+    strategy, scheme, history = variant
     cells = round(2 * h**-dimension)
     # an adaptive mesh of as many cells is as good as a finer uniform one
     gain = 0.5 if strategy == "adaptive" else 1.0
@@ -83,7 +83,7 @@ def run(way, ladder, level, h, k, model, dimension=2, known=ERRORS, effectivity=
 
 
 def rows(
-    ways=(("uniform", "forward Euler", "cell means"),),
+    variants=(("uniform", "forward Euler", "cell means"),),
     ladders=("space", "time", "both"),
     levels=4,
     model=MODEL,
@@ -93,32 +93,32 @@ def rows(
 ):
     """The runs of a whole study; what a ladder keeps has its second size."""
     result = []
-    for way in ways:
-        of_way = model(way) if callable(model) else model
+    for variant in variants:
+        of_variant = model(variant) if callable(model) else model
         for ladder in ladders:
             for level in range(levels):
                 half = 0.5**level
                 keep = 0.5 ** min(levels - 1, 3)
                 result.append(
                     run(
-                        way,
+                        variant,
                         ladder,
                         level,
                         h * (keep if ladder == "time" else half),
                         k * (keep if ladder == "space" else half),
-                        of_way,
+                        of_variant,
                         **more,
                     )
                 )
     return result
 
 
-def fit(way, model=MODEL, error="error_energy"):
-    gain = 0.5 if way[0] == "adaptive" else 1.0
+def fit(variant, model=MODEL, error="error_energy"):
+    gain = 0.5 if variant[0] == "adaptive" else 1.0
     return {
-        "strategy": way[0],
-        "scheme": way[1],
-        "history": way[2],
+        "strategy": variant[0],
+        "scheme": variant[1],
+        "history": variant[2],
         "error": error,
         **model,
         "C_h": gain * model["C_h"],
@@ -129,10 +129,10 @@ def fit(way, model=MODEL, error="error_energy"):
 
 def about(rows, scene="synthetic", model=MODEL, **more):
     """What study.json says of these runs."""
-    ways = dict.fromkeys(
+    variants = dict.fromkeys(
         (row["strategy"], row["scheme"], row["history"]) for row in rows
     )
-    fits = [fit(way, model(way) if callable(model) else model) for way in ways]
+    fits = [fit(variant, model(variant) if callable(model) else model) for variant in variants]
     return {
         "scene": scene,
         "version": "1.2.3",

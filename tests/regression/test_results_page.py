@@ -77,15 +77,15 @@ class Tables(Folder):
         self.assertEqual(tables.orders(study, "sideways"), [None] * 4)
 
     def test_convergence_rows(self):
-        ways = (UNIFORM, ("uniform", "fast", "cell means"))
-        study = self.study(ways=ways, known=("energy", "stress"), effectivity=2.5)
-        coarse = self.study("coarse", ways=ways, levels=3, effectivity=0.5)
+        variants = (UNIFORM, ("uniform", "fast", "cell means"))
+        study = self.study(variants=variants, known=("energy", "stress"), effectivity=2.5)
+        coarse = self.study("coarse", variants=variants, levels=3, effectivity=0.5)
         studies = {"space": coarse, "time": study, "both": study}
         rows = tables.convergence_rows(studies, FACTS)
         self.assertEqual(len(rows), 2)
-        for row, way in zip(rows, ways):
+        for row, variant in zip(rows, variants):
             self.assertEqual(len(row), len(tables.CONVERGENCE_HEADER))
-            self.assertEqual(row[:6], ["s", "maxwell", "none", "2", "m", way[1]])
+            self.assertEqual(row[:6], ["s", "maxwell", "none", "2", "m", variant[1]])
             self.assertEqual(row[8], "1.00 / – / 1.00 / –")
             # C_h h + C_k k of the finest run
             self.assertEqual(row[9], f"{100 * (0.3 / 64 + 0.2 / 80):.2g} %")
@@ -97,15 +97,15 @@ class Tables(Folder):
         self.assertEqual(row[6:], ["– / – / – / –"] * 3 + ["–", "–"])
 
     def test_low_regularity(self):
-        ways = (UNIFORM, ADAPTIVE)
-        rows = tables.low_regularity_rows("x", "why", self.study(ways=ways))
-        for row, way in zip(rows, ways):
+        variants = (UNIFORM, ADAPTIVE)
+        rows = tables.low_regularity_rows("x", "why", self.study(variants=variants))
+        for row, variant in zip(rows, variants):
             self.assertEqual(len(row), len(tables.LOW_REGULARITY_HEADER))
-            self.assertEqual(row[:4], ["x", "why", way[0], way[1]])
+            self.assertEqual(row[:4], ["x", "why", variant[0], variant[1]])
             self.assertEqual(row[6], "1.00 / 1.00 / 1.00 / 1.00")
 
     def test_prices_are_those_of_the_cheapest_sufficient_run(self):
-        study = self.study(ways=(UNIFORM, ADAPTIVE))
+        study = self.study(variants=(UNIFORM, ADAPTIVE))
         error, seconds = study["error_energy"], study["seconds_total"]
         uniform = study["strategy"] == "uniform"
         for tolerance in plan.TOLERANCES:
@@ -130,7 +130,7 @@ class Tables(Folder):
             "memory_MB": 2000.0,
         }
         about = {"prices": [{**offered, "seconds": None, "error": "x"}, offered]}
-        study = self.study(ways=(UNIFORM, ADAPTIVE), about=about)
+        study = self.study(variants=(UNIFORM, ADAPTIVE), about=about)
         tolerances = (0.03, 1e-4)
         rows = tables.price_rows("x", study, tolerances, "error_energy")
         header = tables.price_header(tolerances)
@@ -144,7 +144,7 @@ class Tables(Folder):
         self.assertEqual(rows[1][-1], "–")
         bold = [row[-2].startswith("**") for row in rows]
         self.assertEqual(sum(bold), 1, rows)
-        # other errors and other ways have no offer
+        # other errors and other variants have no offer
         self.assertIsNone(tables.offer(study, ADAPTIVE, 1e-4, "error_energy"))
         self.assertIsNone(tables.offer(study, UNIFORM, 1e-4, "error_h1"))
         self.assertIsNone(tables.offer(study, UNIFORM, 1e-3, "error_energy"))
@@ -157,7 +157,7 @@ class Tables(Folder):
         self.assertIsNone(tables.best_seconds([None]))
 
     def test_fits(self):
-        study = self.study(ways=(UNIFORM, ADAPTIVE))
+        study = self.study(variants=(UNIFORM, ADAPTIVE))
         _, _, *rows = cells(tables.fit_table(study, "error_energy"))
         self.assertEqual(rows[0][3:], ["0.3", "1", "0.2", "1", "1.01", "1.5"])
         self.assertEqual(rows[1][3:], ["0.15", "1", "0.2", "1", "1.01", "1.5"])
@@ -181,7 +181,7 @@ class Tables(Folder):
         total = sum(row["seconds_total"] for row in rows)
         self.assertEqual(row[4], tables.seconds(total))
         self.assertEqual(row[5], tables.seconds(total / 2))
-        other = self.study("other", ways=(ADAPTIVE,))
+        other = self.study("other", variants=(ADAPTIVE,))
         self.assertEqual(tables.saving_row("x", coupled, other)[1], "0")
 
     def test_references(self):

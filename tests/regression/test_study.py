@@ -295,8 +295,8 @@ class Ladders(TestCase):
 
 class Resumed(TestCase):
     SMALL = {
-        "Geometry__Global_refinements": 2,
-        "Time__Phases": "1: 16",
+        "Geometry__Global_refinements": 1,
+        "Time__Phases": "1: 8",
         "Study__Levels": 3,
     }
 

@@ -21,7 +21,7 @@ import matplotlib.image
 import matplotlib.pyplot as plt
 from plotting import convergence, cost, rates, style, work_precision
 from plotting.results import UserError
-from plotting.study import WAY, Study, error_label
+from plotting.study import VARIANT, Study, error_label
 
 PLOT = SOURCE / "contrib" / "plot"
 NAN = float("nan")
@@ -192,8 +192,8 @@ class Reading(Folder):
         return Study(synthetic.write(self.folder, rows, synthetic.about(rows)))
 
     def test_ladders_and_orders(self):
-        study = self.study(ways=(UNIFORM, ADAPTIVE))
-        self.assertEqual(study.ways(), [UNIFORM, ADAPTIVE])
+        study = self.study(variants=(UNIFORM, ADAPTIVE))
+        self.assertEqual(study.variants(), [UNIFORM, ADAPTIVE])
         self.assertEqual(len(study.ladders()), 6)
         for ladder in study.ladders():
             axis = "k" if ladder.name == "time" else "h"
@@ -252,15 +252,15 @@ class Reading(Folder):
                 study.error(name)
 
     def test_names_of_ways_say_what_differs(self):
-        study = self.study(ways=(UNIFORM, ADAPTIVE))
-        self.assertEqual(study.way_label(ADAPTIVE), "adaptive")
-        study = self.study(ways=(UNIFORM, FAST))
-        self.assertEqual(study.way_label(FAST), "fast scheme, quadrature points")
+        study = self.study(variants=(UNIFORM, ADAPTIVE))
+        self.assertEqual(study.variant_label(ADAPTIVE), "adaptive")
+        study = self.study(variants=(UNIFORM, FAST))
+        self.assertEqual(study.variant_label(FAST), "fast scheme, quadrature points")
         study = self.study()
-        self.assertEqual(study.way_label(UNIFORM), "uniform, forward Euler")
+        self.assertEqual(study.variant_label(UNIFORM), "uniform, forward Euler")
 
     def test_fits_belong_to_a_way_and_an_error(self):
-        study = self.study(ways=(UNIFORM, ADAPTIVE))
+        study = self.study(variants=(UNIFORM, ADAPTIVE))
         self.assertClose(study.fit(ADAPTIVE, "error_energy")["C_h"], 0.15, absolute=1e-15)
         self.assertIsNone(study.fit(FAST, "error_energy"))
         self.assertIsNone(study.fit(UNIFORM, "error_stress"))
@@ -298,7 +298,7 @@ class Pictures(Folder):
         return process.stderr
 
     def test_a_whole_study(self):
-        rows = synthetic.rows(ways=(UNIFORM, ADAPTIVE, FAST))
+        rows = synthetic.rows(variants=(UNIFORM, ADAPTIVE, FAST))
         synthetic.write(self.folder, rows, synthetic.about(rows))
         self.assertEqual(self.draw(), list(self.NAMES))
         self.assertEqual(
@@ -321,23 +321,23 @@ class Pictures(Folder):
         self.assertEqual(self.draw(), list(self.NAMES))
 
     def test_very_many_runs(self):
-        ways = [
+        variants = [
             (strategy, scheme, history)
             for strategy in ("uniform", "adaptive")
             for scheme in ("first", "second", "third")
             for history in ("cell means", "quadrature points")
         ]
-        rows = synthetic.rows(ways=ways, levels=5)
+        rows = synthetic.rows(variants=variants, levels=5)
         synthetic.write(self.folder, rows, synthetic.about(rows))
         self.assertEqual(self.draw("--dpi", 50), list(self.NAMES))
         study = Study(self.folder)
         looks = [str(look) for look in study.looks().values()]
-        self.assertEqual(len(set(looks)), len(ways), "curves that look alike")
+        self.assertEqual(len(set(looks)), len(variants), "curves that look alike")
         shown, remark = cost.chosen(study)
         self.assertLessEqual(len(shown), cost.MOST_RUNS)
         self.assertIn("of 180 runs", remark)
-        found = set(zip(*(study[name][shown] for name in WAY)))
-        self.assertEqual(found, set(ways))
+        found = set(zip(*(study[name][shown] for name in VARIANT)))
+        self.assertEqual(found, set(variants))
 
     def test_only_time_is_refined(self):
         rows = synthetic.rows(ladders=("time",), known=())
@@ -348,7 +348,7 @@ class Pictures(Folder):
         """Legends stay off the data, numbers of an axis off each other."""
         style.set_up()
         self.addCleanup(plt.close, "all")
-        rows = synthetic.rows(ways=(UNIFORM, ADAPTIVE, FAST))
+        rows = synthetic.rows(variants=(UNIFORM, ADAPTIVE, FAST))
         study = Study(synthetic.write(self.folder, rows, synthetic.about(rows)))
         for module in (convergence, work_precision, cost):
             figure = module.draw(study, "error_energy")
@@ -375,7 +375,7 @@ class Pictures(Folder):
         """Measured points, and orders in the words below them."""
         style.set_up()
         self.addCleanup(plt.close, "all")
-        rows = synthetic.rows(ways=(UNIFORM,))
+        rows = synthetic.rows(variants=(UNIFORM,))
         study = Study(synthetic.write(self.folder, rows, synthetic.about(rows)))
         figure = convergence.draw(study, "error_energy")
         for axes, alone in zip(figure.axes, ("space", "time")):

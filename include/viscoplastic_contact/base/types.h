@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-#include <deal.II/lac/trilinos_vector.h>
+namespace dealii
+{
+  namespace TrilinosWrappers
+  {
+    class SparseMatrix;
+    namespace MPI
+    {
+      class Vector;
+    }
+  } // namespace TrilinosWrappers
+} // namespace dealii
 
 /**
  * Quasi-static frictional contact of elastic-viscoplastic bodies after Chen,
@@ -11,6 +20,8 @@
  */
 namespace Viscoplastic
 {
+  // Declared only: their headers are heavy, and rooms that see nothing of
+  // linear algebra but references do without. See base/linear_algebra.h.
   using DistributedVector = dealii::TrilinosWrappers::MPI::Vector;
   using DistributedMatrix = dealii::TrilinosWrappers::SparseMatrix;
 } // namespace Viscoplastic

@@ -48,28 +48,29 @@ namespace Viscoplastic
               const State<dim>       &state,
               const Vector<double>   &squared_estimate);
 
+  /// What pack_mesh() and pack_fields() have returned on some ranks, or all of
+  /// them, and what there was to pack.
+  struct PackedFields
+  {
+    std::vector<std::string> meshes, fields;
+    bool                     has_initial_u, has_estimate;
+    /// The number of fields at samples, of which none is missing before the
+    /// last.
+    unsigned int n_sample_fields;
+  };
+
   /**
-   * The inverse, on the same mesh. @p meshes and @p fields are what pack_mesh()
-   * and pack_fields() have returned on some ranks, or all of them. Sets u,
-   * velocity, initial_u and the fields at samples of @p state; @p
-   * has_initial_u,
-   * @p has_estimate and @p n_sample_fields, of which none is missing before the
-   * last, tell what there was. Returns whether that was all that this rank
-   * needs. Throws ExcMessage for bytes that make no sense. Not collective but
-   * for the exchange of ghost values at its end.
+   * The inverse, on the same mesh. Sets u, velocity, initial_u and the fields
+   * at samples of @p state. Returns whether that was all that this rank needs.
+   * Throws ExcMessage for bytes that make no sense. Not collective but for the
+   * exchange of ghost values at its end.
    */
   template <int dim>
   bool
-  unpack_fields(const std::vector<std::string> &meshes,
-                const std::vector<std::string> &fields,
-                const StressSpace<dim>         &stress_space,
-                const bool                      has_initial_u,
-                const bool                      has_estimate,
-                const unsigned int              n_sample_fields,
-                State<dim>                     &state,
-                Vector<double>                 &squared_estimate);
-
-
+  unpack_fields(const PackedFields     &packed,
+                const StressSpace<dim> &stress_space,
+                State<dim>             &state,
+                Vector<double>         &squared_estimate);
 
   /**
    * The coarse mesh in a form that can be compared: topology with ids, and

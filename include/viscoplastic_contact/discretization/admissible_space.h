@@ -4,7 +4,7 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/affine_constraints.h>
 
-#include <viscoplastic_contact/base/types.h>
+#include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/discretization/nodal_frame.h>
 #include <viscoplastic_contact/scene/scene.h>
 

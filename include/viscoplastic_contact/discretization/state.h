@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/contact/friction_face.h>
 #include <viscoplastic_contact/discretization/stress_space.h>
 

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/trilinos_precondition.h>
-
+#include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <memory>
 #include <vector>
+
+namespace dealii::TrilinosWrappers
+{
+  class PreconditionAMG;
+}
 
 namespace Viscoplastic
 {
@@ -34,6 +38,7 @@ namespace Viscoplastic
                  std::vector<DistributedVector> rigid_body_modes,
                  const FaceRestriction         &restriction,
                  const unsigned int             dim);
+    ~KrylovSolver() override;
 
     bool
     is_exact() const override

@@ -324,6 +324,8 @@ namespace
     EXPECT_FALSE(
       has_contact_event(points(">.."), points(">..", bounds), false));
     EXPECT_TRUE(has_contact_event(points(">.."), points(">>.", bounds), false));
+    EXPECT_TRUE(
+      has_contact_event(points(".>>"), points("..>", {1., 1., 0.}), false));
     EXPECT_FALSE(has_contact_event(points(""), points(""), false));
   }
 } // namespace

@@ -95,6 +95,51 @@ namespace
 
 
 
+  TYPED_TEST(TimeStepping, RejectedStepsLeaveNothing)
+  {
+    // The next step is too long for the tolerance. The one that is accepted in
+    // its place is that which would have been without it, and so is what the
+    // linear solver has learnt.
+    constexpr int dim = TypeParam::value;
+    for (const std::string scheme : {"Heun", "backward Euler"})
+      {
+        SCOPED_TRACE(scheme);
+        const std::string text =
+          maxwell + time(scheme, "8: 8") + solver("multigrid") +
+          subsection("Solver", "set Contact tolerance = 1e-8");
+        SteppingBody<dim> start(text);
+        start.advance(3);
+        const EvaluatedState<dim> &before = start.accepted;
+        const auto                 preconditioner =
+          start.stepper->method().preconditioner_state();
+        const FlowRate rate = start.rate();
+
+        SteppingBody<dim> rejects(
+          text + subsection("Step control", "set Tolerance = 1e-4")),
+          by_hand(text);
+        for (auto *body : {&rejects, &by_hand})
+          body->stepper->method().restore(before, preconditioner);
+        const auto step = rejects.stepper->next(before);
+        ASSERT_GT(step.n_rejections, 0u);
+        const double t = before.state.t, k = step.end.state.k;
+        const auto   once =
+          by_hand.stepper->try_step(before, &rate, {4, t, t + k, k});
+        EXPECT_EQ(difference(once.end.state.u, step.end.state.u), 0.);
+        EXPECT_EQ(once.end.state.z, step.end.state.z);
+        EXPECT_EQ(once.report.linear_iterations, step.report.linear_iterations);
+        const auto learnt   = rejects.stepper->method().preconditioner_state(),
+                   expected = by_hand.stepper->method().preconditioner_state();
+        ASSERT_EQ(learnt.has_value(), expected.has_value());
+        if (learnt)
+          {
+            EXPECT_EQ(learnt->lost_iterations, expected->lost_iterations);
+            EXPECT_EQ(learnt->best_rate, expected->best_rate);
+          }
+      }
+  }
+
+
+
   TYPED_TEST(TimeStepping, StepByHandIsThatOfARun)
   {
     constexpr int dim = TypeParam::value;
@@ -105,7 +150,8 @@ namespace
         const std::string text =
           maxwell + time(scheme, "1: 8") +
           subsection("Solver", "set Contact tolerance = 1e-10");
-        SteppingBody<dim> run(text), by_hand(text);
+        const std::string bound = "0.03*(1 + t)";
+        SteppingBody<dim> run(text, bound), by_hand(text, bound);
         run.advance(4);
         bool any_slips = false;
         for (unsigned int n = 1; n <= 4; ++n)
@@ -115,12 +161,14 @@ namespace
               by_hand.stepper->try_step(by_hand.accepted,
                                         &rate,
                                         by_hand.scene.schedule.step(n));
+            EXPECT_EQ(step.end.state.friction.bound,
+                      by_hand.discretization->face->bounds(step.end.state.t));
             by_hand.accepted = step.end;
             for (const bool sticks : step.end.state.friction.sticks)
               any_slips |= !sticks;
           }
         EXPECT_TRUE(any_slips);
-        // Ledgers are a matter of the judgement that runs add.
+        // Error estimates are a matter of the judgement that runs add.
         by_hand.accepted.errors           = run.accepted.errors;
         by_hand.accepted.state.time_error = run.accepted.state.time_error;
         expect_same(by_hand.accepted, run.accepted);

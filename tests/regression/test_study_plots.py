@@ -3,7 +3,6 @@
 with known answers, pictures of synthetic studies, and what is refused."""
 
 import json
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 
 import synthetic_study as synthetic
 from harness import SOURCE, TestCase, main
+from plot_process import plot, plot_afresh
 
 sys.path.insert(0, str(SOURCE / "contrib"))
 matplotlib.use("Agg")
@@ -23,7 +23,6 @@ from plotting import convergence, cost, rates, style, work_precision
 from plotting.results import UserError
 from plotting.study import VARIANT, Study, error_label
 
-PLOT = SOURCE / "contrib" / "plot"
 NAN = float("nan")
 UNIFORM = ("uniform", "forward Euler", "cell means")
 ADAPTIVE = ("adaptive", "forward Euler", "cell means")
@@ -269,16 +268,8 @@ class Reading(Folder):
 class Pictures(Folder):
     NAMES = ("convergence.png", "work_precision.png", "cost.png")
 
-    def plot(self, *arguments):
-        return subprocess.run(
-            [sys.executable, PLOT, self.folder, *map(str, arguments)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-
-    def draw(self, *arguments):
-        process = self.plot(*arguments)
+    def draw(self, *arguments, plot=plot):
+        process = plot(self.folder, *arguments)
         self.assertEqual(process.stderr, "")
         self.assertEqual(process.returncode, 0)
         paths = [Path(line) for line in process.stdout.split("\n") if line]
@@ -291,7 +282,7 @@ class Pictures(Folder):
         return [path.name for path in paths]
 
     def refuse(self, *arguments):
-        process = self.plot(*arguments)
+        process = plot(self.folder, *arguments)
         self.assertEqual(process.returncode, 1, process.stdout)
         self.assertNotIn("Traceback", process.stderr)
         self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
@@ -300,7 +291,7 @@ class Pictures(Folder):
     def test_a_whole_study(self):
         rows = synthetic.rows(variants=(UNIFORM, ADAPTIVE, FAST))
         synthetic.write(self.folder, rows, synthetic.about(rows))
-        self.assertEqual(self.draw(), list(self.NAMES))
+        self.assertEqual(self.draw(plot=plot_afresh), list(self.NAMES))
         self.assertEqual(
             self.draw("convergence", "--error", "error_stress,point0_x"),
             ["convergence_error_stress.png", "convergence_point0_x_error.png"],
@@ -312,7 +303,7 @@ class Pictures(Folder):
         self.assertEqual(
             self.draw("cost", "--output", self.folder / "x.png"), ["x.png"]
         )
-        listed = self.plot("--list").stdout
+        listed = plot(self.folder, "--list").stdout
         for words in ("work-precision", "error_multiplier", "peak_memory_MB"):
             self.assertIn(words, listed)
 

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs contrib/plot as a user does: arguments in, an exit code, two streams and
+files out.
+
+Most of the time of a small picture and nearly all of that of a refusal is the
+start of Python and of matplotlib.  A process that is forked has both already;
+all that the script itself does is done anew.
+"""
+
+import multiprocessing
+import os
+import runpy
+import subprocess
+import sys
+import tempfile
+
+from harness import SOURCE
+
+PLOT = SOURCE / "contrib" / "plot"
+sys.path.insert(0, str(SOURCE / "contrib"))
+
+import plotting.command  # what a forked process finds loaded
+
+
+def plot_afresh(*arguments):
+    """In a Python of its own, which has to find everything."""
+    return subprocess.run(
+        [sys.executable, PLOT, *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def plot(*arguments):
+    """The same in a fork of this process."""
+    command = [str(PLOT), *map(str, arguments)]
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+
+        def run_script():
+            os.dup2(out.fileno(), 1)
+            os.dup2(err.fileno(), 2)
+            sys.argv = command
+            runpy.run_path(command[0], run_name="__main__")
+
+        sys.stdout.flush()
+        sys.stderr.flush()
+        process = multiprocessing.get_context("fork").Process(target=run_script)
+        process.start()
+        process.join()
+        streams = []
+        for file in out, err:
+            file.seek(0)
+            streams.append(file.read())
+    return subprocess.CompletedProcess(command, process.exitcode, *streams)

@@ -112,6 +112,11 @@ def orders(errors):
     return np.log2(np.divide(errors[:-1], errors[1:]))
 
 
+def order_of(coarse, fine):
+    """Between runs of which one has four times the steps of the other."""
+    return np.log2(coarse / fine) / 2
+
+
 class UniformStrain(TestCase):
     def check(
         self, scheme, name, dim, course=None, text="min(t, 2 - t)", law=None, **more
@@ -120,6 +125,7 @@ class UniformStrain(TestCase):
             "uniform_strain",
             {
                 "Time/Scheme": scheme,
+                "Output/Fields every": 0,
                 **(THREE if dim == 3 else {}),
                 **law_entries(name),
                 **driven_by(text, dim),
@@ -233,16 +239,17 @@ class UniformStrain(TestCase):
                 slope, (0, 0.9), np.zeros(6), rtol=1e-11, atol=1e-13, max_step=1e-2
             )
             exact = norm(E(strain_at(0.9, 2, course)) + unpack(solution.y[:, -1]))
-            for scheme, order, tolerance in (
+            for scheme, expected, tolerance in (
                 ("forward Euler", 1, 0.15),
                 ("backward Euler", 1, 0.15),
                 ("Heun", 2, 0.3),
             ):
                 errors = []
-                for n in 40, 80, 160:
+                for n in 40, 160:
                     result = run(
                         "uniform_strain",
                         {
+                            "Output/Fields every": 0,
                             "Time/Scheme": scheme,
                             **law_entries(name),
                             **driven_by("sin(2*t)", 2),
@@ -250,12 +257,12 @@ class UniformStrain(TestCase):
                         },
                     )
                     errors.append(abs(result["stress_norm"][-1] - exact) / exact)
-                measured = orders(errors)
-                print(f"{name}, {scheme}: errors {errors}, orders {measured}")
+                measured = order_of(*errors)
+                print(f"{name}, {scheme}: errors {errors}, order {measured}")
                 # the onset of flow of perzyna is a kink within a step
                 self.assertClose(
-                    measured.mean(),
-                    order,
+                    measured,
+                    expected,
                     absolute=tolerance,
                     what=f"{name}, {scheme}",
                 )
@@ -377,7 +384,7 @@ class Slab(TestCase):
             scale = {name: abs(fine[name]).max() for name in names}
             for scheme in "forward Euler", "Heun", "backward Euler":
                 errors = []
-                for n in 32, 64, 128:
+                for n in 32, 128:
                     result = self.slab(scheme, n, **entries)
                     errors.append(
                         max(
@@ -387,13 +394,13 @@ class Slab(TestCase):
                             for t in (1, 2)
                         )
                     )
-                print(f"{law}, {scheme}: errors {errors}, orders {orders(errors)}")
-                mean = np.log2(errors[0] / errors[-1]) / 2
+                measured = order_of(*errors)
+                print(f"{law}, {scheme}: errors {errors}, order {measured}")
                 if scheme == "Heun":
                     # the front passes nodes in single steps
-                    self.assertGreater(mean, 1.6, f"{law}, {scheme}")
+                    self.assertGreater(measured, 1.6, f"{law}, {scheme}")
                 else:
-                    self.assertClose(mean, 1, absolute=0.2, what=f"{law}, {scheme}")
+                    self.assertClose(measured, 1, absolute=0.2, what=f"{law}, {scheme}")
 
     def test_three_times_the_limit(self):
         """Refused with forward Euler and Heun, tame with backward Euler: as

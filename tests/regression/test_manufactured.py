@@ -45,7 +45,7 @@ def errors(scene, law, level, n_steps, overrides=None, ranks=1):
 class Ladders(TestCase):
     def ladder(self, name, runs, expected):
         """Errors of runs of which each halves what is refined; the order
-        between the last two is at least what is expected."""
+        between the last two is more than what is expected."""
         for norm, least in expected.items():
             values = np.array([run[norm] for run in runs])
             orders = np.log2(values[:-1] / values[1:])
@@ -59,6 +59,10 @@ class Ladders(TestCase):
             self.assertGreater(orders[-1], least, f"{name}: order in {norm}")
 
 
+# The refinements of the runs that are compared; one more below them is cheap,
+# but is judged by nothing.
+LEVELS = (1, 2)
+
 # First order is reached from either side: 0.9 leaves room for what is left of
 # the coarse meshes.  The multiplier is a trace, for which the theory has no
 # rate; 0.5 is that of a trace of an H1 function.
@@ -69,7 +73,7 @@ class MeshAndSteps2D(Ladders):
     """h and k halved together, all laws, both laws of friction."""
 
     def check(self, scene, law):
-        runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
+        runs = [errors(scene, law, g, 14 * 2**g) for g in LEVELS]
         self.ladder(f"{scene} {law}", runs, BOTH)
 
     def test_tresca(self):
@@ -86,20 +90,20 @@ class MeshAndSteps2D(Ladders):
 class MeshAndSteps3D(Ladders):
     """The front moves and the slip behind it turns."""
 
-    # From 2^3 to 8^3 cells the orders still grow.
+    # From 4^3 to 8^3 cells the orders still grow.
     EXPECTED = {"energy": 0.85, "h1": 0.85, "stress": 0.85, "multiplier": 0.5}
 
     def test_all_laws(self):
         for number, law in enumerate(LAWS):
             scene = ("tresca_3d", "coulomb_3d")[number % 2]
             with self.subTest(law):
-                runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
+                runs = [errors(scene, law, g, 14 * 2**g) for g in LEVELS]
                 self.ladder(f"{scene} {law}", runs, self.EXPECTED)
 
     def test_other_friction(self):
         for scene, law in (("tresca_3d", "zener"), ("coulomb_3d", "maxwell")):
             with self.subTest(scene):
-                runs = [errors(scene, law, g, 14 * 2**g) for g in range(3)]
+                runs = [errors(scene, law, g, 14 * 2**g) for g in LEVELS]
                 self.ladder(f"{scene} {law}", runs, self.EXPECTED)
 
 
@@ -110,7 +114,7 @@ class OneAtATime(Ladders):
         # Steps so small that halving h still halves the error.
         for scene in ("tresca_2d", "coulomb_2d"):
             with self.subTest(scene):
-                runs = [errors(scene, "maxwell", g, 512) for g in range(3)]
+                runs = [errors(scene, "maxwell", g, 512) for g in LEVELS]
                 expected = {"energy": 0.9, "h1": 0.9, "stress": 0.9}
                 self.ladder(f"{scene} h", runs, expected)
 
@@ -118,7 +122,7 @@ class OneAtATime(Ladders):
         # The error of the mesh is what the last order lacks.
         for scene in ("tresca_2d", "coulomb_2d"):
             with self.subTest(scene):
-                runs = [errors(scene, "maxwell", 4, n) for n in (3, 6, 12)]
+                runs = [errors(scene, "maxwell", 4, n) for n in (6, 12)]
                 self.ladder(f"{scene} k", runs, {"energy": 0.9, "h1": 0.9})
 
 
@@ -128,7 +132,7 @@ class Meshes(Ladders):
 
     def check(self, name, scene, overrides, expected=BOTH):
         runs = [
-            errors(scene, "perzyna", g, 14 * 2**g, overrides) for g in range(3)
+            errors(scene, "perzyna", g, 14 * 2**g, overrides) for g in LEVELS
         ]
         self.ladder(f"{scene} {name}", runs, expected)
 

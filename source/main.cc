@@ -115,7 +115,7 @@ main(int argc, char *argv[])
 {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool                     has_terminal = stdout_is_terminal();
-  run_without_mpi_daemon();
+  run_without_mpi_job();
   // The libraries that MPI_InitFinalize starts must not see our arguments:
   // PETSc has a --help of its own.
   int                                      n_hidden_arguments = 1;

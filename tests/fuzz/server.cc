@@ -75,7 +75,7 @@ main(int argc, char *argv[])
   const rlim_t seconds = std::stoul(argv[1]), memory = std::stoul(argv[3]);
   const auto   alarm_after = static_cast<unsigned int>(std::stoul(argv[2]));
   int          n_hidden_arguments = 1;
-  Viscoplastic::run_without_mpi_daemon();
+  Viscoplastic::run_without_mpi_job();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(n_hidden_arguments, argv, 1);
 
   std::string line;

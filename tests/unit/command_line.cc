@@ -159,33 +159,44 @@ namespace
 
 
 
-  TEST(CommandLine, DaemonOfOpenMpi)
+  TEST(CommandLine, LoneProcessOfOpenMpi)
   {
-    const char *const              wanted = "OMPI_MCA_ess_singleton_isolated";
-    const std::vector<std::string> names{
-      wanted, "OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "SLURM_STEP_ID"};
+    // What is said to Open MPI, and what a launcher says.
+    const std::vector<std::pair<std::string, std::string>> wanted{
+      {"OMPI_MCA_ess_singleton_isolated", "1"}, {"OMPI_MCA_pml", "ob1"}};
+    const std::vector<std::string>     launchers{"OMPI_COMM_WORLD_SIZE",
+                                             "PMIX_RANK",
+                                             "PMI_RANK",
+                                             "SLURM_STEP_ID"};
     std::map<std::string, std::string> environment;
-    for (const std::string &name : names)
-      {
-        if (const char *value = std::getenv(name.c_str()))
-          environment[name] = value;
-        unsetenv(name.c_str());
-      }
+    const auto                         take = [&](const std::string &name) {
+      if (const char *value = std::getenv(name.c_str()))
+        environment[name] = value;
+      unsetenv(name.c_str());
+    };
+    for (const std::string &launcher : launchers)
+      take(launcher);
+    for (const auto &[name, value] : wanted)
+      take(name);
 
-    run_without_mpi_daemon();
-    EXPECT_STREQ(std::getenv(wanted), "1");
-    setenv(wanted, "0", 1); // the user's word
-    run_without_mpi_daemon();
-    EXPECT_STREQ(std::getenv(wanted), "0");
-    unsetenv(wanted);
-    for (const std::string &launcher : names)
-      if (launcher != wanted)
-        {
-          setenv(launcher.c_str(), "1", 1);
-          run_without_mpi_daemon();
-          EXPECT_EQ(std::getenv(wanted), nullptr) << launcher;
-          unsetenv(launcher.c_str());
-        }
+    for (const auto &[name, value] : wanted)
+      {
+        run_without_mpi_job();
+        EXPECT_STREQ(std::getenv(name.c_str()), value.c_str());
+        setenv(name.c_str(), "0", 1); // the user's word
+        run_without_mpi_job();
+        EXPECT_STREQ(std::getenv(name.c_str()), "0");
+      }
+    for (const std::string &launcher : launchers)
+      {
+        for (const auto &[name, value] : wanted)
+          unsetenv(name.c_str());
+        setenv(launcher.c_str(), "1", 1);
+        run_without_mpi_job();
+        for (const auto &[name, value] : wanted)
+          EXPECT_EQ(std::getenv(name.c_str()), nullptr) << launcher;
+        unsetenv(launcher.c_str());
+      }
 
     for (const auto &[name, value] : environment)
       setenv(name.c_str(), value.c_str(), 1);

@@ -16,7 +16,7 @@ int
 main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);
-  Viscoplastic::run_without_mpi_daemon();
+  Viscoplastic::run_without_mpi_job();
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc,
                                                      argv,
                                                      /* max_num_threads = */ 1);

@@ -11,12 +11,15 @@ namespace Viscoplastic
    * Without mpirun, MPI_Init of Open MPI 4 starts a daemon (orted) for each
    * process, which only MPI_Comm_spawn would need. The daemon takes time to
    * start, outlives a process that is killed, and simultaneous starts may fail.
+   * It also asks the libraries of networks for their adapters, and that of
+   * Omni-Path waits a quarter of a second for them where there are none: `ob1'
+   * is what talks without these libraries.
    * Call this before MPI_Init; it says so to Open MPI unless the environment is
    * that of a launcher or says something else. Other implementations of MPI
    * take no notice.
    */
   inline void
-  run_without_mpi_daemon()
+  run_without_mpi_job()
   {
     // Set by mpirun of Open MPI, by launchers that speak PMIx or PMI (prterun,
     // srun, mpiexec.hydra), and by srun.
@@ -25,5 +28,6 @@ namespace Viscoplastic
       if (std::getenv(name) != nullptr)
         return;
     setenv("OMPI_MCA_ess_singleton_isolated", "1", /* overwrite = */ 0);
+    setenv("OMPI_MCA_pml", "ob1", /* overwrite = */ 0);
   }
 } // namespace Viscoplastic

@@ -203,6 +203,18 @@ namespace Viscoplastic
         parser->set_time(t);
         result = parser->value(x);
       }
+    require_finite(result, x, t);
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  Expression<dim>::require_finite(const double      result,
+                                  const Point<dim> &x,
+                                  const double      t) const
+  {
     if (!std::isfinite(result))
       {
         std::ostringstream message;
@@ -214,7 +226,6 @@ namespace Viscoplastic
                 << " = (" << x << "), t = " << t << "; it must be finite.";
         AssertThrow(false, ExcMessage(message.str()));
       }
-    return result;
   }
 
 
@@ -272,6 +283,20 @@ namespace Viscoplastic
 
 
   template <int dim>
+  VectorExpression<dim>::VectorExpression(const Function    &function,
+                                          const std::string &entry)
+    : function(function)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      components.emplace_back([function,
+                               d](const Point<dim> &x,
+                                  const double t) { return function(x, t)[d]; },
+                              entry);
+  }
+
+
+
+  template <int dim>
   VectorExpression<dim>::VectorExpression(
     const std::vector<typename Expression<dim>::Function> &functions,
     const std::string                                     &entry)
@@ -287,8 +312,15 @@ namespace Viscoplastic
   VectorExpression<dim>::vector(const Point<dim> &x, const double t) const
   {
     Tensor<1, dim> result;
-    for (unsigned int d = 0; d < dim; ++d)
-      result[d] = value(x, t, d);
+    if (!function)
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = value(x, t, d);
+    else
+      {
+        result = function(x, t);
+        for (unsigned int d = 0; d < dim; ++d)
+          components[d].require_finite(result[d], x, t);
+      }
     return result;
   }
 

@@ -124,6 +124,34 @@ namespace Viscoplastic
 
   template <int dim>
   Tensor<1, dim>
+  ExactSolution<dim>::stress_column(const Point<dim>  &x,
+                                    const double       t,
+                                    const unsigned int j) const
+  {
+    Tensor<1, dim> result;
+    if (!has_own_stress())
+      {
+        const SymmetricTensor<2, 3> sigma = stress(x, t);
+        for (unsigned int i = 0; i < dim; ++i)
+          result[i] = sigma[i][j];
+        return result;
+      }
+    const auto components = stress_components<dim>();
+    for (unsigned int c = 0; c < components.size(); ++c)
+      {
+        const auto [row, column] = components[c];
+        if (row == j)
+          result[column] = given_stress->value(x, t, c);
+        else if (column == j)
+          result[row] = given_stress->value(x, t, c);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
   ExactSolution<dim>::traction(const Point<dim>     &x,
                                const Tensor<1, dim> &normal,
                                const double          t) const
@@ -148,9 +176,10 @@ namespace Viscoplastic
         Point<dim> left(x), right(x);
         left[j] -= space_step;
         right[j] += space_step;
-        const SymmetricTensor<2, 3> change = stress(right, t) - stress(left, t);
+        const Tensor<1, dim> change =
+          stress_column(right, t, j) - stress_column(left, t, j);
         for (unsigned int i = 0; i < dim; ++i)
-          result[i] -= change[i][j] / (right[j] - left[j]);
+          result[i] -= change[i] / (right[j] - left[j]);
       }
     return result;
   }

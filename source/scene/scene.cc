@@ -94,28 +94,25 @@ namespace Viscoplastic
                            "solution/Data' = solution, whose initial data are "
                            "those of the solution."));
 
-    using Functions = std::vector<typename Expression<dim>::Function>;
     const ExactSolution<dim> &solution = *exact_solution;
     const std::string         stress   = "Exact solution/Stress",
                       displacement     = "Exact solution/Displacement";
-    Functions forces, displacements, stresses;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        forces.push_back([&solution, d](const Point<dim> &x, const double t) {
-          return solution.body_force(x, t)[d];
-        });
-        displacements.push_back(
-          [&solution, d](const Point<dim> &x, const double t) {
-            return solution.displacement(x, t)[d];
-          });
-      }
+    std::vector<typename Expression<dim>::Function> stresses;
     for (const auto &[i, j] : stress_components<dim>())
       stresses.push_back(
         [&solution, i = i, j = j](const Point<dim> &x, const double t) {
           return solution.stress(x, t)[i][j];
         });
-    body_force.emplace(forces, stress);
-    initial_displacement.emplace(displacements, displacement);
+    body_force.emplace(
+      [&solution](const Point<dim> &x, const double t) {
+        return solution.body_force(x, t);
+      },
+      stress);
+    initial_displacement.emplace(
+      [&solution](const Point<dim> &x, const double t) {
+        return solution.displacement(x, t);
+      },
+      displacement);
     initial_stress.emplace(stresses, stress);
   }
 

@@ -65,6 +65,12 @@ namespace Viscoplastic
     double
     value(const Point<dim> &x, const double t) const;
 
+    /// The same for the value @p result that is known already.
+    void
+    require_finite(const double      result,
+                   const Point<dim> &x,
+                   const double      t) const;
+
     /// By central differences of the expression.
     Tensor<1, dim>
     gradient(const Point<dim> &x, const double t) const;
@@ -118,6 +124,12 @@ namespace Viscoplastic
                      const unsigned int n_components,
                      const std::string &entry);
 
+    using Function =
+      std::function<Tensor<1, dim>(const Point<dim> &, const double)>;
+
+    /// The dim components of one function, which vector() calls once for all.
+    VectorExpression(const Function &function, const std::string &entry);
+
     /// A component for each function.
     VectorExpression(
       const std::vector<typename Expression<dim>::Function> &functions,
@@ -147,6 +159,7 @@ namespace Viscoplastic
 
   private:
     std::vector<Expression<dim>> components;
+    Function                     function; // of all components, or none
   };
 
 

@@ -99,6 +99,12 @@ namespace Viscoplastic
     check_rates(const Point<dim> &x, const double t) const;
 
   private:
+    /// sigma_ij for all i: evaluates no other component where they are given.
+    Tensor<1, dim>
+    stress_column(const Point<dim>  &x,
+                  const double       t,
+                  const unsigned int j) const;
+
     std::optional<VectorExpression<dim>> given_displacement, given_stress;
     const Material<dim>                 *material = nullptr;
     double                               space_step, time_step;

@@ -2,9 +2,13 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/linear_algebra.h>
+#include <viscoplastic_contact/linear_solvers/algebraic_multigrid.h>
 #include <viscoplastic_contact/linear_solvers/bulk_solver_factory.h>
+#include <viscoplastic_contact/linear_solvers/geometric_multigrid.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
 #include <viscoplastic_contact/linear_solvers/schur_solver.h>
+
+#include <algorithm>
 
 namespace Viscoplastic
 {
@@ -31,6 +35,53 @@ namespace Viscoplastic
       if (max_poissons_ratio > 0.45)
         return n_dofs < 200000;
       return n_dofs < 20000 || (n_dofs < 150000 && n_solves >= 20);
+    }
+    /// Whether there are coarser meshes. The first one is solved on directly,
+    /// whenever its stick set changes: that must be little against a cycle on
+    /// the present one.
+    bool
+    has_small_first_mesh(const BulkSystem    &system,
+                         const NodeHierarchy &hierarchy)
+    {
+      if (hierarchy.n_levels < 2)
+        return false;
+      const NodeHierarchy::Node n     = system.dim * hierarchy.n_first,
+                                share = system.matrix.m() / 100;
+      return system.dim == 2 ?
+               n <= std::max(NodeHierarchy::Node(2000),
+                             std::min(share, NodeHierarchy::Node(10000))) :
+               n <= std::max(NodeHierarchy::Node(600),
+                             std::min(share, NodeHierarchy::Node(3000)));
+    }
+
+
+
+    std::unique_ptr<Preconditioner>
+    make_preconditioner(const BulkSystem &system, const LinearSolver choice)
+    {
+      if (choice != LinearSolver::algebraic_multigrid)
+        {
+          NodeHierarchy hierarchy = system.hierarchy();
+          if (has_small_first_mesh(system, hierarchy))
+            {
+              if (system.dim == 2)
+                return std::make_unique<GeometricMultigrid<2>>(system.matrix,
+                                                               system.excluded,
+                                                               std::move(
+                                                                 hierarchy),
+                                                               system.face);
+              return std::make_unique<GeometricMultigrid<3>>(system.matrix,
+                                                             system.excluded,
+                                                             std::move(
+                                                               hierarchy),
+                                                             system.face);
+            }
+        }
+      return std::make_unique<AlgebraicMultigrid>(system.matrix,
+                                                  system.excluded,
+                                                  system.rigid_body_modes(),
+                                                  system.face,
+                                                  system.dim);
     }
   } // namespace
 
@@ -76,8 +127,8 @@ namespace Viscoplastic
                                            system.dim);
     return std::make_unique<KrylovSolver>(matrix,
                                           system.excluded,
-                                          system.rigid_body_modes(),
                                           system.face,
-                                          system.dim);
+                                          make_preconditioner(system,
+                                                              demand.choice));
   }
 } // namespace Viscoplastic

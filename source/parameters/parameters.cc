@@ -331,8 +331,10 @@ namespace Viscoplastic
       "Linear solver",
       linear_solver,
       "`direct': sparse Cholesky (CHOLMOD) with the contact face condensed, "
-      "on one MPI rank; `multigrid': conjugate gradients with algebraic "
-      "multigrid (ML), on any number; `automatic' chooses.");
+      "on one MPI rank; `multigrid': conjugate gradients with multigrid on "
+      "the meshes that refinement has gone through, or with `algebraic "
+      "multigrid' (ML) where the first of them is large, on any number; "
+      "`automatic' chooses.");
     prm.add_parameter(
       "Contact tolerance",
       contact_tolerance,

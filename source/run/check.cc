@@ -142,7 +142,7 @@ namespace Viscoplastic
              triangulation.n_global_active_cells() :
          0.);
     out << "Linear solver: "
-        << (direct ? "direct (CHOLMOD)" : "conjugate gradients, multigrid (ML)")
+        << (direct ? "direct (CHOLMOD)" : "conjugate gradients with multigrid")
         << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()
         << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
         << (scene.is_adaptive() ? " on the initial mesh" : "")

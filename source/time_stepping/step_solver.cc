@@ -49,8 +49,9 @@ namespace Viscoplastic
                               max_poissons_ratio,
                               d.n_solves};
     if (bulk_solver &&
-        is_direct(
-          demand, dim, matrix.m(), face.dofs().size(), space.communicator) &&
+        bulk_solver->is_exact() ==
+          is_direct(
+            demand, dim, matrix.m(), face.dofs().size(), space.communicator) &&
         bulk_solver->renew(matrix))
       return;
     bulk_solver.reset(); // factors are what fills memory

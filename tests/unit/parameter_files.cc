@@ -50,7 +50,7 @@ namespace
     EXPECT_EQ(name_of(TimeScheme::heun), "Heun");
     expect_refusal([] { Parameters p({}, {"Solver/Linear solver=magic"}); },
                    "'Solver/Linear solver' is 'magic'; it must be one of "
-                   "automatic, direct, multigrid.");
+                   "automatic, direct, multigrid, algebraic multigrid.");
   }
 
 

@@ -127,6 +127,17 @@ namespace Viscoplastic
       return frames[index];
     }
 
+    /// Call @p act (first degree of freedom, directions of the frame) for each
+    /// node of `relevant` whose frame is rotated.
+    template <typename Function>
+    void
+    for_each_rotated_node(const Function &act) const
+    {
+      for (const std::size_t n : rotated_nodes)
+        act(relevant.nth_index_in_set(n),
+            frames[frame_of_node[n / dim]].directions);
+    }
+
     /**
      * The rigid body modes (3 or 6) in frames on owned entries, zero where
      * excluded; each relative to the center of the body.

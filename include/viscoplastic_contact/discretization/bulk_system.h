@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/discretization/admissible_space.h>
+#include <viscoplastic_contact/discretization/nested_spaces.h>
 #include <viscoplastic_contact/linear_solvers/bulk_solver_factory.h>
 
 namespace Viscoplastic
@@ -17,6 +17,7 @@ namespace Viscoplastic
             matrix,
             space.excluded(),
             [&space] { return space.rigid_body_modes(); },
+            [&space] { return make_node_hierarchy(space); },
             face};
   }
 } // namespace Viscoplastic

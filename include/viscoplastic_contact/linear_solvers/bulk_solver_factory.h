@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
+#include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
 #include <viscoplastic_contact/parameters/choices.h>
 
 #include <functional>
@@ -21,6 +22,8 @@ namespace Viscoplastic
     const std::vector<bool> &excluded;
     /// The rigid body modes on owned entries, zero where excluded.
     std::function<std::vector<DistributedVector>()> rigid_body_modes;
+    /// The meshes that the present one has come from.
+    std::function<NodeHierarchy()> hierarchy;
     /// The restriction to the friction face, which is empty without friction.
     const FaceRestriction &face;
   };

@@ -4,41 +4,26 @@
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
+#include <viscoplastic_contact/linear_solvers/preconditioner.h>
 
 #include <memory>
 #include <vector>
 
-namespace dealii::TrilinosWrappers
-{
-  class PreconditionAMG;
-}
-
 namespace Viscoplastic
 {
-  /**
-   * Conjugate gradients with algebraic multigrid (ML, smoothed aggregation with
-   * the rigid body modes), on any number of ranks.
-   *
-   * The preconditioner is built for the stick set of the first solve: its
-   * matrix has the rows and columns of prescribed and sticking components cut
-   * off. While the set moves on, it is kept and filtered by the present
-   * truncation, which costs iterations; it is rebuilt when the iterations lost
-   * since the last set-up would have paid for a new one. The count, not the
-   * clock, decides, so runs are reproducible.
-   */
+  /// Preconditioned conjugate gradients on the truncated space, on any number
+  /// of ranks.
   class KrylovSolver : public BulkSolver
   {
   public:
-    /**
-     * @p rigid_body_modes: on owned entries, zero where @p excluded;
-     * @p dim degrees of freedom a node.
-     */
-    KrylovSolver(const DistributedMatrix       &matrix,
-                 const std::vector<bool>       &excluded,
-                 std::vector<DistributedVector> rigid_body_modes,
-                 const FaceRestriction         &restriction,
-                 const unsigned int             dim);
+    KrylovSolver(const DistributedMatrix        &matrix,
+                 const std::vector<bool>        &excluded,
+                 const FaceRestriction          &restriction,
+                 std::unique_ptr<Preconditioner> preconditioner);
     ~KrylovSolver() override;
+
+    bool
+    renew(const DistributedMatrix &matrix) override;
 
     bool
     is_exact() const override
@@ -102,19 +87,11 @@ namespace Viscoplastic
 
   private:
     struct TruncatedOperator;
-    struct FilteredPreconditioner;
+    struct TruncatedPreconditioner;
 
     /// Set entries of excluded components to zero.
     void
     restrict_to_unknowns(DistributedVector &v) const;
-
-    /// Build the preconditioner for the present truncation.
-    void
-    build_preconditioner();
-
-    /// One cycle for x.
-    void
-    precondition(DistributedVector &y, const DistributedVector &x) const;
 
     void
     make_face_matrix();
@@ -122,26 +99,12 @@ namespace Viscoplastic
     const DistributedMatrix          &matrix;
     const std::vector<bool>          &excluded;
     std::vector<std::size_t>          excluded_entries;
-    std::vector<DistributedVector>    rigid_body_modes;
     const FaceRestriction            &restriction;
     const FrictionFace               &face;
-    const unsigned int                dim;
     const MPI_Comm                    communicator;
     std::unique_ptr<SparseFaceMatrix> sparse_face_matrix;
 
-    // The preconditioner, and how it is doing.
-    std::unique_ptr<TrilinosWrappers::PreconditionAMG> amg;
-    /// Its matrix is in this unit; see build_preconditioner().
-    double              amg_unit = 1.;
-    std::vector<double> near_null_space;
-    /// The preconditioner's matrix, which ML refers to.
-    DistributedMatrix masked_matrix;
-    /// The truncation for which it was built.
-    FaceTruncation built_for;
-    /// Iterations a decade right after a set-up, the best so far; iterations
-    /// lost against that since the last set-up.
-    double best_rate = 0., lost_iterations = 0.;
-    bool   is_fresh = false;
+    std::unique_ptr<Preconditioner> preconditioner;
 
     // The solve under way.
     const DistributedVector *load = nullptr;

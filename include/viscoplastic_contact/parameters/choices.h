@@ -84,13 +84,14 @@ namespace Viscoplastic
   {
     automatic,
     direct,
-    multigrid
+    multigrid,
+    algebraic_multigrid
   };
 
   inline const char *
   choices(LinearSolver)
   {
-    return "automatic|direct|multigrid";
+    return "automatic|direct|multigrid|algebraic multigrid";
   }
 
   enum class RefinementStrategy

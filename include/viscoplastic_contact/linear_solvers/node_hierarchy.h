@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
+
+#include <map>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /**
+   * The nodes of the nested meshes from which a mesh has come by refinement:
+   * mesh l has the cells of level l and the active cells of lower levels, so
+   * the last one is the mesh itself. The nodes of mesh l-1 are nodes of mesh l,
+   * and hanging nodes hang in all meshes that have them, so that the spaces are
+   * nested, too.
+   *
+   * A node is known by its number in the last mesh on all levels, its first
+   * degree of freedom over their number at a node; the rank that owns it there
+   * owns it everywhere.
+   */
+  struct NodeHierarchy
+  {
+    using Node = types::global_dof_index;
+
+    /// The number of meshes, and of nodes of the first one: on all ranks.
+    unsigned int n_levels = 0;
+    Node         n_first  = 0;
+    /// Where the nodes of this rank begin, and the end.
+    Node begin = 0, end = 0;
+
+    /// The first mesh that has each owned node; invalid_unsigned_int for
+    /// hanging nodes, which are no unknowns of any mesh.
+    std::vector<unsigned int> first_level;
+
+    /// A displacement of the mesh before is, at an owned node that is new, the
+    /// sum of the values of its parents with these weights (in Cartesian
+    /// components). Compressed rows, empty for nodes of the first mesh.
+    struct Parent
+    {
+      Node   node;
+      double weight;
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int)
+      {
+        archive &node &weight;
+      }
+    };
+    std::vector<std::size_t> row_begin;
+    std::vector<Parent>      parents;
+
+    /// Of owned nodes and ghosts whose frame is not Cartesian: its directions,
+    /// as columns.
+    std::map<Node, Tensor<2, 3>> frames;
+  };
+
+
+  /// The part of a padded tensor that means something.
+  template <int dim>
+  Tensor<2, dim>
+  leading_block(const Tensor<2, 3> &tensor)
+  {
+    Tensor<2, dim> result;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = 0; j < dim; ++j)
+        result[i][j] = tensor[i][j];
+    return result;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/bulk_solver.h>
+
+#include <optional>
+#include <string>
+
+namespace Viscoplastic
+{
+  /**
+   * What conjugate gradients take for the inverse of K + springs on the
+   * truncated space: symmetric and positive definite. Vectors are in nodal
+   * frames, on owned entries. All calls are collective.
+   */
+  class Preconditioner
+  {
+  public:
+    virtual ~Preconditioner() = default;
+
+    /// What it is called in messages, e.g. "algebraic multigrid (ML)".
+    virtual std::string
+    name() const = 0;
+
+    /// The matrix has other values in the same pattern. Returns false if a new
+    /// preconditioner is as good.
+    virtual bool
+    renew()
+    {
+      return false;
+    }
+
+    /// The space and the springs for which vmult() is wanted from now on. A
+    /// truncation that is only tried must not be what a preconditioner is
+    /// rebuilt for.
+    virtual void
+    set_truncation(const FaceTruncation &truncation,
+                   const bool            may_rebuild) = 0;
+
+    /// y := M^{-1} x. Components of y outside of the truncated space mean
+    /// nothing.
+    virtual void
+    vmult(DistributedVector &y, const DistributedVector &x) const = 0;
+
+    /// The same without truncation and springs; y means nothing on excluded
+    /// components.
+    virtual void
+    vmult_untruncated(DistributedVector       &y,
+                      const DistributedVector &x) const = 0;
+
+    /// A solve took @p iterations to reduce the residual by @p decades.
+    virtual void
+    learn(const unsigned int /*iterations*/, const double /*decades*/)
+    {}
+
+    /// See BulkSolver.
+    virtual std::optional<PreconditionerState>
+    state() const
+    {
+      return {};
+    }
+
+    virtual void
+    restore(const std::optional<PreconditionerState> &)
+    {}
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+#include <deal.II/grid/cell_id.h>
+#include <deal.II/grid/tria_iterator.h>
+
+#include <viscoplastic_contact/discretization/nested_spaces.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    using Node = NodeHierarchy::Node;
+    /// Independent nodes and their weights.
+    using Combination = std::vector<NodeHierarchy::Parent>;
+
+    constexpr unsigned int hanging = numbers::invalid_unsigned_int;
+
+
+
+    /// What a rank knows of the nodes at its vertices.
+    template <int dim>
+    class VertexNodes
+    {
+    public:
+      explicit VertexNodes(const AdmissibleSpace<dim> &space)
+        : space(space)
+        , node(space.dof_handler.get_triangulation().n_vertices(),
+               numbers::invalid_dof_index)
+        , is_at_owned_cell(node.size(), false)
+      {
+        for (const auto &cell : space.dof_handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                const unsigned int vertex = cell->vertex_index(v);
+                node[vertex]              = cell->vertex_dof_index(v, 0) / dim;
+                if (cell->is_locally_owned())
+                  is_at_owned_cell[vertex] = true;
+              }
+      }
+
+      /// Whether this rank owns the node at a vertex.
+      bool
+      owns(const unsigned int vertex) const
+      {
+        return node[vertex] != numbers::invalid_dof_index &&
+               space.owned.is_element(node[vertex] * dim);
+      }
+
+      unsigned int
+      position(const unsigned int vertex) const
+      {
+        return space.owned.index_within_set(node[vertex] * dim) / dim;
+      }
+
+      bool
+      hangs(const unsigned int vertex) const
+      {
+        return space.cartesian_hanging_nodes().is_constrained(node[vertex] *
+                                                              dim);
+      }
+
+      /// Whether this rank knows by itself whether the node hangs: all cells
+      /// around it are owned or ghosts.
+      bool
+      is_known(const unsigned int vertex) const
+      {
+        return is_at_owned_cell[vertex];
+      }
+
+      /// The node at a vertex, or those that it hangs on.
+      Combination
+      resolve(const unsigned int vertex) const
+      {
+        if (!hangs(vertex))
+          return {{node[vertex], 1.}};
+        Combination result;
+        for (const auto &[dof, weight] :
+             *space.cartesian_hanging_nodes().get_constraint_entries(
+               node[vertex] * dim))
+          result.push_back({dof / dim, weight});
+        return result;
+      }
+
+    private:
+      const AdmissibleSpace<dim> &space;
+      std::vector<Node>           node;
+      std::vector<bool>           is_at_owned_cell;
+    };
+
+
+
+    /// A new node of a refined cell: 0, 1 or 2 halves of the cell in each
+    /// direction away from its first vertex.
+    template <int dim>
+    struct Midpoint
+    {
+      std::array<unsigned char, dim> halves;
+
+      /// The weight of a vertex of the cell there.
+      double
+      weight(const unsigned int vertex) const
+      {
+        double result = 1.;
+        for (unsigned int d = 0; d < dim; ++d)
+          result *=
+            ((vertex >> d) & 1U) != 0U ? 0.5 * halves[d] : 1. - 0.5 * halves[d];
+        return result;
+      }
+    };
+
+
+
+    /**
+     * What vertices of refined cells are that lie apart from the owned cells of
+     * this rank. A rank asks for a vertex by a cell and a number in it; the
+     * rank that owns the node has all cells around it. Collective.
+     */
+    template <int dim>
+    std::vector<Combination>
+    ask_others(const std::vector<std::pair<CellId::binary_type, unsigned int>>
+                                          &questions,
+               const VertexNodes<dim>     &nodes,
+               const AdmissibleSpace<dim> &space)
+    {
+      std::vector<Combination> answers(questions.size());
+      if (Utilities::MPI::n_mpi_processes(space.communicator) == 1)
+        return answers;
+
+      const auto &triangulation = space.dof_handler.get_triangulation();
+      // One for each question, empty where another rank is the owner.
+      std::map<unsigned int, std::vector<Combination>> to_send;
+      const auto                                       all =
+        Utilities::MPI::all_gather(space.communicator, questions);
+      for (unsigned int rank = 0; rank < all.size(); ++rank)
+        for (unsigned int q = 0; q < all[rank].size(); ++q)
+          {
+            to_send[rank].resize(all[rank].size());
+            const CellId id(all[rank][q].first);
+            auto         cell = triangulation.create_cell_iterator(
+              CellId(id.get_coarse_cell_id(), std::vector<std::uint8_t>()));
+            bool is_here = true;
+            for (const auto child : id.get_child_indices())
+              {
+                is_here = cell->has_children();
+                if (!is_here)
+                  break;
+                cell = cell->child(child);
+              }
+            if (!is_here)
+              continue;
+            const unsigned int vertex = cell->vertex_index(all[rank][q].second);
+            if (nodes.owns(vertex))
+              to_send[rank][q] = nodes.resolve(vertex);
+          }
+      for (const auto &received :
+           Utilities::MPI::some_to_some(space.communicator, to_send))
+        for (unsigned int q = 0; q < answers.size(); ++q)
+          if (!received.second[q].empty())
+            answers[q] = received.second[q];
+      return answers;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  NodeHierarchy
+  make_node_hierarchy(const AdmissibleSpace<dim> &space)
+  {
+    using CellIterator        = typename Triangulation<dim>::cell_iterator;
+    const auto &triangulation = space.dof_handler.get_triangulation();
+    const VertexNodes<dim> nodes(space);
+    const std::size_t      n_owned = space.owned.n_elements() / dim;
+
+    NodeHierarchy hierarchy;
+    hierarchy.n_levels = triangulation.n_global_levels();
+    hierarchy.begin =
+      n_owned > 0 ? space.owned.nth_index_in_set(0) / dim : Node(0);
+    hierarchy.end = hierarchy.begin + n_owned;
+    hierarchy.first_level.assign(n_owned, 0);
+    for (std::size_t n = 0; n < n_owned; ++n)
+      if (space.cartesian_hanging_nodes().is_constrained((hierarchy.begin + n) *
+                                                         dim))
+        hierarchy.first_level[n] = hanging;
+
+    // The refined cell that each node is a new one of.
+    struct Origin
+    {
+      int           level = -1, index = 0;
+      Midpoint<dim> midpoint;
+    };
+    std::vector<Origin> origins(n_owned);
+    for (const auto &cell : triangulation.cell_iterators())
+      if (cell->has_children())
+        for (unsigned int c = 0; c < cell->n_children(); ++c)
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              // Vertex v of child c; the cell has it, too, if v is c.
+              const unsigned int vertex = cell->child(c)->vertex_index(v);
+              if (v == c || !nodes.owns(vertex))
+                continue;
+              const unsigned int n = nodes.position(vertex);
+              if (hierarchy.first_level[n] != 0) // hanging, or known
+                continue;
+              hierarchy.first_level[n] = cell->level() + 1;
+              origins[n].level         = cell->level();
+              origins[n].index         = cell->index();
+              for (unsigned int d = 0; d < dim; ++d)
+                origins[n].midpoint.halves[d] =
+                  ((c >> d) & 1U) + ((v >> d) & 1U);
+            }
+
+    hierarchy.n_first =
+      Utilities::MPI::sum(Node(std::count(hierarchy.first_level.begin(),
+                                          hierarchy.first_level.end(),
+                                          0U)),
+                          space.communicator);
+
+    // Parents that other ranks know.
+    std::vector<std::pair<CellId::binary_type, unsigned int>> questions;
+    std::map<unsigned int, unsigned int> question_of_vertex;
+    for (const Origin &origin : origins)
+      if (origin.level >= 0)
+        {
+          const CellIterator cell(&triangulation, origin.level, origin.index);
+          for (const unsigned int v : cell->vertex_indices())
+            if (origin.midpoint.weight(v) > 0. &&
+                !nodes.is_known(cell->vertex_index(v)) &&
+                question_of_vertex
+                  .emplace(cell->vertex_index(v), questions.size())
+                  .second)
+              questions.emplace_back(cell->id().template to_binary<dim>(), v);
+        }
+    const std::vector<Combination> answers =
+      ask_others(questions, nodes, space);
+
+    std::map<Node, double> row;
+    hierarchy.row_begin.assign(1, 0);
+    hierarchy.row_begin.reserve(n_owned + 1);
+    for (const Origin &origin : origins)
+      {
+        if (origin.level >= 0)
+          {
+            const CellIterator cell(&triangulation, origin.level, origin.index);
+            row.clear();
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                const double weight = origin.midpoint.weight(v);
+                if (weight == 0.)
+                  continue;
+                const unsigned int vertex = cell->vertex_index(v);
+                const Combination  parent =
+                  nodes.is_known(vertex) ?
+                     nodes.resolve(vertex) :
+                     answers[question_of_vertex.at(vertex)];
+                AssertThrow(!parent.empty(), ExcInternalError());
+                for (const auto &[node, share] : parent)
+                  row[node] += weight * share;
+              }
+            for (const auto &[node, weight] : row)
+              hierarchy.parents.push_back({node, weight});
+          }
+        hierarchy.row_begin.push_back(hierarchy.parents.size());
+      }
+    space.for_each_rotated_node(
+      [&](const Node first_dof, const Tensor<2, dim> &directions) {
+        Tensor<2, 3> padded;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            padded[i][j] = directions[i][j];
+        hierarchy.frames[first_dof / dim] = padded;
+      });
+    return hierarchy;
+  }
+
+
+
+  template NodeHierarchy
+  make_node_hierarchy(const AdmissibleSpace<2> &);
+  template NodeHierarchy
+  make_node_hierarchy(const AdmissibleSpace<3> &);
+} // namespace Viscoplastic

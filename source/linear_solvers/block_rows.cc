@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/linear_solvers/block_rows.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    using Node = NodeHierarchy::Node;
+
+    constexpr unsigned int none = std::numeric_limits<unsigned int>::max();
+
+
+
+    /// Consecutive numbers for nodes: the owned ones first, others as they
+    /// come.
+    class LocalNumbers
+    {
+    public:
+      LocalNumbers(const std::vector<Node> &owned,
+                   const Node               begin,
+                   const Node               end)
+        : begin(begin)
+        , end(end)
+        , nodes(owned)
+        , number_of_owned(end - begin, none)
+      {
+        for (unsigned int i = 0; i < owned.size(); ++i)
+          number_of_owned[owned[i] - begin] = i;
+      }
+
+      unsigned int
+      operator()(const Node node)
+      {
+        if (node >= begin && node < end)
+          return number_of_owned[node - begin];
+        const auto [entry, is_new] = others.emplace(node, nodes.size());
+        if (is_new)
+          nodes.push_back(node);
+        return entry->second;
+      }
+
+      /// Numbers to nodes.
+      const std::vector<Node> &
+      all() const
+      {
+        return nodes;
+      }
+
+    private:
+      const Node                   begin, end;
+      std::vector<Node>            nodes;
+      std::vector<unsigned int>    number_of_owned;
+      std::map<Node, unsigned int> others;
+    };
+
+
+
+    /// A block on its way to the rank that owns the row.
+    template <int dim>
+    struct Entry
+    {
+      Node           row, column;
+      NodeBlock<dim> block;
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int)
+      {
+        archive &row &column &block;
+      }
+    };
+
+
+
+    /// Add what other ranks have to rows. Collective.
+    template <int dim>
+    BlockRows<dim>
+    exchange(const BlockRows<dim>                                  &rows,
+             const std::map<unsigned int, std::vector<Entry<dim>>> &to_send,
+             LocalNumbers                                          &number,
+             const MPI_Comm communicator)
+    {
+      std::map<unsigned int, std::map<Node, NodeBlock<dim>>> sums;
+      // In the order of the ranks: sums do not depend on who is first.
+      for (const auto &from :
+           Utilities::MPI::some_to_some(communicator, to_send))
+        for (const Entry<dim> &entry : from.second)
+          {
+            const auto [place, is_new] =
+              sums[number(entry.row)].emplace(entry.column, entry.block);
+            if (!is_new)
+              place->second += entry.block;
+          }
+      BlockRows<dim> result;
+      result.begin.reserve(rows.begin.size());
+      for (unsigned int row = 0; row < rows.n_rows(); ++row)
+        {
+          const auto sum = sums.find(row);
+          if (sum != sums.end())
+            for (std::size_t e = rows.begin[row]; e < rows.begin[row + 1]; ++e)
+              {
+                const auto [place, is_new] =
+                  sum->second.emplace(rows.columns[e], rows.values[e]);
+                if (!is_new)
+                  place->second += rows.values[e];
+              }
+          if (sum != sums.end())
+            for (const auto &[column, block] : sum->second)
+              {
+                result.columns.push_back(column);
+                result.values.push_back(block);
+              }
+          else
+            {
+              result.columns.insert(result.columns.end(),
+                                    rows.columns.begin() + rows.begin[row],
+                                    rows.columns.begin() + rows.begin[row + 1]);
+              result.values.insert(result.values.end(),
+                                   rows.values.begin() + rows.begin[row],
+                                   rows.values.begin() + rows.begin[row + 1]);
+            }
+          result.begin.push_back(result.columns.size());
+        }
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  BlockRows<dim>
+  galerkin_product(const BlockRows<dim>    &A,
+                   const std::vector<Node> &owned_nodes,
+                   const std::vector<Node> &ghosts,
+                   const Interpolation     &P,
+                   const std::vector<Node> &coarse_nodes,
+                   const std::vector<Node> &begins,
+                   const MPI_Comm           communicator)
+  {
+    const unsigned int rank  = Utilities::MPI::this_mpi_process(communicator);
+    const Node         begin = begins[rank], end = begins[rank + 1];
+
+    // Rows of P by consecutive coarse numbers, and its columns (rows of P^T)
+    // over the owned fine nodes.
+    LocalNumbers              number(coarse_nodes, begin, end);
+    std::vector<unsigned int> parents(P.parents.size());
+    for (std::size_t e = 0; e < parents.size(); ++e)
+      parents[e] = number(P.parents[e].node);
+    const std::vector<Node>  &coarse = number.all();
+    std::vector<std::size_t>  child_begin(coarse.size() + 1, 0);
+    const std::size_t         n_owned_entries = P.begin[A.n_rows()];
+    std::vector<unsigned int> children(n_owned_entries);
+    for (std::size_t e = 0; e < n_owned_entries; ++e)
+      ++child_begin[parents[e] + 1];
+    for (unsigned int I = 0; I < coarse.size(); ++I)
+      child_begin[I + 1] += child_begin[I];
+    {
+      std::vector<std::size_t> next(child_begin.begin(), child_begin.end() - 1);
+      for (unsigned int i = 0; i < A.n_rows(); ++i)
+        for (std::size_t e = P.begin[i]; e < P.begin[i + 1]; ++e)
+          children[next[parents[e]]++] = i;
+    }
+
+    // Columns of A as rows of P.
+    std::vector<unsigned int> fine_column(A.columns.size());
+    {
+      LocalNumbers fine(owned_nodes, begin, end);
+      for (std::size_t e = 0; e < A.columns.size(); ++e)
+        {
+          const Node node = A.columns[e];
+          fine_column[e] =
+            node >= begin && node < end ?
+              fine(node) :
+              owned_nodes.size() +
+                (std::lower_bound(ghosts.begin(), ghosts.end(), node) -
+                 ghosts.begin());
+        }
+    }
+
+    // The pattern, coarse row by coarse row.
+    std::vector<std::size_t>                   row_begin(1, 0);
+    std::vector<unsigned int>                  columns;
+    std::vector<unsigned int>                  seen_in(coarse.size(), none);
+    std::vector<std::pair<Node, unsigned int>> in_order;
+    for (unsigned int I = 0; I < coarse.size(); ++I)
+      {
+        in_order.clear();
+        for (std::size_t c = child_begin[I]; c < child_begin[I + 1]; ++c)
+          for (std::size_t e = A.begin[children[c]];
+               e < A.begin[children[c] + 1];
+               ++e)
+            for (std::size_t p = P.begin[fine_column[e]];
+                 p < P.begin[fine_column[e] + 1];
+                 ++p)
+              if (seen_in[parents[p]] != I)
+                {
+                  seen_in[parents[p]] = I;
+                  in_order.emplace_back(coarse[parents[p]], parents[p]);
+                }
+        std::sort(in_order.begin(), in_order.end());
+        for (const auto &[node, J] : in_order)
+          {
+            (void)node;
+            columns.push_back(J);
+          }
+        row_begin.push_back(columns.size());
+      }
+
+    // The values, fine row by fine row: T = A_i P, then P^T T.
+    std::vector<NodeBlock<dim>> values(columns.size(), NodeBlock<dim>());
+    std::vector<unsigned int>   place(coarse.size(), none), touched;
+    std::vector<NodeBlock<dim>> sums;
+    for (unsigned int i = 0; i < A.n_rows(); ++i)
+      {
+        touched.clear();
+        sums.clear();
+        for (std::size_t e = A.begin[i]; e < A.begin[i + 1]; ++e)
+          for (std::size_t p = P.begin[fine_column[e]];
+               p < P.begin[fine_column[e] + 1];
+               ++p)
+            {
+              unsigned int &k = place[parents[p]];
+              if (k == none)
+                {
+                  k = touched.size();
+                  touched.push_back(parents[p]);
+                  sums.push_back(NodeBlock<dim>());
+                }
+              sums[k] += P.parents[p].weight * A.values[e];
+            }
+        for (std::size_t p = P.begin[i]; p < P.begin[i + 1]; ++p)
+          {
+            const unsigned int I = parents[p];
+            for (std::size_t e = row_begin[I]; e < row_begin[I + 1]; ++e)
+              if (place[columns[e]] != none)
+                values[e] += P.parents[p].weight * sums[place[columns[e]]];
+          }
+        for (const unsigned int J : touched)
+          place[J] = none;
+      }
+
+    BlockRows<dim> rows;
+    const auto     n_owned = coarse_nodes.size();
+    rows.begin.assign(row_begin.begin(), row_begin.begin() + n_owned + 1);
+    rows.columns.reserve(rows.begin.back());
+    for (std::size_t e = 0; e < rows.begin.back(); ++e)
+      rows.columns.push_back(coarse[columns[e]]);
+    rows.values.assign(values.begin(), values.begin() + rows.begin.back());
+    if (Utilities::MPI::n_mpi_processes(communicator) == 1)
+      return rows;
+
+    std::map<unsigned int, std::vector<Entry<dim>>> to_send;
+    for (unsigned int I = n_owned; I < coarse.size(); ++I)
+      {
+        const unsigned int owner =
+          std::upper_bound(begins.begin(), begins.end(), coarse[I]) -
+          begins.begin() - 1;
+        for (std::size_t e = row_begin[I]; e < row_begin[I + 1]; ++e)
+          to_send[owner].push_back({coarse[I], coarse[columns[e]], values[e]});
+      }
+    return exchange(rows, to_send, number, communicator);
+  }
+
+
+
+  template BlockRows<2>
+  galerkin_product(const BlockRows<2> &,
+                   const std::vector<Node> &,
+                   const std::vector<Node> &,
+                   const Interpolation &,
+                   const std::vector<Node> &,
+                   const std::vector<Node> &,
+                   const MPI_Comm);
+  template BlockRows<3>
+  galerkin_product(const BlockRows<3> &,
+                   const std::vector<Node> &,
+                   const std::vector<Node> &,
+                   const Interpolation &,
+                   const std::vector<Node> &,
+                   const std::vector<Node> &,
+                   const MPI_Comm);
+} // namespace Viscoplastic

@@ -28,6 +28,11 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1]
 
 N_PLAIN = 7
+SOLVERS = {
+    "direct": "direct",
+    "multigrid": "multigrid",
+    "algebraic": "algebraic multigrid",
+}
 WORK = ("wall_rate", "wall_load", "wall_contact", "wall_balance")
 
 SCENE = """
@@ -35,7 +40,8 @@ set Dimension = {dim}
 
 subsection Geometry
   set Generator = subdivided_hyper_rectangle
-  set Arguments = {cells} : {lower} : {upper} : true
+  set Arguments          = {cells} : {lower} : {upper} : true
+  set Global refinements = {refinements}
 end
 
 subsection Material
@@ -80,7 +86,10 @@ end
 
 
 def scene(dim, n, solver, n_steps, tolerance, directory):
-    """SLAB in 2D, PAD in 3D (see prm/verification), behind plain steps."""
+    """SLAB in 2D, PAD in 3D (see prm/verification), behind plain steps; n is
+    halved while it is even, for meshes to coarsen to."""
+    refinements = (n & -n).bit_length() - 1
+    n >>= refinements
     half = n_steps // 2
     length = 2.0 if dim == 2 else 1.5
     k = length / (2 * half)
@@ -104,6 +113,7 @@ def scene(dim, n, solver, n_steps, tolerance, directory):
     )
     return SCENE.format(
         dim=dim,
+        refinements=refinements,
         cells=f"{2 * n}, {n}" if dim == 2 else f"{n}, {n}, {n}",
         lower=", ".join(["0"] * dim),
         upper="2, 1" if dim == 2 else "1, 1, 1",
@@ -128,7 +138,8 @@ def measure(executable, work, dim, n, solver, n_steps, tolerance):
     name = f"{dim}d_{solver}"
     file = work / f"{name}.prm"
     file.write_text(
-        scene(dim, n, solver, n_steps, tolerance, work / name), encoding="utf-8"
+        scene(dim, n, SOLVERS[solver], n_steps, tolerance, work / name),
+        encoding="utf-8",
     )
     process = subprocess.run(
         [executable, str(file)],
@@ -176,10 +187,10 @@ def main():
         "cases",
         nargs="*",
         metavar="CASE",
-        help="2d-direct, 2d-multigrid, 3d-direct, 3d-multigrid (default: all)",
+        help="2d- or 3d-, then direct, multigrid or algebraic (default: all)",
     )
     parser.add_argument(
-        "--n2", type=int, default=360, help="cells over the height, 2D (%(default)s)"
+        "--n2", type=int, default=352, help="cells over the height, 2D (%(default)s)"
     )
     parser.add_argument(
         "--n3", type=int, default=32, help="cells along an edge, 3D (%(default)s)"
@@ -196,7 +207,7 @@ def main():
         help="the program (default: in build/)",
     )
     arguments = parser.parse_args()
-    known = ["2d-direct", "2d-multigrid", "3d-direct", "3d-multigrid"]
+    known = [f"{dim}d-{solver}" for dim in (2, 3) for solver in SOLVERS]
     for case in arguments.cases:
         if case not in known:
             parser.error(f"{case} is no case; the cases are {', '.join(known)}")

@@ -351,7 +351,7 @@ namespace Viscoplastic
       coarse_factor.factor.reset();
     make_fixed_masks();
     set_masks(untruncated, nullptr);
-    set_masks(truncated, nullptr);
+    masks_in_use.reset();
   }
 
 

@@ -72,48 +72,6 @@ namespace Viscoplastic
 
 
 
-    /**
-     * rest := b_i - sum_j A_ij x_j, as b_i - (sum_j A_ij) x_i - sum A_ij
-     * (x_j - x_i): of a smooth x the products cancel, all the more in long thin
-     * cells, and with them the digits that single precision has.
-     *
-     * Two sums at a time: a single one waits for each addition, and a sweep for
-     * each node.
-     */
-    template <int dim>
-    inline void
-    row_residual(const LevelBlock<dim> *a,
-                 const unsigned int    *columns,
-                 const unsigned int     n,
-                 const LevelBlock<dim> &row_sum,
-                 const float           *x_here,
-                 const float           *x,
-                 const float           *b,
-                 float                 *rest)
-    {
-      const std::array<float, dim> here = values_of<dim>(x_here);
-      FourNumbers<dim>             even = {}, odd = {};
-      add_product<dim>(row_sum, here, odd);
-      for (unsigned int e = 0; e + 1 < n; e += 2)
-        {
-          add_product<dim>(a[e],
-                           difference<dim>(x + columns[e] * dim, here),
-                           even);
-          add_product<dim>(a[e + 1],
-                           difference<dim>(x + columns[e + 1] * dim, here),
-                           odd);
-        }
-      if (n % 2 == 1)
-        add_product<dim>(a[n - 1],
-                         difference<dim>(x + columns[n - 1] * dim, here),
-                         even);
-      even += odd;
-      for (unsigned int d = 0; d < dim; ++d)
-        rest[d] = b[d] - component<dim>(even, d);
-    }
-
-
-
     template <int dim>
     inline void
     add(const LevelBlock<dim> &a, const float *r, float *x)
@@ -388,6 +346,41 @@ namespace Viscoplastic
 
 
   template <int dim>
+  inline void
+  MultigridLevel<dim>::row_residual(const unsigned int i,
+                                    const unsigned int n,
+                                    const float       *x,
+                                    const float       *b,
+                                    float             *rest) const
+  {
+    // Two sums at a time: a single one waits for each addition, and a sweep for
+    // each node.
+    const LevelBlock<dim>       *a      = values.data() + rows[i].values;
+    const unsigned int          *column = columns.data() + rows[i].columns;
+    const std::array<float, dim> here   = values_of<dim>(x + i * dim);
+    FourNumbers<dim>             even = {}, odd = {};
+    add_product<dim>(row_sums[i], here, odd);
+    for (unsigned int e = 0; e + 1 < n; e += 2)
+      {
+        add_product<dim>(a[e],
+                         difference<dim>(x + column[e] * dim, here),
+                         even);
+        add_product<dim>(a[e + 1],
+                         difference<dim>(x + column[e + 1] * dim, here),
+                         odd);
+      }
+    if (n % 2 == 1)
+      add_product<dim>(a[n - 1],
+                       difference<dim>(x + column[n - 1] * dim, here),
+                       even);
+    even += odd;
+    for (unsigned int d = 0; d < dim; ++d)
+      rest[d] = b[i * dim + d] - component<dim>(even, d);
+  }
+
+
+
+  template <int dim>
   void
   MultigridLevel<dim>::smooth_forward_from_zero(Vector       &x,
                                                 const Vector &b) const
@@ -400,14 +393,7 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           x_begin[i * dim + d] = 0.f;
         float rest[dim];
-        row_residual<dim>(&values[rows[i].values],
-                          &columns[rows[i].columns],
-                          rows[i].n_lower,
-                          row_sums[i],
-                          x_begin + i * dim,
-                          x_begin,
-                          b_begin + i * dim,
-                          rest);
+        row_residual(i, rows[i].n_lower, x_begin, b_begin, rest);
         add<dim>(inverse[i], rest, x_begin + i * dim);
       }
   }
@@ -425,14 +411,7 @@ namespace Viscoplastic
     for (unsigned int i = n_owned; i-- > 0;)
       {
         float rest[dim];
-        row_residual<dim>(&values[rows[i].values],
-                          &columns[rows[i].columns],
-                          rows[i].n,
-                          row_sums[i],
-                          x_begin + i * dim,
-                          x_begin,
-                          b_begin + i * dim,
-                          rest);
+        row_residual(i, rows[i].n, x_begin, b_begin, rest);
         add<dim>(inverse[i], rest, x_begin + i * dim);
       }
     if (!is_serial)
@@ -453,14 +432,7 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < n_owned; ++i)
       {
         float rest[dim];
-        row_residual<dim>(&values[rows[i].values],
-                          &columns[rows[i].columns],
-                          rows[i].n,
-                          row_sums[i],
-                          x_begin + i * dim,
-                          x_begin,
-                          b_begin + i * dim,
-                          rest);
+        row_residual(i, rows[i].n, x_begin, b_begin, rest);
         for (unsigned int d = 0; d < dim; ++d)
           r_begin[i * dim + d] = rest[d];
       }

@@ -86,12 +86,6 @@ namespace Viscoplastic
                    const std::vector<NodeHierarchy::Node> &begins,
                    const MPI_Comm                          communicator);
 
-    unsigned int
-    n_owned_nodes() const
-    {
-      return n_owned;
-    }
-
     /// The local number of a node that is owned or a ghost.
     unsigned int
     local_number(const NodeHierarchy::Node node) const;
@@ -150,6 +144,19 @@ namespace Viscoplastic
     mutable Vector x, b, r;
 
   private:
+    /**
+     * rest := b_i - sum_j A_ij x_j over the diagonal and the first @p n
+     * neighbors, as b_i - (sum_j A_ij) x_i - sum A_ij (x_j - x_i): of a smooth
+     * x the products cancel, all the more in long thin cells, and with them the
+     * digits that single precision has.
+     */
+    void
+    row_residual(const unsigned int i,
+                 const unsigned int n,
+                 const float       *x,
+                 const float       *b,
+                 float             *rest) const;
+
     std::vector<NodeHierarchy::Node>                   nodes, ghosts;
     NodeHierarchy::Node                                begin, end;
     unsigned int                                       n_owned;

@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 namespace
@@ -86,6 +87,14 @@ namespace
 
 
 
+  void
+  complain(const std::string &sentence)
+  {
+    std::cerr << "viscoplastic_contact: " << sentence << std::endl;
+  }
+
+
+
   /// What a task prints that needs no scene.
   std::string
   text_of(const CommandLine::Task task)
@@ -115,44 +124,53 @@ main(int argc, char *argv[])
 {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool                     has_terminal = stdout_is_terminal();
-  run_without_mpi_job();
-  // The libraries that MPI_InitFinalize starts must not see our arguments:
-  // PETSc has a --help of its own.
-  int                                      n_hidden_arguments = 1;
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(n_hidden_arguments, argv, 1);
-  const unsigned int                       rank =
-    dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
-  const bool is_parallel =
-    dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1;
-
-  ignore_file_size_signal();
-
-  const auto complain = [](const std::exception &exception) {
-    std::cerr << "viscoplastic_contact: " << reason(exception) << std::endl;
-  };
+  const bool                     is_single    = run_without_mpi_job();
 
   CommandLine command_line;
+  std::string text, complaint;
   try
     {
       command_line = read_command_line(arguments);
+      text         = text_of(command_line.task);
     }
   catch (const std::exception &exception)
     {
+      complaint = reason(exception);
+    }
+
+  // A text needs no MPI, whose start takes longer, unless one of several
+  // processes is to print it. The libraries that MPI_InitFinalize starts must
+  // not see our arguments: PETSc has a --help of its own.
+  int n_hidden_arguments = 1;
+  std::optional<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
+  if (!is_single || (text.empty() && complaint.empty()))
+    mpi.emplace(n_hidden_arguments, argv, 1);
+  unsigned int rank        = 0;
+  bool         is_parallel = false;
+  if (mpi)
+    {
+      rank        = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+      is_parallel = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1;
+    }
+
+  ignore_file_size_signal();
+
+  if (!complaint.empty())
+    {
       if (rank == 0)
-        complain(exception);
+        complain(complaint);
       return 2;
     }
 
   try
     {
-      const std::string text = text_of(command_line.task);
       if (text.empty())
         {
           const std::string interruption = run(command_line, has_terminal);
           if (interruption.empty())
             return 0;
           if (rank == 0)
-            std::cerr << "viscoplastic_contact: " << interruption << std::endl;
+            complain(interruption);
           return 3;
         }
       // A batch script that forgets the scene must not go on.
@@ -169,7 +187,7 @@ main(int argc, char *argv[])
       // alone must speak, too, and end the others.
       if (rank > 0)
         std::this_thread::sleep_for(std::chrono::seconds(2));
-      complain(exception);
+      complain(reason(exception));
       if (is_parallel)
         MPI_Abort(MPI_COMM_WORLD, 1);
       return 1;

@@ -16,9 +16,10 @@ namespace Viscoplastic
    * is what talks without these libraries.
    * Call this before MPI_Init; it says so to Open MPI unless the environment is
    * that of a launcher or says something else. Other implementations of MPI
-   * take no notice.
+   * take no notice. Returns whether nobody has launched the process as part of
+   * a job.
    */
-  inline void
+  inline bool
   run_without_mpi_job()
   {
     // Set by mpirun of Open MPI, by launchers that speak PMIx or PMI (prterun,
@@ -26,8 +27,9 @@ namespace Viscoplastic
     for (const char *name :
          {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "SLURM_STEP_ID"})
       if (std::getenv(name) != nullptr)
-        return;
+        return false;
     setenv("OMPI_MCA_ess_singleton_isolated", "1", /* overwrite = */ 0);
     setenv("OMPI_MCA_pml", "ob1", /* overwrite = */ 0);
+    return true;
   }
 } // namespace Viscoplastic

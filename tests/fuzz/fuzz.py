@@ -220,8 +220,8 @@ def main():
     )
     parser.add_argument(
         "--server",
-        default=os.environ.get("VISCOPLASTIC_CONTACT_FUZZ_SERVER", ""),
-        help="viscoplastic_contact_fuzz_server, which saves starting the program",
+        default=os.environ.get("VISCOPLASTIC_CONTACT_SERVER", ""),
+        help="viscoplastic_contact_server, which saves starting the program",
     )
     parser.add_argument("--keep", default="fuzz_defects", help="directory for defects")
     parser.add_argument(

@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs the program on the files of a case, under limits of time and memory.
 
-Starting it costs a hundred times what it does on these files: libraries are
-linked, MPI starts.  The server (server.cc) has done that once and forks for
-each case.  A case that seems to be a defect is run again by the program
-itself, which has the last word.
+Starting it costs a hundred times what it does on these files, which a server
+saves.  A case that seems to be a defect is run again by the program itself,
+which has the last word.
 """
 
 import os
 import resource
 import signal
 import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "server"))
+
+import program_server
 
 MEGABYTE = 1024 * 1024
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]
@@ -79,29 +84,14 @@ def words(work):
 
 
 class Server:
-    """A process of server.cc."""
+    """The program, started once, under these limits."""
 
     def __init__(self, executable, limits):
-        self.limits = limits
-        memory = limits.memory or 0
-        self.process = subprocess.Popen(
-            [executable, str(limits.cpu), str(limits.clock), str(memory)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            env=environment(),
-            text=True,
+        self.server = program_server.Server(
+            executable, limits.cpu, limits.clock, limits.memory or 0, environment()
         )
+        self.close = self.server.close
 
     def run(self, work, arguments):
-        # arguments hold no blanks: what is strange is in files
-        self.process.stdin.write(" ".join([str(work), *arguments]) + "\n")
-        self.process.stdin.flush()
-        answer = self.process.stdout.readline()
-        if not answer:
-            raise SystemExit("the server of the fuzzer has ended")
-        return int(answer), *words(work)
-
-    def close(self):
-        self.process.stdin.close()
-        self.process.wait()
+        """(exit code or minus the signal, stdout, stderr)"""
+        return self.server.run(work, arguments), *words(work)

@@ -11,11 +11,14 @@ otherwise from build/ beside prm/.  Results go to temporary directories; set
 KEEP_RESULTS to a directory to keep them.
 """
 
+import atexit
 import csv
+import functools
 import json
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 import weakref
@@ -26,9 +29,15 @@ import meshio
 import numpy as np
 
 SOURCE = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / "tests" / "server"))
+
+import program_server
+
 EXECUTABLE = os.environ.get(
     "VISCOPLASTIC_CONTACT", str(SOURCE / "build" / "viscoplastic_contact")
 )
+# The program for many runs of one process (tests/server), or none.
+SERVER = os.environ.get("VISCOPLASTIC_CONTACT_SERVER")
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]
 
 # The algebraic error at which iterations stop at the latest where a scene leaves
@@ -186,6 +195,34 @@ class Run:
         return json.loads((self.directory / "run.json").read_text())
 
 
+def run_program(arguments, ranks, work):
+    """The finished program as a subprocess.CompletedProcess; on one rank that of
+    a server where there is one."""
+    if ranks == 1 and SERVER:
+        code = server().run(work, arguments)
+        words = [(work / name).read_text() for name in ("stdout", "stderr")]
+        return subprocess.CompletedProcess(arguments, code, *words)
+    launcher = [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []
+    return subprocess.run(
+        [*launcher, EXECUTABLE, *map(str, arguments)],
+        cwd=work,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@functools.cache
+def server():
+    """The program, started at its first run; no limits but an hour."""
+    process = program_server.Server(
+        SERVER, 3600, 3600, 0, {**os.environ, "OMP_NUM_THREADS": "1"}
+    )
+    atexit.register(process.close)
+    return process
+
+
 def run(scene, overrides=None, ranks=1, text=None, check=True):
     """Run the program.
 
@@ -208,17 +245,7 @@ def run(scene, overrides=None, ranks=1, text=None, check=True):
     files[0].write_text(text)
     files[1].write_text(as_prm(overrides))
 
-    command = [EXECUTABLE, *map(str, files)]
-    if ranks > 1:
-        command = MPIRUN + ["-n", str(ranks)] + command
-    process = subprocess.run(
-        command,
-        cwd=work,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    process = run_program(files, ranks, work)
     result = Run(work / "results", process)
     if not keep:
         # results live as long as the Run

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// The program for the fuzzer: started once, forked for each case. A line
-// `directory argument ...' on standard input asks for a run of the program
+// The program for tests with many runs: started once, forked for each of them.
+// A line `directory argument ...' on standard input asks for a run of the program
 // there, whose output goes to the files stdout and stderr; a line with its exit
 // code, or minus the number of the signal that ended it, answers.
 

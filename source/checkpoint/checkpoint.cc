@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
+#include <viscoplastic_contact/mesh/cell_order.h>
 
 #include <algorithm>
 #include <array>
@@ -76,12 +77,11 @@ namespace Viscoplastic
   pack_mesh(const parallel::distributed::Triangulation<dim> &triangulation)
   {
     std::vector<unsigned int> words;
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          const auto binary = cell->id().template to_binary<dim>();
-          words.insert(words.end(), binary.begin(), binary.end());
-        }
+    for (const auto &cell : owned_cells(triangulation))
+      {
+        const auto binary = cell->id().template to_binary<dim>();
+        words.insert(words.end(), binary.begin(), binary.end());
+      }
     BinaryWriter archive;
     archive     &words;
     return archive.bytes();
@@ -107,24 +107,23 @@ namespace Viscoplastic
     for (unsigned int pass = 0; pass < 3 * max_level(dim); ++pass)
       {
         bool differs = false, contradicts = false;
-        for (const auto &cell : triangulation.active_cell_iterators())
-          if (cell->is_locally_owned())
-            {
-              // The leaf before `next' is the cell itself, or contains it, or
-              // ends where the cell begins.
-              const CellId id = cell->id();
-              const auto   next =
-                std::upper_bound(leaves.begin(), leaves.end(), id);
-              if (next != leaves.begin() && *(next - 1) == id)
-                continue;
-              differs = true;
-              if (next != leaves.end() && id.is_ancestor_of(*next))
-                cell->set_refine_flag();
-              else if (next != leaves.begin() && (next - 1)->is_ancestor_of(id))
-                cell->set_coarsen_flag();
-              else
-                contradicts = true;
-            }
+        for (const auto &cell : owned_cells(triangulation))
+          {
+            // The leaf before `next' is the cell itself, or contains it, or
+            // ends where the cell begins.
+            const CellId id = cell->id();
+            const auto   next =
+              std::upper_bound(leaves.begin(), leaves.end(), id);
+            if (next != leaves.begin() && *(next - 1) == id)
+              continue;
+            differs = true;
+            if (next != leaves.end() && id.is_ancestor_of(*next))
+              cell->set_refine_flag();
+            else if (next != leaves.begin() && (next - 1)->is_ancestor_of(id))
+              cell->set_coarsen_flag();
+            else
+              contradicts = true;
+          }
         require(!Utilities::MPI::logical_or(contradicts, communicator));
         if (!Utilities::MPI::logical_or(differs, communicator))
           {
@@ -150,41 +149,40 @@ namespace Viscoplastic
     std::vector<std::uint8_t>   vertices; // a bit a vertex with values here
     std::vector<double>         nodal, samples, estimate;
     std::size_t                 owned_cell = 0;
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          std::uint8_t with_values = 0;
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              const auto dof = cell->vertex_dof_index(v, 0);
-              if (!space.owned.is_element(dof) ||
-                  is_packed[space.owned.index_within_set(dof)])
-                continue;
-              is_packed[space.owned.index_within_set(dof)] = true;
-              with_values |= 1 << v;
-              const auto first = space.relevant.index_within_set(dof);
-              for (const DistributedVector *field : fields)
-                if (field->size() > 0)
-                  nodal.insert(nodal.end(),
-                               field->begin() + first,
-                               field->begin() + first + dim);
-            }
-          vertices.push_back(with_values);
-          for (const IrreversibleStress *field : sample_fields(state))
-            if (!field->empty())
-              for (unsigned int s = 0; s < stress_space.n_samples; ++s)
-                {
-                  const auto &sample =
-                    (*field)[owned_cell * stress_space.n_samples + s];
-                  samples.insert(samples.end(),
-                                 sample.begin_raw(),
-                                 sample.begin_raw() +
-                                   sample.n_independent_components);
-                }
-          if (squared_estimate.size() > 0)
-            estimate.push_back(squared_estimate[cell->active_cell_index()]);
-          ++owned_cell;
-        }
+    for (const auto &cell : space.cells)
+      {
+        std::uint8_t with_values = 0;
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            const auto dof = cell->vertex_dof_index(v, 0);
+            if (!space.owned.is_element(dof) ||
+                is_packed[space.owned.index_within_set(dof)])
+              continue;
+            is_packed[space.owned.index_within_set(dof)] = true;
+            with_values |= 1 << v;
+            const auto first = space.relevant.index_within_set(dof);
+            for (const DistributedVector *field : fields)
+              if (field->size() > 0)
+                nodal.insert(nodal.end(),
+                             field->begin() + first,
+                             field->begin() + first + dim);
+          }
+        vertices.push_back(with_values);
+        for (const IrreversibleStress *field : sample_fields(state))
+          if (!field->empty())
+            for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+              {
+                const auto &sample =
+                  (*field)[owned_cell * stress_space.n_samples + s];
+                samples.insert(samples.end(),
+                               sample.begin_raw(),
+                               sample.begin_raw() +
+                                 sample.n_independent_components);
+              }
+        if (squared_estimate.size() > 0)
+          estimate.push_back(squared_estimate[cell->active_cell_index()]);
+        ++owned_cell;
+      }
     BinaryWriter                       archive;
     archive &vertices &nodal &samples &estimate;
     return archive.bytes();
@@ -217,11 +215,11 @@ namespace Viscoplastic
       std::size_t owned_index;
     };
     std::vector<LocalCell> cells;
-    std::size_t            n_owned = 0;
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (!cell->is_artificial())
-        cells.push_back(
-          {cell->id(), cell, cell->is_locally_owned() ? n_owned++ : 0});
+    for (const auto &cell : space.cells)
+      cells.push_back({cell->id(), cell, cells.size()});
+    const std::size_t n_owned = cells.size();
+    for (const auto &cell : ghost_cells(space.dof_handler))
+      cells.push_back({cell->id(), cell, 0});
     std::sort(cells.begin(),
               cells.end(),
               [](const LocalCell &a, const LocalCell &b) {

@@ -4,12 +4,37 @@
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
+#include <viscoplastic_contact/mesh/cell_order.h>
 
 #include <iomanip>
 #include <sstream>
 
 namespace Viscoplastic
 {
+  template <int dim>
+  void
+  distribute_nodes(const FiniteElement<dim> &fe, DoFHandler<dim> &dof_handler)
+  {
+    dof_handler.distribute_dofs(fe);
+    const IndexSet owned = dof_handler.locally_owned_dofs();
+    std::vector<types::global_dof_index> new_numbers(
+      owned.n_elements(), numbers::invalid_dof_index);
+    std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+    std::size_t                          n_numbered = 0;
+    for (const auto &cell : owned_cells(dof_handler))
+      {
+        cell->get_dof_indices(dofs);
+        for (const auto dof : dofs)
+          if (owned.is_element(dof))
+            if (auto &number = new_numbers[owned.index_within_set(dof)];
+                number == numbers::invalid_dof_index)
+              number = owned.nth_index_in_set(n_numbered++);
+      }
+    dof_handler.renumber_dofs(new_numbers);
+  }
+
+
+
   template <int dim>
   AdmissibleSpace<dim>::AdmissibleSpace(const DoFHandler<dim> &dof_handler,
                                         const Scene<dim>      &scene)
@@ -18,6 +43,7 @@ namespace Viscoplastic
     , communicator(dof_handler.get_communicator())
     , owned(dof_handler.locally_owned_dofs())
     , relevant(DoFTools::extract_locally_relevant_dofs(dof_handler))
+    , cells(owned_cells(dof_handler))
     , first_owned(owned.n_elements() > 0 ?
                     relevant.index_within_set(owned.nth_index_in_set(0)) :
                     0)
@@ -34,17 +60,15 @@ namespace Viscoplastic
     any_hanging =
       Utilities::MPI::max(hanging_cartesian.n_constraints(), communicator) > 0;
 
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int v : cell->vertex_indices())
-          {
-            const auto dof = cell->vertex_dof_index(v, 0);
-            Assert(cell->vertex_dof_index(v, dim - 1) == dof + dim - 1,
-                   ExcMessage("The components of a node must be consecutive."));
-            if (owned.is_element(dof))
-              node_position[owned.index_within_set(dof) / dim] =
-                cell->vertex(v);
-          }
+    for (const auto &cell : cells)
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          const auto dof = cell->vertex_dof_index(v, 0);
+          Assert(cell->vertex_dof_index(v, dim - 1) == dof + dim - 1,
+                 ExcMessage("The components of a node must be consecutive."));
+          if (owned.is_element(dof))
+            node_position[owned.index_within_set(dof) / dim] = cell->vertex(v);
+        }
     make_frames();
     make_hanging_nodes_in_frames();
     check_rigid_motions();
@@ -526,6 +550,10 @@ namespace Viscoplastic
 
 
 
+  template void
+  distribute_nodes(const FiniteElement<2> &, DoFHandler<2> &);
+  template void
+  distribute_nodes(const FiniteElement<3> &, DoFHandler<3> &);
   template class AdmissibleSpace<2>;
   template class AdmissibleSpace<3>;
 } // namespace Viscoplastic

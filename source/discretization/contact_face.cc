@@ -145,55 +145,53 @@ namespace Viscoplastic
                                   update_values | update_JxW_values |
                                     update_quadrature_points);
     const auto       &hanging = space.cartesian_hanging_nodes();
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            {
-              const types::boundary_id id        = cell->face(f)->boundary_id();
-              const auto              &condition = space.scene.boundary.at(id);
-              if (!condition.has_friction())
-                continue;
-              face_values.reinit(cell, f);
-              for (const unsigned int q :
-                   face_values.quadrature_point_indices())
-                {
-                  for (const unsigned int v : cell->vertex_indices())
-                    {
-                      const double value = face_values.shape_value(v * dim, q) *
-                                           face_values.JxW(q);
-                      if (std::abs(value) < 1e-12 * face_values.JxW(q))
-                        continue; // not a vertex of the face
-                      const auto add = [&](const types::global_dof_index dof,
-                                           const double weight) {
-                        const auto node = node_of_dof.find(dof);
-                        if (node == node_of_dof.end())
-                          return; // held by other conditions
-                        for (unsigned int p = face.first_point[node->second];
-                             p < face.first_point[node->second + 1];
-                             ++p)
-                          if (std::count(boundary_ids[p].begin(),
-                                         boundary_ids[p].end(),
-                                         id) > 0)
-                            shares.push_back(
-                              {static_cast<unsigned int>(samples.size()),
-                               p,
-                               weight * value});
-                      };
-                      const auto dof = cell->vertex_dof_index(v, 0);
-                      if (hanging.is_constrained(dof))
-                        {
-                          for (const auto &[master, weight] :
-                               *hanging.get_constraint_entries(dof))
-                            add(master, weight);
-                        }
-                      else
-                        add(dof, 1.);
-                    }
-                  samples.push_back(
-                    {face_values.quadrature_point(q), &condition});
-                }
-            }
+    for (const auto &cell : space.cells)
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          {
+            const types::boundary_id id        = cell->face(f)->boundary_id();
+            const auto              &condition = space.scene.boundary.at(id);
+            if (!condition.has_friction())
+              continue;
+            face_values.reinit(cell, f);
+            for (const unsigned int q : face_values.quadrature_point_indices())
+              {
+                for (const unsigned int v : cell->vertex_indices())
+                  {
+                    const double value =
+                      face_values.shape_value(v * dim, q) * face_values.JxW(q);
+                    if (std::abs(value) < 1e-12 * face_values.JxW(q))
+                      continue; // not a vertex of the face
+                    const auto add = [&](const types::global_dof_index dof,
+                                         const double                  weight) {
+                      const auto node = node_of_dof.find(dof);
+                      if (node == node_of_dof.end())
+                        return; // held by other conditions
+                      for (unsigned int p = face.first_point[node->second];
+                           p < face.first_point[node->second + 1];
+                           ++p)
+                        if (std::count(boundary_ids[p].begin(),
+                                       boundary_ids[p].end(),
+                                       id) > 0)
+                          shares.push_back(
+                            {static_cast<unsigned int>(samples.size()),
+                             p,
+                             weight * value});
+                    };
+                    const auto dof = cell->vertex_dof_index(v, 0);
+                    if (hanging.is_constrained(dof))
+                      {
+                        for (const auto &[master, weight] :
+                             *hanging.get_constraint_entries(dof))
+                          add(master, weight);
+                      }
+                    else
+                      add(dof, 1.);
+                  }
+                samples.push_back(
+                  {face_values.quadrature_point(q), &condition});
+              }
+          }
     point_weights.assign(face.points.size(), 0.);
     for (const Share &share : shares)
       point_weights[share.point] += share.value;

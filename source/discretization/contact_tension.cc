@@ -14,24 +14,23 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim> &space = stress_space.space;
     std::size_t                 index = 0;
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary())
-              {
-                const auto &condition =
-                  space.scene.boundary.at(cell->face(f)->boundary_id());
-                // Glue is meant to pull.
-                if (condition.role != BoundaryRole::contact ||
-                    !condition.is_bilateral() || condition.is_glued())
-                  continue;
-                faces.push_back(
-                  {index, condition.normal, cell->face(f)->measure()});
-                total_area += faces.back().area;
-              }
-          ++index;
-        }
+    for (const auto &cell : space.cells)
+      {
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            {
+              const auto &condition =
+                space.scene.boundary.at(cell->face(f)->boundary_id());
+              // Glue is meant to pull.
+              if (condition.role != BoundaryRole::contact ||
+                  !condition.is_bilateral() || condition.is_glued())
+                continue;
+              faces.push_back(
+                {index, condition.normal, cell->face(f)->measure()});
+              total_area += faces.back().area;
+            }
+        ++index;
+      }
     total_area = Utilities::MPI::sum(total_area, space.communicator);
   }
 

@@ -18,10 +18,9 @@ namespace Viscoplastic
     if (is_uniform)
       moduli.push_back(scene.materials[0]->stiffness(Point<dim>()));
     else
-      for (const auto &cell : space.dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
-          moduli.push_back(
-            scene.material(cell->material_id()).stiffness(cell->center()));
+      for (const auto &cell : space.cells)
+        moduli.push_back(
+          scene.material(cell->material_id()).stiffness(cell->center()));
     for (const Stiffness &stiffness : moduli)
       max_nu = std::max(max_nu, stiffness.poissons_ratio());
     max_nu = Utilities::MPI::max(max_nu, space.communicator);
@@ -112,20 +111,19 @@ namespace Viscoplastic
     FullMatrix<double> cell_matrix(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
     std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
     std::size_t                          index = 0;
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          fe_values.reinit(cell);
-          elastic_cell_matrix(fe_values,
-                              moduli(index++),
-                              mean_dilatation,
-                              cell_matrix);
-          cell->get_dof_indices(dofs);
-          space.rotate(dofs, cell_matrix);
-          space.hanging_nodes().distribute_local_to_global(cell_matrix,
-                                                           dofs,
-                                                           matrix);
-        }
+    for (const auto &cell : space.cells)
+      {
+        fe_values.reinit(cell);
+        elastic_cell_matrix(fe_values,
+                            moduli(index++),
+                            mean_dilatation,
+                            cell_matrix);
+        cell->get_dof_indices(dofs);
+        space.rotate(dofs, cell_matrix);
+        space.hanging_nodes().distribute_local_to_global(cell_matrix,
+                                                         dofs,
+                                                         matrix);
+      }
     matrix.compress(VectorOperation::add);
   }
 

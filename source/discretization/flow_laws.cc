@@ -58,11 +58,9 @@ namespace Viscoplastic
         std::map<const Material<dim> *, unsigned int> index;
         for (const auto &material : scene.materials)
           index.emplace(material.get(), index.size());
-        for (const auto &cell :
-             stress_space.space.dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned())
-            material_of_cell.push_back(
-              index.at(&scene.material(cell->material_id())));
+        for (const auto &cell : stress_space.space.cells)
+          material_of_cell.push_back(
+            index.at(&scene.material(cell->material_id())));
       }
 
     const AtTime start = at(0.);

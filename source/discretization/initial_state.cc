@@ -39,12 +39,11 @@ namespace Viscoplastic
                               QGauss<dim>(n_points),
                               update_gradients | update_JxW_values |
                                 update_quadrature_points);
-      for (const auto &cell : space.dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            fe_values.reinit(cell);
-            visit(cell, fe_values);
-          }
+      for (const auto &cell : space.cells)
+        {
+          fe_values.reinit(cell);
+          visit(cell, fe_values);
+        }
     }
 
 
@@ -107,20 +106,17 @@ namespace Viscoplastic
                         in_frames = space.owned_vector();
       if (space.scene.initial_displacement)
         {
-          for (const auto &cell : space.dof_handler.active_cell_iterators())
-            if (cell->is_locally_owned())
-              for (const unsigned int v : cell->vertex_indices())
-                {
-                  const auto dof = cell->vertex_dof_index(v, 0);
-                  if (!space.owned.is_element(dof))
-                    continue;
-                  const Tensor<1, dim> u =
-                    space.scene.initial_displacement->vector(cell->vertex(v),
-                                                             0.);
-                  for (unsigned int d = 0; d < dim; ++d)
-                    values.begin()[space.owned.index_within_set(dof) + d] =
-                      u[d];
-                }
+          for (const auto &cell : space.cells)
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                const auto dof = cell->vertex_dof_index(v, 0);
+                if (!space.owned.is_element(dof))
+                  continue;
+                const Tensor<1, dim> u =
+                  space.scene.initial_displacement->vector(cell->vertex(v), 0.);
+                for (unsigned int d = 0; d < dim; ++d)
+                  values.begin()[space.owned.index_within_set(dof) + d] = u[d];
+              }
           ghosted = values;
           space.to_frames(ghosted, in_frames);
         }

@@ -11,16 +11,15 @@ namespace Viscoplastic
     : space(space)
     , constant{space.owned_vector(), Tensor<1, dim>()}
   {
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            {
-              const auto &condition =
-                space.scene.boundary.at(cell->face(f)->boundary_id());
-              if (condition.carries_load())
-                faces.push_back({cell, f, &condition});
-            }
+    for (const auto &cell : space.cells)
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          {
+            const auto &condition =
+              space.scene.boundary.at(cell->face(f)->boundary_id());
+            if (condition.carries_load())
+              faces.push_back({cell, f, &condition});
+          }
     add(0., false, constant);
   }
 
@@ -60,17 +59,16 @@ namespace Viscoplastic
                                 QGauss<dim>(2),
                                 update_values | update_JxW_values |
                                   update_quadrature_points);
-        for (const auto &cell : space.dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned())
-            {
-              fe_values.reinit(cell);
-              for (const unsigned int q : fe_values.quadrature_point_indices())
-                add_at_point(fe_values,
-                             q,
-                             cell,
-                             b->vector(fe_values.quadrature_point(q), t) *
-                               fe_values.JxW(q));
-            }
+        for (const auto &cell : space.cells)
+          {
+            fe_values.reinit(cell);
+            for (const unsigned int q : fe_values.quadrature_point_indices())
+              add_at_point(fe_values,
+                           q,
+                           cell,
+                           b->vector(fe_values.quadrature_point(q), t) *
+                             fe_values.JxW(q));
+          }
       }
 
     FEFaceValues<dim> face_values(fe,

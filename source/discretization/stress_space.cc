@@ -37,39 +37,38 @@ namespace Viscoplastic
                             quadrature,
                             update_gradients | update_JxW_values |
                               update_quadrature_points);
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          fe_values.reinit(cell);
-          double volume = 0.;
+    for (const auto &cell : space.cells)
+      {
+        fe_values.reinit(cell);
+        double volume = 0.;
+        for (const unsigned int q : fe_values.quadrature_point_indices())
+          volume += fe_values.JxW(q);
+        volumes.push_back(volume);
+        for (const unsigned int v : cell->vertex_indices())
+          nodes.push_back(
+            space.relevant.index_within_set(cell->vertex_dof_index(v, 0)));
+        if (at_quadrature_points)
           for (const unsigned int q : fe_values.quadrature_point_indices())
-            volume += fe_values.JxW(q);
-          volumes.push_back(volume);
-          for (const unsigned int v : cell->vertex_indices())
-            nodes.push_back(
-              space.relevant.index_within_set(cell->vertex_dof_index(v, 0)));
-          if (at_quadrature_points)
-            for (const unsigned int q : fe_values.quadrature_point_indices())
-              {
-                weights.push_back(fe_values.JxW(q));
-                positions.push_back(fe_values.quadrature_point(q));
-                for (const unsigned int v : cell->vertex_indices())
-                  gradients.push_back(fe_values.shape_grad(v * dim, q));
-              }
-          else // P_Qh of a strain, (3.1): its mean
             {
-              weights.push_back(volume);
-              positions.push_back(cell->center());
+              weights.push_back(fe_values.JxW(q));
+              positions.push_back(fe_values.quadrature_point(q));
               for (const unsigned int v : cell->vertex_indices())
-                {
-                  Tensor<1, dim> mean;
-                  for (const unsigned int q :
-                       fe_values.quadrature_point_indices())
-                    mean += fe_values.shape_grad(v * dim, q) * fe_values.JxW(q);
-                  gradients.push_back(mean / volume);
-                }
+                gradients.push_back(fe_values.shape_grad(v * dim, q));
             }
-        }
+        else // P_Qh of a strain, (3.1): its mean
+          {
+            weights.push_back(volume);
+            positions.push_back(cell->center());
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                Tensor<1, dim> mean;
+                for (const unsigned int q :
+                     fe_values.quadrature_point_indices())
+                  mean += fe_values.shape_grad(v * dim, q) * fe_values.JxW(q);
+                gradients.push_back(mean / volume);
+              }
+          }
+      }
   }
 
 

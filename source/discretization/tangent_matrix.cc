@@ -152,27 +152,26 @@ namespace Viscoplastic
     std::vector<types::global_dof_index> dofs(n_dofs);
     std::vector<SymmetricTensor<4, 3>>   change(n);
     std::size_t                          index = 0;
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          const std::size_t           c     = index++;
-          const SymmetricTensor<4, 3> E     = stress_space.moduli(c).tensor();
-          bool                        flows = false;
-          for (unsigned int s = 0; s < n; ++s)
-            {
-              change[s] = tangents[c * n + s] - E;
-              flows |= change[s].norm() > 0.;
-            }
-          if (!flows)
-            continue;
-          cell_matrix = 0.;
-          stress_space.add_stiffness(c, change.data(), cell_matrix);
-          cell->get_dof_indices(dofs);
-          space.rotate(dofs, cell_matrix);
-          space.hanging_nodes().distribute_local_to_global(cell_matrix,
-                                                           dofs,
-                                                           tangent_matrix);
-        }
+    for (const auto &cell : space.cells)
+      {
+        const std::size_t           c     = index++;
+        const SymmetricTensor<4, 3> E     = stress_space.moduli(c).tensor();
+        bool                        flows = false;
+        for (unsigned int s = 0; s < n; ++s)
+          {
+            change[s] = tangents[c * n + s] - E;
+            flows |= change[s].norm() > 0.;
+          }
+        if (!flows)
+          continue;
+        cell_matrix = 0.;
+        stress_space.add_stiffness(c, change.data(), cell_matrix);
+        cell->get_dof_indices(dofs);
+        space.rotate(dofs, cell_matrix);
+        space.hanging_nodes().distribute_local_to_global(cell_matrix,
+                                                         dofs,
+                                                         tangent_matrix);
+      }
     tangent_matrix.compress(VectorOperation::add);
   }
 

@@ -131,10 +131,8 @@ namespace Viscoplastic
                                   QGauss<dim - 1>(2),
                                   update_quadrature_points);
     Scales                    scales;
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
+    for (const auto &cell : space.cells)
       {
-        if (!cell->is_locally_owned())
-          continue;
         solution.check_rates(cell->center(), 0.);
         for (const unsigned int f : cell->face_indices())
           {

@@ -3,6 +3,7 @@
 #include <deal.II/numerics/error_estimator.h>
 
 #include <viscoplastic_contact/error/kelly_estimator.h>
+#include <viscoplastic_contact/mesh/cell_order.h>
 
 #include <cmath>
 #include <numeric>
@@ -44,16 +45,24 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
   double
-  total_estimate(const Vector<double> &squared_estimate, const MPI_Comm comm)
+  total_estimate(const Vector<double>     &squared_estimate,
+                 const Triangulation<dim> &triangulation)
   {
-    return std::sqrt(Utilities::MPI::sum(
-      std::accumulate(squared_estimate.begin(), squared_estimate.end(), 0.),
-      comm));
+    double total = 0.;
+    for (const auto &cell : owned_cells(triangulation))
+      total += squared_estimate[cell->active_cell_index()];
+    return std::sqrt(
+      Utilities::MPI::sum(total, triangulation.get_communicator()));
   }
 
 
 
+  template double
+  total_estimate(const Vector<double> &, const Triangulation<2> &);
+  template double
+  total_estimate(const Vector<double> &, const Triangulation<3> &);
   template Vector<double>
   kelly_estimate<2>(const AdmissibleSpace<2> &, const DistributedVector &);
   template Vector<double>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/error/mesh_adaptation.h>
+#include <viscoplastic_contact/mesh/cell_order.h>
 #include <viscoplastic_contact/mesh/marking_threshold.h>
 
 #include <cmath>
@@ -18,9 +19,8 @@ namespace Viscoplastic
       const parallel::distributed::Triangulation<dim> &triangulation)
     {
       unsigned int n = 0;
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned() && cell->coarsen_flag_set() &&
-            cell->parent()->child(0) == cell)
+      for (const auto &cell : owned_cells(triangulation))
+        if (cell->coarsen_flag_set() && cell->parent()->child(0) == cell)
           {
             bool all = true;
             for (const auto &sibling : cell->parent()->child_iterators())
@@ -45,13 +45,12 @@ namespace Viscoplastic
       const MPI_Comm comm = triangulation.get_communicator();
       std::vector<std::pair<double, double>> estimates;
       double                                 total = 0.;
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            const double value = squared_estimate[cell->active_cell_index()];
-            estimates.emplace_back(value, value);
-            total += value;
-          }
+      for (const auto &cell : owned_cells(triangulation))
+        {
+          const double value = squared_estimate[cell->active_cell_index()];
+          estimates.emplace_back(value, value);
+          total += value;
+        }
       total = Utilities::MPI::sum(total, comm);
 
       // A sum that hits the fraction exactly, as of equal cells, has reached
@@ -73,15 +72,14 @@ namespace Viscoplastic
                             (1. - (1. + slack) * coarsened) * total,
                             ThresholdSide::below,
                             comm);
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            const double value = squared_estimate[cell->active_cell_index()];
-            if (value > refine_above)
-              cell->set_refine_flag();
-            else if (value < coarsen_below)
-              cell->set_coarsen_flag();
-          }
+      for (const auto &cell : owned_cells(triangulation))
+        {
+          const double value = squared_estimate[cell->active_cell_index()];
+          if (value > refine_above)
+            cell->set_refine_flag();
+          else if (value < coarsen_below)
+            cell->set_coarsen_flag();
+        }
     }
 
 
@@ -97,17 +95,16 @@ namespace Viscoplastic
                      const double          n_allowed)
     {
       std::vector<std::pair<double, double>> marked;
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned() && cell->refine_flag_set())
+      for (const auto &cell : owned_cells(triangulation))
+        if (cell->refine_flag_set())
           marked.emplace_back(squared_estimate[cell->active_cell_index()], 1.);
       const double threshold =
         marking_threshold(marked,
                           std::floor(n_allowed) + 1.,
                           ThresholdSide::above,
                           triangulation.get_communicator());
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned() &&
-            squared_estimate[cell->active_cell_index()] <= threshold)
+      for (const auto &cell : owned_cells(triangulation))
+        if (squared_estimate[cell->active_cell_index()] <= threshold)
           cell->clear_refine_flag();
     }
   } // namespace
@@ -126,16 +123,15 @@ namespace Viscoplastic
     flag_fractions(triangulation, squared_estimate, parameters);
 
     unsigned int n_refined = 0;
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          const auto level = static_cast<unsigned int>(cell->level());
-          if (level >= parameters.maximal_level)
-            cell->clear_refine_flag();
-          if (level <= parameters.minimal_level)
-            cell->clear_coarsen_flag();
-          n_refined += cell->refine_flag_set();
-        }
+    for (const auto &cell : owned_cells(triangulation))
+      {
+        const auto level = static_cast<unsigned int>(cell->level());
+        if (level >= parameters.maximal_level)
+          cell->clear_refine_flag();
+        if (level <= parameters.minimal_level)
+          cell->clear_coarsen_flag();
+        n_refined += cell->refine_flag_set();
+      }
 
     // A refined cell adds, and a coarsened family removes, 2^dim - 1 cells.
     const double new_cells = Utilities::pow(2, dim) - 1;
@@ -150,9 +146,8 @@ namespace Viscoplastic
 
     triangulation.prepare_coarsening_and_refinement();
     bool changes = false;
-    for (const auto &cell : triangulation.active_cell_iterators())
-      changes |= cell->is_locally_owned() &&
-                 (cell->refine_flag_set() || cell->coarsen_flag_set());
+    for (const auto &cell : owned_cells(triangulation))
+      changes |= cell->refine_flag_set() || cell->coarsen_flag_set();
     return Utilities::MPI::max(changes ? 1 : 0, comm) == 1;
   }
 
@@ -198,13 +193,12 @@ namespace Viscoplastic
       return;
     old_cell.resize(triangulation.n_active_cells());
     unsigned int index = 0;
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          for (unsigned int s = 0; s < n_samples; ++s)
-            old_weights.push_back(old_stress_space.weight(index, s));
-          old_cell[cell->active_cell_index()] = index++;
-        }
+    for (const auto &cell : old_stress_space.space.cells)
+      {
+        for (unsigned int s = 0; s < n_samples; ++s)
+          old_weights.push_back(old_stress_space.weight(index, s));
+        old_cell[cell->active_cell_index()] = index++;
+      }
 
     // The samples belong to the support points of the element of Q_h, whose
     // shape functions are constant or (bi-, tri-)linear.
@@ -316,9 +310,8 @@ namespace Viscoplastic
       sampled[f]->resize(new_stress_space.n_cells() * n_samples);
     std::vector<unsigned int> new_cell(triangulation.n_active_cells());
     unsigned int              index = 0;
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        new_cell[cell->active_cell_index()] = index++;
+    for (const auto &cell : space.cells)
+      new_cell[cell->active_cell_index()] = index++;
     AssertDimension(index, new_stress_space.n_cells());
 
     const auto unpack_field = [&](const CellIterator          &cell,

@@ -97,9 +97,8 @@ namespace Viscoplastic
       std::vector<unsigned int> owned_index(
         dof_handler.get_triangulation().n_active_cells());
       unsigned int n_owned = 0;
-      for (const auto &cell : dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
-          owned_index[cell->active_cell_index()] = n_owned++;
+      for (const auto &cell : stress_space.space.cells)
+        owned_index[cell->active_cell_index()] = n_owned++;
 
       FEValues<dim>               whole(dof_handler.get_fe(),
                           QGauss<dim>(2),
@@ -283,10 +282,8 @@ namespace Viscoplastic
     const auto components = stress_components<dim>();
 
     std::size_t index = 0;
-    for (const auto &cell : dof_handler.active_cell_iterators())
+    for (const auto &cell : stress_space.space.cells)
       {
-        if (!cell->is_locally_owned())
-          continue;
         fe_values.reinit(cell);
         fe_values[displacement].get_function_values(state.u, values);
         fe_values[displacement].get_function_gradients(state.u, gradients);

@@ -97,10 +97,12 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < 6; ++i)
       {
         for (std::size_t c = 0; c < n_owned; ++c)
-          component.local_element(c) = means[c].access_raw_entry(i);
+          component(cells[c].global_active_index) =
+            means[c].access_raw_entry(i);
         component.update_ghost_values();
-        for (std::size_t g = 0; g < ghosts.size(); ++g)
-          means[n_owned + g].access_raw_entry(i) = component(ghosts[g]);
+        for (std::size_t c = n_owned; c < cells.size(); ++c)
+          means[c].access_raw_entry(i) =
+            component(cells[c].global_active_index);
         component.zero_out_ghost_values();
       }
     return means.data();

@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/error/residual_estimator.h>
+#include <viscoplastic_contact/mesh/cell_order.h>
 
 #include <cmath>
 #include <limits>
@@ -145,25 +146,25 @@ namespace Viscoplastic
                          update_gradients | update_hessians |
                            update_quadrature_points | update_JxW_values);
     FEFaceValues<dim>           on_face(fe, QGauss<dim - 1>(2), on_faces);
-    for (const bool owned : {true, false})
-      for (const auto &cell : space.dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned() == owned && !cell->is_artificial())
-          {
-            LocalCell here{find_shape(cell, values, on_face),
-                           cell->active_cell_index(),
-                           {},
-                           owned ? stress_space.moduli(cells.size()) :
-                                   space.scene.material(cell->material_id())
-                                     .stiffness(cell->center())};
-            for (unsigned int v = 0; v < n_vertices; ++v)
-              here.nodes[v] =
-                space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
-            cells.push_back(std::move(here));
-            if (owned)
-              origins.push_back(cell->vertex(0));
-            else
-              ghosts.push_back(cell->global_active_cell_index());
-          }
+    const auto add = [&](const Cell &cell, const Stiffness &E) {
+      LocalCell here{find_shape(cell, values, on_face),
+                     cell->active_cell_index(),
+                     cell->global_active_cell_index(),
+                     {},
+                     E};
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        here.nodes[v] =
+          space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
+      cells.push_back(std::move(here));
+    };
+    for (const auto &cell : space.cells)
+      {
+        add(cell, stress_space.moduli(cells.size()));
+        origins.push_back(cell->vertex(0));
+      }
+    for (const auto &cell : ghost_cells(space.dof_handler))
+      add(cell,
+          space.scene.material(cell->material_id()).stiffness(cell->center()));
   }
 
 
@@ -244,10 +245,8 @@ namespace Viscoplastic
 
     // Faces between owned cells are visited once: from the finer side, or from
     // the cell that comes first.
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
+    for (const auto &cell : space.cells)
       {
-        if (!cell->is_locally_owned())
-          continue;
         for (const unsigned int f : cell->face_indices())
           if (cell->at_boundary(f))
             {
@@ -277,7 +276,7 @@ namespace Viscoplastic
             {
               const Cell neighbor = cell->neighbor(f);
               if (!neighbor->is_locally_owned() ||
-                  cell->index() < neighbor->index())
+                  number_of(cell) < number_of(neighbor))
                 {
                   const unsigned int n          = number_of(neighbor),
                                      neighbor_f = cell->neighbor_of_neighbor(f);

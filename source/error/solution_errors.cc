@@ -42,10 +42,8 @@ namespace Viscoplastic
         stress_space.n_samples == 1 && !state.z.empty();
 
       std::size_t index = 0;
-      for (const auto &cell : dof_handler.active_cell_iterators())
+      for (const auto &cell : stress_space.space.cells)
         {
-          if (!cell->is_locally_owned())
-            continue;
           fe_values.reinit(cell);
           fe_values[displacement].get_function_values(state.u, values);
           fe_values[displacement].get_function_gradients(state.u, gradients);
@@ -102,32 +100,29 @@ namespace Viscoplastic
                                     update_values | update_JxW_values |
                                       update_quadrature_points);
       std::vector<Tensor<1, dim>> multiplier(face_values.n_quadrature_points);
-      for (const auto &cell : space.dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
-          for (const unsigned int f : cell->face_indices())
-            {
-              if (!cell->face(f)->at_boundary())
-                continue;
-              const BoundaryCondition<dim> &condition =
-                space.scene.boundary.at(cell->face(f)->boundary_id());
-              if (!condition.has_friction())
-                continue;
-              face_values.reinit(cell, f);
-              face_values[displacement].get_function_values(density,
-                                                            multiplier);
-              const Tensor<1, dim> &normal = condition.normal;
-              for (const unsigned int q :
-                   face_values.quadrature_point_indices())
-                {
-                  Tensor<1, dim> lambda =
-                    -1. * space.scene.exact_solution->traction(
-                            face_values.quadrature_point(q), normal, t);
-                  lambda -= (lambda * normal) * normal;
-                  error.multiplier +=
-                    (lambda - multiplier[q]).norm_square() * face_values.JxW(q);
-                  exact.multiplier += lambda.norm_square() * face_values.JxW(q);
-                }
-            }
+      for (const auto &cell : space.cells)
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (!cell->face(f)->at_boundary())
+              continue;
+            const BoundaryCondition<dim> &condition =
+              space.scene.boundary.at(cell->face(f)->boundary_id());
+            if (!condition.has_friction())
+              continue;
+            face_values.reinit(cell, f);
+            face_values[displacement].get_function_values(density, multiplier);
+            const Tensor<1, dim> &normal = condition.normal;
+            for (const unsigned int q : face_values.quadrature_point_indices())
+              {
+                Tensor<1, dim> lambda =
+                  -1. * space.scene.exact_solution->traction(
+                          face_values.quadrature_point(q), normal, t);
+                lambda -= (lambda * normal) * normal;
+                error.multiplier +=
+                  (lambda - multiplier[q]).norm_square() * face_values.JxW(q);
+                exact.multiplier += lambda.norm_square() * face_values.JxW(q);
+              }
+          }
     }
 
 

@@ -46,7 +46,8 @@ namespace Viscoplastic
       density = d.face->density(state.friction);
     Vector<double> squared = residual_estimator->estimate(
       state.u, state.z, state.t, d.face ? &density : nullptr);
-    result.residual = total_estimate(squared, d.space.communicator);
+    result.residual =
+      total_estimate(squared, d.space.dof_handler.get_triangulation());
     if (refines_by_residual)
       result.squared_indicators = std::move(squared);
     return result;

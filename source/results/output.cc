@@ -66,6 +66,32 @@ namespace Viscoplastic
     class BodyOutput : public DataOut<dim>
     {
     public:
+      /// Bring the patches, one for each owned cell in the order of active
+      /// cells, into that of @p cells, which a restart does not change.
+      template <class Cell>
+      void
+      sort_by(const std::vector<Cell> &cells)
+      {
+        AssertDimension(this->patches.size(), cells.size());
+        std::vector<std::pair<unsigned int, std::size_t>> order;
+        for (std::size_t c = 0; c < cells.size(); ++c)
+          order.emplace_back(cells[c]->active_cell_index(), c);
+        std::sort(order.begin(), order.end());
+        auto sorted = this->patches;
+        for (std::size_t p = 0; p < order.size(); ++p)
+          {
+            auto &patch       = sorted[order[p].second];
+            patch             = std::move(this->patches[p]);
+            patch.patch_index = order[p].second;
+            // Their numbers are no longer right, and nothing here asks for
+            // them.
+            std::fill(std::begin(patch.neighbors),
+                      std::end(patch.neighbors),
+                      numbers::invalid_unsigned_int);
+          }
+        this->patches = std::move(sorted);
+      }
+
       std::set<unsigned int>
       cut_off()
       {
@@ -455,25 +481,24 @@ namespace Viscoplastic
     Vector<double> mises(tria.n_active_cells());
     Vector<double> subdomain(tria.n_active_cells());
     std::size_t    owned_cell = 0;
-    for (const auto &cell : tria.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          const unsigned int i = cell->active_cell_index();
-          subdomain[i]         = cell->subdomain_id();
-          mises[i]             = von_mises(stress[owned_cell]);
-          for (unsigned int c = 0; c < n; ++c)
-            stresses[c][i] =
-              stress[owned_cell][components[c].first][components[c].second];
-          if (has_z)
-            {
-              const auto z = stress_space.mean(
-                owned_cell, &state.z[owned_cell * stress_space.n_samples]);
-              for (unsigned int c = 0; c < n; ++c)
-                irreversible[c][i] =
-                  z[components[c].first][components[c].second];
-            }
-          ++owned_cell;
-        }
+    for (const auto &cell : stress_space.space.cells)
+      {
+        const unsigned int i = cell->active_cell_index();
+        subdomain[i]         = cell->subdomain_id();
+        mises[i]             = von_mises(stress[owned_cell]);
+        for (unsigned int c = 0; c < n; ++c)
+          stresses[c][i] =
+            stress[owned_cell][components[c].first][components[c].second];
+        if (has_z)
+          {
+            const auto z =
+              stress_space.mean(owned_cell,
+                                &state.z[owned_cell * stress_space.n_samples]);
+            for (unsigned int c = 0; c < n; ++c)
+              irreversible[c][i] = z[components[c].first][components[c].second];
+          }
+        ++owned_cell;
+      }
     const std::string xyz = "xyz";
     for (unsigned int c = 0; c < n; ++c)
       {
@@ -496,6 +521,7 @@ namespace Viscoplastic
       }
     data_out.set_flags(vtk_flags());
     data_out.build_patches();
+    data_out.sort_by(stress_space.space.cells);
     const std::set<unsigned int> cut = data_out.cut_off();
     return write_vtu("solution", data_out, cut, data_out.names());
   }
@@ -546,71 +572,69 @@ namespace Viscoplastic
         density  = face->density(state.friction);
       }
 
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int f : cell->face_indices())
-          {
-            const auto cell_face = cell->face(f);
-            if (!cell_face->at_boundary())
-              continue;
-            const auto &condition =
-              space.scene.boundary.at(cell_face->boundary_id());
-            if (condition.role != BoundaryRole::contact)
-              continue;
-            DataOutBase::Patch<dim - 1, dim> patch;
-            patch.patch_index    = output.patches.size();
-            patch.reference_cell = ReferenceCells::get_hypercube<dim - 1>();
-            patch.data.reinit(output.names.size(), cell_face->n_vertices());
-            for (const unsigned int v : cell_face->vertex_indices())
-              {
-                patch.vertices[v] = cell_face->vertex(v);
-                const auto node   = space.relevant.index_within_set(
-                  cell_face->vertex_dof_index(v, 0));
-                unsigned int row    = 0;
-                const auto   vector = [&](const DistributedVector &field) {
-                  Tensor<1, dim> value;
-                  for (unsigned int d = 0; d < dim; ++d)
-                    value[d] = field.begin()[node + d];
-                  return value;
-                };
-                const auto store = [&](const Tensor<1, dim> &value) {
-                  for (unsigned int d = 0; d < dim; ++d)
-                    patch.data(row++, v) = value[d];
-                };
-                const auto tangential = [&](const Tensor<1, dim> &value) {
-                  return value - (value * condition.normal) * condition.normal;
-                };
-                const Tensor<1, dim> u = vector(state.u);
-                const Tensor<1, dim> w =
-                  condition.sliding(patch.vertices[v], state.t);
-                store(u);
-                store(tangential(state.initial_u.size() > 0 ?
-                                   u - vector(state.initial_u) :
-                                   u) -
-                      w);
-                Tensor<1, dim> rate = tangential(vector(state.velocity));
-                if (state.k > 0. && condition.foundation_motion)
-                  rate -= (w - condition.sliding(patch.vertices[v],
-                                                 state.t - state.k)) /
-                          state.k;
-                store(rate);
-                if (face != nullptr)
-                  {
-                    // On the body: minus the multiplier.
-                    store(condition.has_friction() ?
-                            -1. * tangential(vector(density)) :
-                            Tensor<1, dim>());
-                    const bool frictional = condition.has_friction();
-                    patch.data(row++, v) =
-                      frictional ? bound.begin()[node] : 0.;
-                    patch.data(row++, v) =
-                      frictional ? utilization.begin()[node] : 0.;
-                    patch.data(row++, v) =
-                      frictional ? 1. - slipping.begin()[node] : 0.;
-                  }
-              }
-            output.patches.push_back(patch);
-          }
+    for (const auto &cell : space.cells)
+      for (const unsigned int f : cell->face_indices())
+        {
+          const auto cell_face = cell->face(f);
+          if (!cell_face->at_boundary())
+            continue;
+          const auto &condition =
+            space.scene.boundary.at(cell_face->boundary_id());
+          if (condition.role != BoundaryRole::contact)
+            continue;
+          DataOutBase::Patch<dim - 1, dim> patch;
+          patch.patch_index    = output.patches.size();
+          patch.reference_cell = ReferenceCells::get_hypercube<dim - 1>();
+          patch.data.reinit(output.names.size(), cell_face->n_vertices());
+          for (const unsigned int v : cell_face->vertex_indices())
+            {
+              patch.vertices[v] = cell_face->vertex(v);
+              const auto node   = space.relevant.index_within_set(
+                cell_face->vertex_dof_index(v, 0));
+              unsigned int row    = 0;
+              const auto   vector = [&](const DistributedVector &field) {
+                Tensor<1, dim> value;
+                for (unsigned int d = 0; d < dim; ++d)
+                  value[d] = field.begin()[node + d];
+                return value;
+              };
+              const auto store = [&](const Tensor<1, dim> &value) {
+                for (unsigned int d = 0; d < dim; ++d)
+                  patch.data(row++, v) = value[d];
+              };
+              const auto tangential = [&](const Tensor<1, dim> &value) {
+                return value - (value * condition.normal) * condition.normal;
+              };
+              const Tensor<1, dim> u = vector(state.u);
+              const Tensor<1, dim> w =
+                condition.sliding(patch.vertices[v], state.t);
+              store(u);
+              store(tangential(state.initial_u.size() > 0 ?
+                                 u - vector(state.initial_u) :
+                                 u) -
+                    w);
+              Tensor<1, dim> rate = tangential(vector(state.velocity));
+              if (state.k > 0. && condition.foundation_motion)
+                rate -= (w - condition.sliding(patch.vertices[v],
+                                               state.t - state.k)) /
+                        state.k;
+              store(rate);
+              if (face != nullptr)
+                {
+                  // On the body: minus the multiplier.
+                  store(condition.has_friction() ?
+                          -1. * tangential(vector(density)) :
+                          Tensor<1, dim>());
+                  const bool frictional = condition.has_friction();
+                  patch.data(row++, v)  = frictional ? bound.begin()[node] : 0.;
+                  patch.data(row++, v) =
+                    frictional ? utilization.begin()[node] : 0.;
+                  patch.data(row++, v) =
+                    frictional ? 1. - slipping.begin()[node] : 0.;
+                }
+            }
+          output.patches.push_back(patch);
+        }
     const std::set<unsigned int> cut =
       cut_off_infinite(output.patches, output.names.size());
     return write_vtu("contact", output, cut, output.names);

@@ -14,10 +14,9 @@ namespace Viscoplastic
     : communicator(space.communicator)
   {
     const MappingQ1<dim> mapping;
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
+    for (const auto &cell : space.cells)
       {
-        if (!cell->is_locally_owned() ||
-            !cell->bounding_box().point_inside(x, 1e-6))
+        if (!cell->bounding_box().point_inside(x, 1e-6))
           continue;
         Point<dim> unit;
         try

@@ -114,7 +114,7 @@ namespace Viscoplastic
       step.end.space_estimate.squared_indicators;
     if (indicators.size() > 0)
       result.refinement_estimate =
-        total_estimate(indicators, d.space.communicator);
+        total_estimate(indicators, d.space.dof_handler.get_triangulation());
     return result;
   }
 

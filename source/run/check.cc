@@ -84,7 +84,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::check()
   {
     make_mesh();
-    dof_handler.distribute_dofs(fe);
+    distribute_nodes(fe, dof_handler);
     discretization = std::make_unique<Discretization<dim>>(dof_handler, scene);
     const Discretization<dim> &d = *discretization;
     announcer.announce(d);

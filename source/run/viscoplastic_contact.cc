@@ -28,12 +28,7 @@ namespace Viscoplastic
     , out(console.stream())
     , announcer(console)
     , scene(parameters)
-    // Always rebuilt from its coarse cells: then the order of cells, and with
-    // it the rounding of sums, does not depend on the history of the mesh.
-    , triangulation(communicator,
-                    Triangulation<dim>::none,
-                    parallel::distributed::Triangulation<
-                      dim>::mesh_reconstruction_after_repartitioning)
+    , triangulation(communicator)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
     , directories(parameters, console, communicator)
@@ -184,7 +179,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::set_up()
   {
     TimerOutput::Scope scope(timer, "set-up");
-    dof_handler.distribute_dofs(fe);
+    distribute_nodes(fe, dof_handler);
     // The old one goes first: matrices and factors are what fills memory.
     accepted.is_solution = false;
     time_stepper.reset();
@@ -266,7 +261,7 @@ namespace Viscoplastic
     // What rounding and iterations leave of an estimate, as in uniform states,
     // says nothing about the mesh, and differs between numbers of ranks.
     if (parameters.refinement.strategy == RefinementStrategy::residual &&
-        total_estimate(squared_indicators, communicator) <=
+        total_estimate(squared_indicators, triangulation) <=
           10. * std::max(1e-10, time_stepper->tolerance(accepted)) *
             std::sqrt(2. * std::max(0., accepted.forces.strain_energy)))
       return;

@@ -143,7 +143,7 @@ namespace Viscoplastic::Testing
       laws.reset();
       stress_space.reset();
       scene.inspect(triangulation);
-      dof_handler.distribute_dofs(fe);
+      distribute_nodes(fe, dof_handler);
       space        = std::make_unique<AdmissibleSpace<dim>>(dof_handler, scene);
       moduli       = std::make_unique<ElasticModuli<dim>>(*space);
       stress_space = std::make_unique<StressSpace<dim>>(*space,

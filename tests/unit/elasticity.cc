@@ -39,7 +39,7 @@ namespace
       , dof_handler(triangulation)
     {
       GridGenerator::subdivided_hyper_cube(triangulation, n);
-      dof_handler.distribute_dofs(fe);
+      distribute_nodes(fe, dof_handler);
       unknown.assign(dof_handler.n_dofs(), numbers::invalid_unsigned_int);
       std::vector<bool> clamped(dof_handler.n_dofs(), false);
       for (const auto &cell : dof_handler.active_cell_iterators())

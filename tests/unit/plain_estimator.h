@@ -10,6 +10,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/discretization/stress_space.h>
+#include <viscoplastic_contact/mesh/cell_order.h>
 
 #include <vector>
 
@@ -106,10 +107,11 @@ namespace Viscoplastic::Testing
                             update_gradients | update_JxW_values);
     std::vector<double> divergences(fe_values.n_quadrature_points);
     std::size_t         index = 0;
-    for (const auto &cell : dof_handler.active_cell_iterators())
+    auto                cells = space.cells;
+    for (const auto &cell : ghost_cells(dof_handler))
+      cells.push_back(cell);
+    for (const auto &cell : cells)
       {
-        if (cell->is_artificial())
-          continue;
         CellData &here = data[cell->active_cell_index()];
         if (mean_dilatation)
           {

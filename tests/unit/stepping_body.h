@@ -25,7 +25,7 @@ namespace Viscoplastic::Testing
       this->refine_where(
         [](const Point<dim> &x) { return x[0] < 0.6 && x[dim - 1] < 0.6; });
       this->scene.inspect(this->triangulation);
-      this->dof_handler.distribute_dofs(this->fe);
+      distribute_nodes(this->fe, this->dof_handler);
       discretization =
         std::make_unique<Discretization<dim>>(this->dof_handler, this->scene);
       discretization->assemble_matrix();

@@ -11,6 +11,15 @@
 namespace Viscoplastic
 {
   /**
+   * Distribute the degrees of freedom of the element FE_Q(1)^dim, numbered on
+   * each rank in the order of owned_cells(). Collective.
+   */
+  template <int dim>
+  void
+  distribute_nodes(const FiniteElement<dim> &fe, DoFHandler<dim> &dof_handler);
+
+
+  /**
    * The space V_h of admissible displacements, the paper's U^h, and its
    * translates: continuous, FE_Q(1) in each component, with hanging nodes,
    * prescribed components in nodal frames of any orientation, and their values
@@ -21,9 +30,9 @@ namespace Viscoplastic
    *   hanging nodes Cartesian. Matrices and load vectors are assembled in this
    *   form, in which every prescribed component is one degree of freedom.
    *
-   * Built anew on every mesh. The dim degrees of freedom of a node are
-   * consecutive (FE_Q(1) without renumbering), so nodes are addressed by their
-   * first one.
+   * Built anew on every mesh, on degrees of freedom from distribute_nodes():
+   * the dim ones of a node are consecutive, so nodes are addressed by their
+   * first.
    */
   template <int dim>
   class AdmissibleSpace
@@ -40,6 +49,10 @@ namespace Viscoplastic
     const Scene<dim>      &scene;
     const MPI_Comm         communicator;
     const IndexSet         owned, relevant;
+
+    /// The owned cells, in the order of owned_cells(): that of all data that
+    /// have values in cells.
+    const std::vector<typename DoFHandler<dim>::active_cell_iterator> cells;
 
     /// Hanging nodes only, in frames; for assembling matrices.
     const AffineConstraints<double> &

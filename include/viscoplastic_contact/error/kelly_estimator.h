@@ -15,6 +15,8 @@ namespace Viscoplastic
                  const DistributedVector    &ghosted_u);
 
   /// The root of the sum over all cells of all ranks. Collective.
+  template <int dim>
   double
-  total_estimate(const Vector<double> &squared_estimate, const MPI_Comm comm);
+  total_estimate(const Vector<double>     &squared_estimate,
+                 const Triangulation<dim> &triangulation);
 } // namespace Viscoplastic

@@ -94,6 +94,7 @@ namespace Viscoplastic
     struct LocalCell
     {
       unsigned int                         shape, active_index;
+      types::global_cell_index             global_active_index;
       std::array<unsigned int, n_vertices> nodes;
       Stiffness                            stiffness;
     };
@@ -190,14 +191,13 @@ namespace Viscoplastic
     /// Whether b is the same in the whole body.
     bool uniform_body_force;
 
-    std::vector<Shape>                    shapes;
-    std::vector<FaceShape>                subface_shapes;
-    std::vector<LocalCell>                cells;
-    std::vector<types::global_cell_index> ghosts;  // behind the owned cells
-    std::vector<Point<dim>>               origins; // vertex 0 of owned cells
-    std::vector<SubfaceSide>              subface_sides;
-    std::vector<InteriorFace>             interior_faces;
-    std::vector<BoundaryFace>             boundary_faces;
+    std::vector<Shape>        shapes;
+    std::vector<FaceShape>    subface_shapes;
+    std::vector<LocalCell>    cells;
+    std::vector<Point<dim>>   origins; // vertex 0 of owned cells
+    std::vector<SubfaceSide>  subface_sides;
+    std::vector<InteriorFace> interior_faces;
+    std::vector<BoundaryFace> boundary_faces;
     /// Shape functions at the points of each face.
     std::array<std::array<std::array<double, n_vertices>, n_face_points>,
                n_faces>

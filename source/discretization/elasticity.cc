@@ -104,20 +104,25 @@ namespace Viscoplastic
     pattern.compress();
     matrix.reinit(pattern);
 
-    const FiniteElement<dim> &fe = space.dof_handler.get_fe();
-    FEValues<dim>             fe_values(fe,
+    const FiniteElement<dim>            &fe = space.dof_handler.get_fe();
+    FEValues<dim>                        fe_values(fe,
                             QGauss<dim>(2),
                             update_gradients | update_JxW_values);
-    FullMatrix<double> cell_matrix(fe.n_dofs_per_cell(), fe.n_dofs_per_cell());
-    std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
-    std::size_t                          index = 0;
-    for (const auto &cell : space.cells)
+    const unsigned int                   n = fe.n_dofs_per_cell();
+    FullMatrix<double>                   cartesian(n, n), cell_matrix(n, n);
+    const Stiffness                     *last = nullptr;
+    std::vector<types::global_dof_index> dofs(n);
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
       {
+        const auto &cell = space.cells[c];
         fe_values.reinit(cell);
-        elastic_cell_matrix(fe_values,
-                            moduli(index++),
-                            mean_dilatation,
-                            cell_matrix);
+        // The matrix of the last cell is that of its translate, too.
+        const Stiffness &stiffness = moduli(c);
+        if (&stiffness != last ||
+            fe_values.get_cell_similarity() != CellSimilarity::translation)
+          elastic_cell_matrix(fe_values, stiffness, mean_dilatation, cartesian);
+        last        = &stiffness;
+        cell_matrix = cartesian;
         cell->get_dof_indices(dofs);
         space.rotate(dofs, cell_matrix);
         space.hanging_nodes().distribute_local_to_global(cell_matrix,

@@ -275,7 +275,7 @@ class Memory:
 
     def watch(self):
         while not self.stop.wait(self.seconds):
-            for process in children():
+            for process in descendants():
                 statistics = process / "cwd" / "results" / "statistics.csv"
                 try:
                     status = (process / "status").read_text()
@@ -293,15 +293,20 @@ class Memory:
         return [mb for size, mb in self.samples if 0.1 * last <= size < last]
 
 
-def children():
-    """The directories in /proc of the processes whose parent is this one."""
+def descendants():
+    """The directories in /proc of the children of this process, and of theirs:
+    the server forks for each run."""
+    parent = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
-            parent = stat.read_text().rpartition(")")[2].split()[1]
+            parent[int(stat.parent.name)] = int(
+                stat.read_text().rpartition(")")[2].split()[1]
+            )
         except OSError:
             continue
-        if int(parent) == os.getpid():
-            yield stat.parent
+    for process, above in parent.items():
+        if os.getpid() in (above, parent.get(above)):
+            yield Path("/proc", str(process))
 
 
 @case(GROUP, "10^5 steps: equilibrium does not drift, the energy defect keeps its share "

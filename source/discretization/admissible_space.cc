@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/mesh/cell_order.h>
 
 #include <iomanip>
+#include <set>
 #include <sstream>
 
 namespace Viscoplastic
@@ -72,6 +73,22 @@ namespace Viscoplastic
     make_frames();
     make_hanging_nodes_in_frames();
     check_rigid_motions();
+  }
+
+
+
+  template <int dim>
+  types::global_dof_index
+  AdmissibleSpace<dim>::n_first_dofs() const
+  {
+    const Triangulation<dim> &triangulation = dof_handler.get_triangulation();
+    if (triangulation.n_global_levels() < 2)
+      return 0;
+    std::set<unsigned int> vertices; // of all coarse cells, on all ranks
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int v : cell->vertex_indices())
+        vertices.insert(cell->vertex_index(v));
+    return vertices.size() * dim;
   }
 
 

@@ -215,12 +215,6 @@ namespace Viscoplastic
                   ((c >> d) & 1U) + ((v >> d) & 1U);
             }
 
-    hierarchy.n_first =
-      Utilities::MPI::sum(Node(std::count(hierarchy.first_level.begin(),
-                                          hierarchy.first_level.end(),
-                                          0U)),
-                          space.communicator);
-
     // Parents that other ranks know.
     std::vector<std::pair<CellId::binary_type, unsigned int>> questions;
     std::map<unsigned int, unsigned int> question_of_vertex;

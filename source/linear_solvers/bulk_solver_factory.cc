@@ -9,90 +9,104 @@
 #include <viscoplastic_contact/linear_solvers/schur_solver.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Viscoplastic
 {
   namespace
   {
     /**
-     * Whether the direct solver is expected to win. A factorization costs about
-     * ten (2D) to eighty (3D) of its own solves and, in 3D, much memory;
-     * multigrid is cheap to set up and needs no memory to speak of, but dies of
-     * incompressibility.
+     * Seconds of the solvers in one dimension, as powers of the degrees of
+     * freedom: what the set-up of the direct solver takes beyond that of
+     * geometric multigrid, and a step with each of them. Measured by
+     * benchmarks/step_cost.py; only ratios matter.
      */
+    struct Costs
+    {
+      double n_dofs; // for which the seconds are
+      double factorization, factorization_exponent;
+      double direct_step, direct_exponent;
+      double multigrid_step, multigrid_exponent;
+    };
+
+    Costs
+    costs(const unsigned int dim)
+    {
+      return dim == 2 ? Costs{5e5, 6.0, 1.1, 0.29, 1.07, 1.0, 1.08} :
+                        Costs{1.1e5, 13., 1.3, 0.59, 1.24, 0.44, 1.0};
+    }
+
+
+
+    /// How many times more iterations nearly incompressible bodies take.
+    double
+    growth_by_incompressibility(const double poissons_ratio)
+    {
+      return std::max(1.,
+                      0.35 /
+                        std::sqrt(std::max(1. - 2. * poissons_ratio, 1e-8)));
+    }
+
+
+
+    /// Whether the mesh is refined from a small one. That one is solved on
+    /// directly, whenever its stick set changes: it must be little against a
+    /// cycle on the present one.
     bool
-    prefer_direct(const unsigned int            dim,
+    has_small_first_mesh(const SolverDemand           &demand,
+                         const unsigned int            dim,
+                         const types::global_dof_index n_dofs)
+    {
+      using Number       = types::global_dof_index;
+      const Number share = n_dofs / 20;
+      return demand.n_first_dofs > 0 &&
+             demand.n_first_dofs <=
+               (dim == 2 ?
+                  std::max(Number(2000), std::min(share, Number(20000))) :
+                  std::max(Number(600), std::min(share, Number(6000))));
+    }
+
+
+
+    /// Whether the direct solver is expected to win.
+    bool
+    prefer_direct(const SolverDemand           &demand,
+                  const unsigned int            dim,
                   const types::global_dof_index n_dofs,
-                  const unsigned int            n_face_dofs,
-                  const double                  max_poissons_ratio,
-                  const unsigned int            n_solves)
+                  const unsigned int            n_face_dofs)
     {
-      // The dense face problem: 200 MB and a cubic set-up.
-      if (n_face_dofs > 5000)
+      // The dense face problem: 200 MB and a cubic set-up. Beyond, the memory
+      // of the factor.
+      if (n_face_dofs > 5000 || n_dofs >= (dim == 2 ? 2000000 : 200000))
         return false;
-      if (dim == 2)
-        return n_dofs < 2000000;
-      if (max_poissons_ratio > 0.45)
-        return n_dofs < 200000;
-      return n_dofs < 20000 || (n_dofs < 150000 && n_solves >= 20);
-    }
-    /// Whether there are coarser meshes. The first one is solved on directly,
-    /// whenever its stick set changes: that must be little against a cycle on
-    /// the present one.
-    bool
-    has_small_first_mesh(const BulkSystem    &system,
-                         const NodeHierarchy &hierarchy)
-    {
-      if (hierarchy.n_levels < 2)
-        return false;
-      const NodeHierarchy::Node n     = system.dim * hierarchy.n_first,
-                                share = system.matrix.m() / 100;
-      return system.dim == 2 ?
-               n <= std::max(NodeHierarchy::Node(2000),
-                             std::min(share, NodeHierarchy::Node(10000))) :
-               n <= std::max(NodeHierarchy::Node(600),
-                             std::min(share, NodeHierarchy::Node(3000)));
-    }
-
-
-
-    std::unique_ptr<Preconditioner>
-    make_preconditioner(const BulkSystem &system, const LinearSolver choice)
-    {
-      if (choice != LinearSolver::algebraic_multigrid)
+      // An exact solution, where it costs next to nothing.
+      if (n_dofs < (demand.n_solves >= 4 ? 20000 : 2000))
+        return true;
+      if (has_small_first_mesh(demand, dim, n_dofs))
         {
-          NodeHierarchy hierarchy = system.hierarchy();
-          if (has_small_first_mesh(system, hierarchy))
-            {
-              if (system.dim == 2)
-                return std::make_unique<GeometricMultigrid<2>>(system.matrix,
-                                                               system.excluded,
-                                                               std::move(
-                                                                 hierarchy),
-                                                               system.face);
-              return std::make_unique<GeometricMultigrid<3>>(system.matrix,
-                                                             system.excluded,
-                                                             std::move(
-                                                               hierarchy),
-                                                             system.face);
-            }
+          const Costs  c     = costs(dim);
+          const double ratio = n_dofs / c.n_dofs;
+          return c.factorization * std::pow(ratio, c.factorization_exponent) +
+                   demand.n_solves * c.direct_step *
+                     std::pow(ratio, c.direct_exponent) <
+                 demand.n_solves * c.multigrid_step *
+                   growth_by_incompressibility(demand.max_poissons_ratio) *
+                   std::pow(ratio, c.multigrid_exponent);
         }
-      return std::make_unique<AlgebraicMultigrid>(system.matrix,
-                                                  system.excluded,
-                                                  system.rigid_body_modes(),
-                                                  system.face,
-                                                  system.dim);
+      // Algebraic multigrid takes several times the iterations.
+      return dim == 2 || demand.max_poissons_ratio > 0.45 ||
+             (n_dofs < 150000 && demand.n_solves >= 20);
     }
   } // namespace
 
 
 
-  bool
-  is_direct(const SolverDemand           &demand,
-            const unsigned int            dim,
-            const types::global_dof_index n_dofs,
-            const unsigned int            n_face_dofs,
-            const MPI_Comm                communicator)
+  BulkSolverKind
+  choose_bulk_solver(const SolverDemand           &demand,
+                     const unsigned int            dim,
+                     const types::global_dof_index n_dofs,
+                     const unsigned int            n_face_dofs,
+                     const MPI_Comm                communicator)
   {
     const LinearSolver choice  = demand.choice;
     const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
@@ -101,13 +115,14 @@ namespace Viscoplastic
                            "rank, but the run has " +
                            std::to_string(n_ranks) +
                            "; use multigrid or automatic."));
-    return choice == LinearSolver::direct ||
-           (choice == LinearSolver::automatic && n_ranks == 1 &&
-            prefer_direct(dim,
-                          n_dofs,
-                          n_face_dofs,
-                          demand.max_poissons_ratio,
-                          demand.n_solves));
+    if (choice == LinearSolver::direct ||
+        (choice == LinearSolver::automatic && n_ranks == 1 &&
+         prefer_direct(demand, dim, n_dofs, n_face_dofs)))
+      return BulkSolverKind::direct;
+    return choice != LinearSolver::algebraic_multigrid &&
+               has_small_first_mesh(demand, dim, n_dofs) ?
+             BulkSolverKind::geometric_multigrid :
+             BulkSolverKind::algebraic_multigrid;
   }
 
 
@@ -115,20 +130,38 @@ namespace Viscoplastic
   std::unique_ptr<BulkSolver>
   make_bulk_solver(const BulkSystem &system, const SolverDemand &demand)
   {
-    const DistributedMatrix &matrix = system.matrix;
-    if (is_direct(demand,
-                  system.dim,
-                  matrix.m(),
-                  system.face.dofs().size(),
-                  matrix.get_mpi_communicator()))
-      return std::make_unique<SchurSolver>(matrix,
-                                           system.excluded,
-                                           system.face,
-                                           system.dim);
+    const DistributedMatrix        &matrix = system.matrix;
+    std::unique_ptr<Preconditioner> multigrid;
+    switch (choose_bulk_solver(demand,
+                               system.dim,
+                               matrix.m(),
+                               system.face.dofs().size(),
+                               matrix.get_mpi_communicator()))
+      {
+        case BulkSolverKind::direct:
+          return std::make_unique<SchurSolver>(matrix,
+                                               system.excluded,
+                                               system.face,
+                                               system.dim);
+        case BulkSolverKind::geometric_multigrid:
+          if (system.dim == 2)
+            multigrid = std::make_unique<GeometricMultigrid<2>>(
+              matrix, system.excluded, system.hierarchy(), system.face);
+          else
+            multigrid = std::make_unique<GeometricMultigrid<3>>(
+              matrix, system.excluded, system.hierarchy(), system.face);
+          break;
+        case BulkSolverKind::algebraic_multigrid:
+          multigrid =
+            std::make_unique<AlgebraicMultigrid>(matrix,
+                                                 system.excluded,
+                                                 system.rigid_body_modes(),
+                                                 system.face,
+                                                 system.dim);
+      }
     return std::make_unique<KrylovSolver>(matrix,
                                           system.excluded,
                                           system.face,
-                                          make_preconditioner(system,
-                                                              demand.choice));
+                                          std::move(multigrid));
   }
 } // namespace Viscoplastic

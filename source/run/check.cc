@@ -22,15 +22,18 @@ namespace Viscoplastic
      * 1.5 or so.
      */
     double
-    solver_memory(const unsigned int dim,
-                  const double       n_dofs,
-                  const double       n_face_dofs,
-                  const bool         direct)
+    solver_memory(const unsigned int   dim,
+                  const double         n_dofs,
+                  const double         n_face_dofs,
+                  const BulkSolverKind solver)
     {
       // 12 bytes an entry, 9 or 27 neighbors a node; some 20 vectors.
       const double matrix  = n_dofs * (dim == 2 ? 18. : 81.) * 12.;
       const double vectors = n_dofs * 20. * 8.;
-      if (!direct) // a second matrix without the prescribed rows, and ML
+      if (solver == BulkSolverKind::geometric_multigrid)
+        return matrix + vectors + n_dofs * (dim == 2 ? 1200. : 1500.);
+      // A second matrix without the prescribed rows, and ML.
+      if (solver == BulkSolverKind::algebraic_multigrid)
         return 2. * matrix + vectors + n_dofs * (dim == 2 ? 850. : 2700.);
       // Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
       const double factor = dim == 2 ?
@@ -121,20 +124,22 @@ namespace Viscoplastic
           }
       }
 
-    const unsigned int n_face_dofs = d.face ? d.face->layout().n_dofs() : 0;
-    const bool         direct      = is_direct({parameters.solver.linear_solver,
-                                                d.moduli.max_poissons_ratio(),
-                                                d.n_solves},
-                                  dim,
-                                  dof_handler.n_dofs(),
-                                  n_face_dofs,
-                                  communicator);
+    const unsigned int   n_face_dofs = d.face ? d.face->layout().n_dofs() : 0;
+    const BulkSolverKind solver =
+      choose_bulk_solver({parameters.solver.linear_solver,
+                          d.moduli.max_poissons_ratio(),
+                          d.n_solves,
+                          d.space.n_first_dofs()},
+                         dim,
+                         dof_handler.n_dofs(),
+                         n_face_dofs,
+                         communicator);
     Utilities::System::MemoryStats now;
     Utilities::System::get_memory_stats(now);
     const double bytes =
       Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
                           communicator) +
-      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, direct) +
+      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, solver) +
       (scene.is_implicit() || scene.is_implicit_beyond_the_limit() ?
          // A second matrix, and two tensors of rank 4 a sample.
          dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
@@ -142,7 +147,9 @@ namespace Viscoplastic
              triangulation.n_global_active_cells() :
          0.);
     out << "Linear solver: "
-        << (direct ? "direct (CHOLMOD)" : "conjugate gradients with multigrid")
+        << (solver == BulkSolverKind::direct ?
+              "direct (CHOLMOD)" :
+              "conjugate gradients with multigrid")
         << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()
         << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
         << (scene.is_adaptive() ? " on the initial mesh" : "")

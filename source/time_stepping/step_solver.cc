@@ -47,11 +47,13 @@ namespace Viscoplastic
     const FaceRestriction &face = d.face_restriction();
     const SolverDemand     demand{d.scene().parameters.solver.linear_solver,
                               max_poissons_ratio,
-                              d.n_solves};
+                              d.n_solves,
+                              d.space.n_first_dofs()};
     if (bulk_solver &&
         bulk_solver->is_exact() ==
-          is_direct(
-            demand, dim, matrix.m(), face.dofs().size(), space.communicator) &&
+          (choose_bulk_solver(
+             demand, dim, matrix.m(), face.dofs().size(), space.communicator) ==
+           BulkSolverKind::direct) &&
         bulk_solver->renew(matrix))
       return;
     bulk_solver.reset(); // factors are what fills memory

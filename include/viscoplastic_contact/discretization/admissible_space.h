@@ -54,6 +54,11 @@ namespace Viscoplastic
     /// have values in cells.
     const std::vector<typename DoFHandler<dim>::active_cell_iterator> cells;
 
+    /// Degrees of freedom on the mesh that this one is refined from; 0 where it
+    /// is not refined. The same on all ranks.
+    types::global_dof_index
+    n_first_dofs() const;
+
     /// Hanging nodes only, in frames; for assembling matrices.
     const AffineConstraints<double> &
     hanging_nodes() const

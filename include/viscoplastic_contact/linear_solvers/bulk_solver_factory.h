@@ -37,20 +37,30 @@ namespace Viscoplastic
     double max_poissons_ratio = 0.;
     /// How often the solver will be used at least.
     unsigned int n_solves = 1;
+    /// Degrees of freedom of the mesh that the present one is refined from; 0
+    /// where it is not refined.
+    types::global_dof_index n_first_dofs = 0;
   };
 
 
+  enum class BulkSolverKind
+  {
+    direct,
+    geometric_multigrid,
+    algebraic_multigrid
+  };
+
   /**
-   * Whether make_bulk_solver() would take the direct solver, for a system with
-   * @p n_dofs degrees of freedom in @p dim dimensions, @p n_face_dofs of them
-   * on the face. Throws ExcMessage for a choice that cannot be had.
+   * The solver that make_bulk_solver() would take for a system with @p n_dofs
+   * degrees of freedom in @p dim dimensions, @p n_face_dofs of them on the
+   * face. Throws ExcMessage for a choice that cannot be had.
    */
-  bool
-  is_direct(const SolverDemand           &demand,
-            const unsigned int            dim,
-            const types::global_dof_index n_dofs,
-            const unsigned int            n_face_dofs,
-            const MPI_Comm                communicator);
+  BulkSolverKind
+  choose_bulk_solver(const SolverDemand           &demand,
+                     const unsigned int            dim,
+                     const types::global_dof_index n_dofs,
+                     const unsigned int            n_face_dofs,
+                     const MPI_Comm                communicator);
 
 
   /// Choose and set up a solver. Throws ExcMessage for a choice that cannot be

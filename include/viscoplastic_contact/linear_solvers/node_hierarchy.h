@@ -27,9 +27,8 @@ namespace Viscoplastic
   {
     using Node = types::global_dof_index;
 
-    /// The number of meshes, and of nodes of the first one: on all ranks.
+    /// The number of meshes, the same on all ranks.
     unsigned int n_levels = 0;
-    Node         n_first  = 0;
     /// Where the nodes of this rank begin, and the end.
     Node begin = 0, end = 0;
 

@@ -107,6 +107,41 @@ namespace Viscoplastic
         if (squared_estimate[cell->active_cell_index()] <= threshold)
           cell->clear_refine_flag();
     }
+
+
+
+    /// Whether the marked cells are worth a new mesh.
+    template <int dim>
+    bool
+    is_worth_it(const parallel::distributed::Triangulation<dim> &triangulation,
+                const Vector<double> &squared_estimate,
+                const double          smallest_share)
+    {
+      double       total = 0., refined = 0.;
+      unsigned int n_refined = 0, n_changed = 0;
+      for (const auto &cell : owned_cells(triangulation))
+        {
+          const double value = squared_estimate[cell->active_cell_index()];
+          total += value;
+          if (cell->refine_flag_set())
+            {
+              refined += value;
+              ++n_refined;
+            }
+          n_changed += cell->refine_flag_set() || cell->coarsen_flag_set();
+        }
+      const MPI_Comm comm = triangulation.get_communicator();
+      if (Utilities::MPI::sum(n_changed, comm) == 0)
+        return false;
+      const double n_coarsened =
+        Utilities::MPI::sum(n_coarsened_parents(triangulation), comm);
+      const double n_gone =
+        (Utilities::pow(2, dim) - 1) *
+        (n_coarsened - Utilities::MPI::sum(n_refined, comm));
+      return Utilities::MPI::sum(refined, comm) >=
+               smallest_share * Utilities::MPI::sum(total, comm) ||
+             n_gone >= 0.1 * triangulation.n_global_active_cells();
+    }
   } // namespace
 
 
@@ -145,10 +180,14 @@ namespace Viscoplastic
       limit_refinement(triangulation, squared_estimate, allowed);
 
     triangulation.prepare_coarsening_and_refinement();
-    bool changes = false;
-    for (const auto &cell : owned_cells(triangulation))
-      changes |= cell->refine_flag_set() || cell->coarsen_flag_set();
-    return Utilities::MPI::max(changes ? 1 : 0, comm) == 1;
+    if (is_worth_it(triangulation, squared_estimate, parameters.smallest_share))
+      return true;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      {
+        cell->clear_refine_flag();
+        cell->clear_coarsen_flag();
+      }
+    return false;
   }
 
 

@@ -442,6 +442,14 @@ namespace Viscoplastic
                       coarsening_fraction,
                       "The same with the smallest contributions, coarsened.",
                       Patterns::Double(0., 1.));
+    prm.add_parameter("Smallest share",
+                      smallest_share,
+                      "The mesh stays as it is while the cells to be refined "
+                      "have less than this share of the squared estimate, and "
+                      "coarsening would not remove a tenth of all cells. A new "
+                      "mesh would lower the estimate by less than about half "
+                      "this fraction. With 0 it always changes.",
+                      Patterns::Double(0., 1.));
     prm.add_parameter("Minimal level",
                       minimal_level,
                       "No cell is coarsened below this level.",

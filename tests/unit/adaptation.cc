@@ -645,6 +645,61 @@ namespace
 
 
 
+  TYPED_TEST(Adaptation, MarkingThatChangesAlmostNothingKeepsTheMesh)
+  {
+    constexpr int dim = TypeParam::value;
+    Body<dim>     body(box_with<dim>("set Role = clamped\n"));
+    body.triangulation.refine_global(1);
+    body.refine_where([](const Point<dim> &x) { return x[0] < 1.; });
+    // The fine half cannot be refined further; the other one has a share of
+    // the estimate.
+    RefinementParameters parameters;
+    parameters.refinement_fraction = 1.;
+    parameters.coarsening_fraction = 0.;
+    parameters.maximal_level       = 2;
+    Vector<double> estimate(body.triangulation.n_active_cells());
+    const auto     mark = [&](const double share) {
+      for (const auto &cell : body.triangulation.active_cell_iterators())
+        {
+          const bool is_fine = cell->center()[0] < 1.;
+          estimate[cell->active_cell_index()] =
+            cell->measure() * (is_fine ? 1. - share : share);
+        }
+      return mark_cells(body.triangulation, estimate, parameters);
+    };
+    const auto any_flag = [&] {
+      for (const auto &cell : body.triangulation.active_cell_iterators())
+        if (cell->refine_flag_set() || cell->coarsen_flag_set())
+          return true;
+      return false;
+    };
+    parameters.smallest_share = 0.02;
+    EXPECT_FALSE(mark(0.019));
+    EXPECT_FALSE(any_flag());
+    EXPECT_TRUE(mark(0.021));
+    parameters.smallest_share = 0.;
+    EXPECT_TRUE(mark(0.001));
+
+    // Coarsening alone: of one family in vain, of all of them not.
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      cell->clear_refine_flag();
+    parameters.smallest_share      = 0.02;
+    parameters.refinement_fraction = 0.;
+    parameters.coarsening_fraction = 0.001;
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      {
+        const bool is_in_the_corner =
+          cell->level() == 2 && cell->center().norm() < 0.25 * std::sqrt(dim);
+        estimate[cell->active_cell_index()] = is_in_the_corner ? 1e-9 : 1.;
+      }
+    EXPECT_FALSE(mark_cells(body.triangulation, estimate, parameters));
+    EXPECT_FALSE(any_flag());
+    parameters.coarsening_fraction = 1.;
+    EXPECT_TRUE(mark_cells(body.triangulation, estimate, parameters));
+  }
+
+
+
   TYPED_TEST(Adaptation, MarkingRespectsTheBudget)
   {
     constexpr int        dim = TypeParam::value;

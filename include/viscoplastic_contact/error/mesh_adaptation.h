@@ -22,6 +22,11 @@ namespace Viscoplastic
    * stay as they are; the budget may be exceeded by the cells that keep
    * neighbors within one level of each other.
    *
+   * Nothing stays marked if that would change (almost) nothing: while the cells
+   * to be refined have less than the smallest share s of the squared estimate,
+   * so that the estimate of the next mesh cannot be less than sqrt(1-s) of the
+   * present one, and the number of cells would not fall by a tenth.
+   *
    * @p squared_estimate has an entry for each active cell, of which those of
    * owned cells are read. Returns whether the mesh will change on any rank.
    * Collective.

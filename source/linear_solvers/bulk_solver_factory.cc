@@ -80,9 +80,10 @@ namespace Viscoplastic
       if (n_face_dofs > 5000 || n_dofs >= (dim == 2 ? 2000000 : 200000))
         return false;
       // An exact solution, where it costs next to nothing.
-      if (n_dofs < (demand.n_solves >= 4 ? 20000 : 2000))
+      const bool has_levels = has_small_first_mesh(demand, dim, n_dofs);
+      if (n_dofs < (demand.n_solves < 4 && has_levels ? 2000 : 20000))
         return true;
-      if (has_small_first_mesh(demand, dim, n_dofs))
+      if (has_levels)
         {
           const Costs  c     = costs(dim);
           const double ratio = n_dofs / c.n_dofs;

@@ -688,7 +688,7 @@ namespace
     Utilities::MPI::sum(n_new, MPI_COMM_WORLD, n_new);
     // Of meshes of 2, 4 and 8 cells along x.
     EXPECT_EQ(n_new[0], dim == 2 ? 6u : 12u);
-    EXPECT_EQ(n_new[0], hierarchy.n_first);
+    EXPECT_EQ(n_new[0] * dim, scenario.space->n_first_dofs());
     EXPECT_EQ(n_new[0] + n_new[1], dim == 2 ? 15u : 45u);
     EXPECT_EQ(n_new[0] + n_new[1] + n_new[2], dim == 2 ? 45u : 225u);
     EXPECT_GT(n_new[3], 0u);

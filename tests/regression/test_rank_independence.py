@@ -15,7 +15,6 @@ import os
 import re
 import sys
 import unittest
-from concurrent.futures import ThreadPoolExecutor
 
 from harness import SOURCE, TestCase, main, run, scene_file
 from rank_comparison import compare
@@ -159,10 +158,7 @@ def several(name, scene, ranks=RANKS):
     if scene.law:
         base = (MANUFACTURED / "tresca_2d.prm").read_text()
         text = base.replace("set Law             = maxwell", "") + text
-    with ThreadPoolExecutor(2) as pool:
-        return list(
-            pool.map(lambda n: run(name, changes, ranks=n, text=text), ranks)
-        )
+    return [run(name, changes, ranks=n, text=text) for n in ranks]
 
 
 class SameOnAllRanks(TestCase):

@@ -179,6 +179,12 @@ def measure(executable, work, dim, n, solver, n_steps, tolerance):
     }
 
 
+def print_row(columns, row):
+    """columns: {name: format}"""
+    words = (form.format(row[name]) for name, form in columns.items())
+    print(" ".join(words), flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(
         description="Measure the time of a step over that of a plain linear solve."
@@ -248,10 +254,7 @@ def main():
                 arguments.steps,
                 arguments.tolerance,
             )
-            print(
-                " ".join(form.format(row[name]) for name, form in columns.items()),
-                flush=True,
-            )
+            print_row(columns, row)
 
 
 if __name__ == "__main__":

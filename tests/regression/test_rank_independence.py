@@ -11,7 +11,6 @@ fields, which VTU keeps in single precision, to some 1e-7.
 """
 
 import dataclasses
-import os
 import re
 import sys
 import unittest
@@ -26,10 +25,6 @@ AGREE = 1e-7  # of the largest value of a column
 AGREE_IN_FIELDS = 1e-6  # of the largest value of a field
 
 MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
-
-# Two ranks that wait by spinning starve each other on busy cores.
-os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
-
 
 def cells(*numbers, to, colorize="true"):
     """Arguments of subdivided_hyper_rectangle from the origin."""
@@ -217,11 +212,13 @@ class Scenes(SameOnAllRanks):
     def test_adaptive(self):
         self.check_group("adaptive", identities=True)
 
+    # What these have beyond the others acts at a point: two numbers suffice.
+
     def test_laws(self):
-        self.check_group("laws")
+        self.check_group("laws", ranks=(1, 3))
 
     def test_manufactured(self):
-        self.check_group("manufactured")
+        self.check_group("manufactured", ranks=(1, 3))
 
     def test_demos(self):
         self.check_group("demos")

@@ -3,10 +3,10 @@
 """What a new mesh costs, in units of one plain linear solve on it.
 
 The adaptive slab and pad of prm/verification on meshes of several sizes, new
-ones after every step.  One run gives both numbers: what a step took beyond its
-columns in statistics.csv is the new mesh it began with, with everything that
-is made anew on it; a plain solve is 12 linear iterations, which multigrid takes
-from zero to 1e-8 (step_cost.py).
+ones after every step.  What a step took beyond its columns in statistics.csv is
+the new mesh that it began with, and everything that is made anew on it.  A plain
+solve is one by multigrid from zero to 1e-8 on a uniform mesh with about as many
+unknowns, measured directly after (step_cost.py); both by the unknown.
 """
 
 import argparse
@@ -18,9 +18,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+import step_cost
 from step_cost import SOURCE, print_row
 
-PLAIN_ITERATIONS = 12
 STEP = (
     "wall_rate",
     "wall_load",
@@ -61,26 +61,30 @@ def measure(executable, work, case, budget, n_steps):
             {column: float(value) for column, value in row.items()}
             for row in csv.DictReader(table)
         ]
-    meshes, iteration = [], []
+    meshes = []  # microseconds by the degree of freedom
     for before, row in zip(rows[1:], rows[2:]):
         # Meshes on the way to the budget are left out.
         if row["cells"] == before["cells"] or row["cells"] < 0.8 * budget:
             continue
-        beyond = sum(row[column] for column in STEP)
-        meshes.append(row["wall_total"] - before["wall_total"] - beyond)
-        iteration.append(row["wall_contact"] / row["linear_iterations"])
+        in_step = sum(row[column] for column in STEP)
+        seconds = row["wall_total"] - before["wall_total"] - in_step
+        meshes.append(1e6 * seconds / row["dofs"])
     if not meshes:
         sys.exit("Error: the budget of cells is not reached; give more steps.")
-    plain = PLAIN_ITERATIONS * statistics.median(iteration)
+    dim = int(case[0])
+    # the slab has twice as many cells along its length as over its height
+    n = 4 * max(1, round((budget / (4 - dim)) ** (1 / dim) / 4))
+    plain = step_cost.measure(executable, work, dim, n, "multigrid", 4, "1e-8")
+    mesh = statistics.median(meshes)
+    unit = 1e6 * plain["plain s"] / plain["dofs"]
     return {
         "case": case,
         "cells": int(rows[-1]["cells"]),
         "dofs": int(rows[-1]["dofs"]),
         "meshes": len(meshes),
-        "mesh s": statistics.median(meshes),
-        "plain s": plain,
-        "mesh/plain": statistics.median(meshes) / plain,
-        "us/dof": 1e6 * statistics.median(meshes) / rows[-1]["dofs"],
+        "mesh us/dof": mesh,
+        "plain us/dof": unit,
+        "mesh/plain": mesh / unit,
     }
 
 
@@ -92,10 +96,10 @@ def main():
         "--budgets",
         type=int,
         nargs="+",
-        default=[2000, 20000],
+        default=[2000, 16000],
         help="numbers of cells (%(default)s)",
     )
-    parser.add_argument("--steps", type=int, default=24, help="%(default)s")
+    parser.add_argument("--steps", type=int, default=16, help="%(default)s")
     parser.add_argument(
         "--executable",
         default=str(SOURCE / "build" / "viscoplastic_contact"),
@@ -109,12 +113,11 @@ def main():
         "cells": "{:7d}",
         "dofs": "{:7d}",
         "meshes": "{:6d}",
-        "mesh s": "{:7.3f}",
-        "plain s": "{:7.3f}",
+        "mesh us/dof": "{:11.1f}",
+        "plain us/dof": "{:12.2f}",
         "mesh/plain": "{:10.1f}",
-        "us/dof": "{:6.1f}",
     }
-    print("case   cells    dofs meshes  mesh s plain s mesh/plain us/dof", flush=True)
+    print("case   cells    dofs meshes mesh us/dof plain us/dof mesh/plain", flush=True)
     for case in SCENES:
         for budget in arguments.budgets:
             with tempfile.TemporaryDirectory() as work:

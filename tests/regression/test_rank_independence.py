@@ -11,6 +11,7 @@ fields, which VTU keeps in single precision, to some 1e-7.
 """
 
 import dataclasses
+import os
 import re
 import sys
 import unittest
@@ -25,6 +26,10 @@ AGREE = 1e-7  # of the largest value of a column
 AGREE_IN_FIELDS = 1e-6  # of the largest value of a field
 
 MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
+
+# Two ranks that wait by spinning starve each other on busy cores.
+os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
+
 
 def cells(*numbers, to, colorize="true"):
     """Arguments of subdivided_hyper_rectangle from the origin."""

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
 // The program for tests with many runs: started once, forked for each of them.
-// A line `directory argument ...' on standard input asks for a run of the program
-// there, whose output goes to the files stdout and stderr; a line with its exit
-// code, or minus the number of the signal that ended it, answers.
+// A line `directory argument ...' on standard input asks for a run there, with
+// its output in the files stdout and stderr. The answer is a line with its exit
+// code, or minus the number of the signal that ended it.
 
 #include <deal.II/base/mpi.h>
 

@@ -38,7 +38,11 @@ class Opens(TestCase):
         """A display of our own, where there is Xvfb: it names its number as
         soon as it is ready."""
         # nor a daemon of Open MPI for each start
-        cls.environment = {**os.environ, "OMPI_MCA_ess_singleton_isolated": "1"}
+        cls.environment = {
+            **os.environ,
+            "OMPI_MCA_ess_singleton_isolated": "1",
+            "OMPI_MCA_orte_create_session_dirs": "0",
+        }
         if not shutil.which("Xvfb"):
             return
         read, write = os.pipe()

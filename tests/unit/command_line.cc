@@ -163,7 +163,9 @@ namespace
   {
     // What is said to Open MPI, and what a launcher says.
     const std::vector<std::pair<std::string, std::string>> wanted{
-      {"OMPI_MCA_ess_singleton_isolated", "1"}, {"OMPI_MCA_pml", "ob1"}};
+      {"OMPI_MCA_ess_singleton_isolated", "1"},
+      {"OMPI_MCA_orte_create_session_dirs", "0"},
+      {"OMPI_MCA_pml", "ob1"}};
     const std::vector<std::string>     launchers{"OMPI_COMM_WORLD_SIZE",
                                              "PMIX_RANK",
                                              "PMI_RANK",
@@ -183,9 +185,9 @@ namespace
       {
         run_without_mpi_job();
         EXPECT_STREQ(std::getenv(name.c_str()), value.c_str());
-        setenv(name.c_str(), "0", 1); // the user's word
+        setenv(name.c_str(), "other", 1); // the user's word
         run_without_mpi_job();
-        EXPECT_STREQ(std::getenv(name.c_str()), "0");
+        EXPECT_STREQ(std::getenv(name.c_str()), "other");
       }
     for (const std::string &launcher : launchers)
       {

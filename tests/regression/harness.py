@@ -13,7 +13,6 @@ KEEP_RESULTS to a directory to keep them.
 
 import atexit
 import csv
-import functools
 import json
 import os
 import shutil
@@ -196,31 +195,46 @@ class Run:
 
 
 def run_program(arguments, ranks, work):
-    """The finished program as a subprocess.CompletedProcess; on one rank that of
-    a server where there is one."""
-    if ranks == 1 and SERVER:
-        code = server().run(work, arguments)
-        words = [(work / name).read_text() for name in ("stdout", "stderr")]
+    """The finished program as a subprocess.CompletedProcess; that of a server
+    where there is one."""
+    if SERVER:
+        code = server(ranks).run(work, arguments)
+        words = [
+            (work / name).read_text(errors="replace") for name in ("stdout", "stderr")
+        ]
         return subprocess.CompletedProcess(arguments, code, *words)
-    launcher = [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []
     return subprocess.run(
-        [*launcher, EXECUTABLE, *map(str, arguments)],
+        [*launcher(ranks), EXECUTABLE, *map(str, arguments)],
         cwd=work,
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        errors="replace",
     )
 
 
-@functools.cache
-def server():
+def launcher(ranks):
+    """The command that starts so many ranks; nothing for one."""
+    return [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []
+
+
+_servers = {}
+
+
+def server(ranks):
     """The program, started at its first run; no limits but an hour."""
-    process = program_server.Server(
-        SERVER, 3600, 3600, 0, {**os.environ, "OMP_NUM_THREADS": "1"}
-    )
-    atexit.register(process.close)
-    return process
+    if ranks not in _servers or _servers[ranks].has_ended():
+        _servers[ranks] = program_server.Server(
+            SERVER,
+            3600,
+            3600,
+            0,
+            {**os.environ, "OMP_NUM_THREADS": "1"},
+            launcher(ranks),
+        )
+        atexit.register(_servers[ranks].close)
+    return _servers[ranks]
 
 
 def run(scene, overrides=None, ranks=1, text=None, check=True):

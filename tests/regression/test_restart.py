@@ -29,11 +29,12 @@ from harness import (
     DEFECTS,
     EFFORT,
     EXECUTABLE,
-    MPIRUN,
     Run,
     TestCase,
     as_prm,
+    launcher,
     main,
+    run_program,
     scene_file,
 )
 
@@ -87,7 +88,7 @@ class Job:
     def __exit__(self, *_):
         shutil.rmtree(self.work, ignore_errors=True)
 
-    def command(self, *options, ranks=1, **overrides):
+    def arguments(self, *options, **overrides):
         file = self.work / f"{self.scene}.prm"
         file.write_text(scene_file(self.scene).read_text())
         variant = self.work / "overrides.prm"
@@ -100,12 +101,11 @@ class Job:
                 }
             )
         )
-        command = [EXECUTABLE, *options, str(file), str(variant)]
-        return command if ranks == 1 else MPIRUN + ["-n", str(ranks)] + command
+        return [*options, str(file), str(variant)]
 
-    def start(self, *options, ranks=1, overrides=None, **arguments):
+    def start(self, *options, ranks=1, **arguments):
         return subprocess.Popen(
-            self.command(*options, ranks=ranks, **(overrides or {})),
+            [*launcher(ranks), EXECUTABLE, *self.arguments(*options)],
             cwd=self.work,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
             stdout=subprocess.PIPE,
@@ -115,9 +115,10 @@ class Job:
             **arguments,
         )
 
-    def run(self, *options, code=0, **arguments):
-        process = self.start(*options, **arguments)
-        process.stdout, process.stderr = process.communicate()
+    def run(self, *options, code=0, ranks=1, overrides=None):
+        process = run_program(
+            self.arguments(*options, **(overrides or {})), ranks, self.work
+        )
         if code is not None and process.returncode != code:
             raise AssertionError(
                 f"{self.scene} {options}: exit code {process.returncode}, not "

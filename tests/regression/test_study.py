@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness import EXECUTABLE, MPIRUN, SOURCE, TestCase, as_prm, main
+from harness import EXECUTABLE, SOURCE, TestCase, as_prm, main, run_program
 
 sys.path.insert(0, str(SOURCE / "contrib"))
 
@@ -65,18 +65,11 @@ class Folder:
     def __exit__(self, *_):
         shutil.rmtree(self.work, ignore_errors=True)
 
-    def command(self, *arguments, ranks=1):
-        launcher = MPIRUN + ["-n", str(ranks)] if ranks > 1 else []
-        return [*launcher, EXECUTABLE, *arguments, str(self.scene), str(self.variant)]
+    def arguments(self, *arguments):
+        return [*arguments, str(self.scene), str(self.variant)]
 
     def run(self, *arguments, ranks=1):
-        return subprocess.run(
-            self.command(*arguments, ranks=ranks),
-            cwd=self.work,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        return run_program(self.arguments(*arguments), ranks, self.work)
 
     def rows(self):
         with open(self.study / "study.csv", newline="") as file:
@@ -310,7 +303,7 @@ class Resumed(TestCase):
 
     def start(self, folder):
         return subprocess.Popen(
-            folder.command("study"),
+            [EXECUTABLE, *folder.arguments("study")],
             cwd=folder.work,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,

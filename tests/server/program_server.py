@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs of the program without its start, half a second of linking libraries.
+"""Runs of the program without its start, half a second of linking libraries
+on each rank.
 
-The server (server.cc) has started once, and forks for each run.
+The server (server.cc) has started once, and forks for each run or runs one after
+the other on several ranks.
 """
 
 import subprocess
@@ -9,12 +11,13 @@ import subprocess
 
 class Server:
     """A process of server.cc: its executable, the limits of a run (seconds of
-    processor time and of the clock, bytes of memory or 0) and its environment.
+    processor time and of the clock, bytes of memory or 0), its environment and
+    the command that launches its ranks, if there are several.
     """
 
-    def __init__(self, executable, cpu, clock, memory, environment):
+    def __init__(self, executable, cpu, clock, memory, environment, launcher=()):
         self.process = subprocess.Popen(
-            [executable, str(cpu), str(clock), str(memory)],
+            [*launcher, executable, str(cpu), str(clock), str(memory)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -24,16 +27,20 @@ class Server:
 
     def run(self, work, arguments):
         """The exit code, or minus the signal, of a run in the directory work,
-        where its words are in the files stdout and stderr."""
+        where its words are in the files stdout and stderr. A failed run on
+        several ranks ends the server."""
         words = [str(work), *map(str, arguments)]
         # what is strange is in files
         assert all(word and not set(word) & set(" \t\n") for word in words), words
+        for name in "stdout", "stderr":
+            (work / name).write_bytes(b"")
         self.process.stdin.write(" ".join(words) + "\n")
         self.process.stdin.flush()
         answer = self.process.stdout.readline()
-        if not answer:
-            raise SystemExit("the server of the program has ended")
-        return int(answer)
+        return int(answer) if answer else self.process.wait()
+
+    def has_ended(self):
+        return self.process.poll() is not None
 
     def close(self):
         self.process.stdin.close()

@@ -4,18 +4,11 @@
 // multigrid, against dense algebra and against each other. The direct one runs
 // on one rank only.
 
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/mapping_q1.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
-#include "body.h"
+#include "bulk_scenario.h"
 #include "refusals.h"
 #include <viscoplastic_contact/contact/contact_solver.h>
-#include <viscoplastic_contact/discretization/bulk_system.h>
-#include <viscoplastic_contact/linear_solvers/algebraic_multigrid.h>
-#include <viscoplastic_contact/linear_solvers/geometric_multigrid.h>
-#include <viscoplastic_contact/linear_solvers/krylov_solver.h>
-#include <viscoplastic_contact/linear_solvers/schur_solver.h>
 
 #include <cmath>
 #include <limits>
@@ -33,122 +26,11 @@ namespace
 
 
 
-  /// A rotated box that rubs on two sides which meet: bilaterally below
-  /// (moving foundation), with given normal stress at x = 0; clamped at x = 2.
-  /// 2n cells along x, refined @p n_levels times, and once more near a vertex
-  /// of the face if @p refined.
-  template <int dim>
-  struct Scenario : Body<dim>
-  {
-    explicit Scenario(const unsigned int n,
-                      const unsigned int n_levels,
-                      const bool         refined = false)
-      : Body<dim>(text(n, n_levels))
-    {
-      if (refined)
-        {
-          const Point<dim> marked = this->triangulation.begin(0)->vertex(0);
-          this->refine_where([&marked](const Point<dim> &x) {
-            return (x - marked).norm() < 0.6;
-          });
-        }
-      this->set_up();
-      assemble_elastic_matrix(*this->space, *this->moduli, false, matrix);
-      start = this->rough_unknowns(2.);
-      start *= 0.05;
-      this->space->set_prescribed(0.5, start);
-      load = this->rough_unknowns(0.7);
-      // Rows of the load at excluded components are not used.
-      load.add(0.1, this->space->rigid_body_modes()[0]);
-      load.add(1., this->loads->assemble(0.5).values);
-    }
-
-    static std::string
-    text(const unsigned int n, const unsigned int n_levels)
-    {
-      std::string text =
-        box<dim>(n,
-                 oblique<dim>() +
-                   "\nset Global refinements = " + std::to_string(n_levels)) +
-        boundary(0,
-                 "set Role = contact\nset Friction law = coulomb\n"
-                 "set Friction coefficient = 0.3\nset Normal stress = -1") +
-        boundary(1, "set Role = clamped") +
-        boundary(2,
-                 "set Role = contact\nset Friction law = tresca\n"
-                 "set Friction bound = 0.4\n"
-                 "set Foundation displacement = -0.1*t") +
-        boundary(3, "set Role = free");
-      for (unsigned int id = 4; id < 2 * dim; ++id)
-        text +=
-          boundary(id, id == 4 ? "set Role = symmetry" : "set Role = free");
-      return text;
-    }
-
-    std::unique_ptr<BulkSolver>
-    direct() const
-    {
-      return std::make_unique<SchurSolver>(matrix,
-                                           this->space->excluded(),
-                                           this->face->restriction(),
-                                           dim);
-    }
-
-    std::unique_ptr<BulkSolver>
-    krylov(std::unique_ptr<Preconditioner> preconditioner) const
-    {
-      return std::make_unique<KrylovSolver>(matrix,
-                                            this->space->excluded(),
-                                            this->face->restriction(),
-                                            std::move(preconditioner));
-    }
-
-    std::unique_ptr<BulkSolver>
-    algebraic() const
-    {
-      return krylov(
-        std::make_unique<AlgebraicMultigrid>(matrix,
-                                             this->space->excluded(),
-                                             this->space->rigid_body_modes(),
-                                             this->face->restriction(),
-                                             dim));
-    }
-
-    /// All meshes are levels, however small they are.
-    std::unique_ptr<BulkSolver>
-    geometric() const
-    {
-      return krylov(std::make_unique<GeometricMultigrid<dim>>(
-        matrix,
-        this->space->excluded(),
-        make_node_hierarchy(*this->space),
-        this->face->restriction(),
-        /* coarse_size = */ 0));
-    }
-
-    /// The solvers that run on the present number of ranks.
-    std::vector<std::unique_ptr<BulkSolver>>
-    solvers() const
-    {
-      std::vector<std::unique_ptr<BulkSolver>> result;
-      result.push_back(geometric());
-      result.push_back(algebraic());
-      if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
-        result.push_back(direct());
-      return result;
-    }
-
-    DistributedMatrix matrix;
-    DistributedVector load, start;
-  };
-
-
-
   /// Everything on all ranks, without structure.
   struct Dense
   {
     template <int dim>
-    explicit Dense(const Scenario<dim> &scenario)
+    explicit Dense(const BulkScenario<dim> &scenario)
       : face_dofs(scenario.face->restriction().dofs())
     {
       const unsigned int  n = scenario.dof_handler.n_dofs();
@@ -289,10 +171,10 @@ namespace
 
   TYPED_TEST(BulkSolvers, PlainSolve)
   {
-    constexpr int       dim = TypeParam::value;
-    const Scenario<dim> scenario(1, 1, true);
-    const Dense         dense(scenario);
-    Vector<double>      exact = dense.solve(dense.residual(dense.start));
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(1, 1, true);
+    const Dense             dense(scenario);
+    Vector<double>          exact = dense.solve(dense.residual(dense.start));
     exact += dense.start;
     for (const auto &solver : scenario.solvers())
       {
@@ -313,11 +195,11 @@ namespace
   {
     if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
       GTEST_SKIP() << "The direct solver runs on one rank.";
-    constexpr int       dim = TypeParam::value;
-    const Scenario<dim> scenario(1, 1, true);
-    const Dense         dense(scenario);
-    const auto          solver = scenario.direct();
-    const auto         &S =
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(1, 1, true);
+    const Dense             dense(scenario);
+    const auto              solver = scenario.direct();
+    const auto             &S =
       dynamic_cast<const DenseFaceMatrix &>(solver->face_matrix()).matrix();
     const unsigned int m = dense.face_dofs.size();
     ASSERT_EQ(S.m(), m);
@@ -381,12 +263,12 @@ namespace
 
   TYPED_TEST(BulkSolvers, StepsOfAContactSolver)
   {
-    constexpr int       dim = TypeParam::value;
-    const Scenario<dim> scenario(1, 1, true);
-    const Dense         dense(scenario);
-    const FrictionFace &face = scenario.face->layout();
-    const unsigned int  m    = face.n_dofs();
-    Vector<double>      force(m), change(m);
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(1, 1, true);
+    const Dense             dense(scenario);
+    const FrictionFace     &face = scenario.face->layout();
+    const unsigned int      m    = face.n_dofs();
+    Vector<double>          force(m), change(m);
     for (unsigned int k = 0; k < m; ++k)
       {
         force[k]  = 0.1 * std::cos(3. * k);
@@ -508,10 +390,10 @@ namespace
 
   TYPED_TEST(BulkSolvers, FrictionalSolutionsAgree)
   {
-    constexpr int       dim       = TypeParam::value;
-    constexpr double    tolerance = 1e-9;
-    const Scenario<dim> scenario(dim == 2 ? 8 : 3, true);
-    const FrictionFace &face = scenario.face->layout();
+    constexpr int           dim       = TypeParam::value;
+    constexpr double        tolerance = 1e-9;
+    const BulkScenario<dim> scenario(dim == 2 ? 8 : 3, true);
+    const FrictionFace     &face = scenario.face->layout();
     // The load is a rough one of size 1 a node; so are these bounds.
     auto bounds = scenario.face->bounds(0.5);
     for (double &bound : bounds)
@@ -580,8 +462,8 @@ namespace
   TYPED_TEST(BulkSolvers, MultigridWithSeveralLevels)
   {
     // Large enough that ML does not just factorize.
-    constexpr int       dim = TypeParam::value;
-    const Scenario<dim> scenario(dim == 2 ? 7 : 2, 2);
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(dim == 2 ? 7 : 2, 2);
     ASSERT_GT(scenario.dof_handler.n_dofs(), 2500u);
     DistributedVector load(scenario.load);
     scenario.set_excluded_to_zero(load);
@@ -610,160 +492,13 @@ namespace
 
 
 
-  /// Points stick within this distance of a vertex of the face.
-  template <int dim>
-  FaceTruncation
-  sticking_within(const double radius, const Scenario<dim> &scenario)
-  {
-    std::map<types::global_dof_index, Point<dim>> position;
-    DoFTools::map_dofs_to_support_points(MappingQ1<dim>(),
-                                         scenario.dof_handler,
-                                         position);
-    const FaceRestriction &restriction = scenario.face->restriction();
-    const FrictionFace    &face        = restriction.face();
-    const Point<dim>       vertex = scenario.triangulation.begin(0)->vertex(0);
-    // Face vectors are the same on all ranks.
-    std::vector<double> distance(face.n_nodes(), 0.);
-    for (unsigned int n = 0; n < face.n_nodes(); ++n)
-      {
-        const auto dof = restriction.dofs()[face.first_dof[n]];
-        if (scenario.space->owned.is_element(dof))
-          distance[n] = position.at(dof).distance(vertex);
-      }
-    Utilities::MPI::sum(distance, MPI_COMM_WORLD, distance);
-    FaceTruncation truncation;
-    truncation.spring.resize(face.n_nodes());
-    for (const double r : distance)
-      truncation.projector.emplace_back(
-        r <= radius ? Tensor<2, 3>() :
-                      Tensor<2, 3>(unit_symmetric_tensor<3>()));
-    return truncation;
-  }
-
-
-
-  TYPED_TEST(BulkSolvers, NestedSpacesHaveLinearFunctions)
-  {
-    constexpr int       dim = TypeParam::value;
-    const Scenario<dim> scenario(1, 2, true);
-    const NodeHierarchy hierarchy = make_node_hierarchy(*scenario.space);
-    std::map<types::global_dof_index, Point<dim>> position;
-    DoFTools::map_dofs_to_support_points(MappingQ1<dim>(),
-                                         scenario.dof_handler,
-                                         position);
-    std::vector<double> x(scenario.dof_handler.n_dofs(), 0.);
-    for (const auto dof : scenario.space->owned)
-      x[dof] = position.at(dof)[dof % dim];
-    Utilities::MPI::sum(x, MPI_COMM_WORLD, x);
-    std::vector<unsigned int> n_new(hierarchy.n_levels, 0);
-    for (std::size_t n = 0; n < hierarchy.first_level.size(); ++n)
-      {
-        const auto first_dof = (hierarchy.begin + n) * dim;
-        if (scenario.space->cartesian_hanging_nodes().is_constrained(first_dof))
-          {
-            EXPECT_GE(hierarchy.first_level[n], hierarchy.n_levels);
-            continue;
-          }
-        ASSERT_LT(hierarchy.first_level[n], hierarchy.n_levels);
-        ++n_new[hierarchy.first_level[n]];
-        EXPECT_EQ(hierarchy.row_begin[n] == hierarchy.row_begin[n + 1],
-                  hierarchy.first_level[n] == 0);
-        if (hierarchy.first_level[n] == 0)
-          continue;
-        double         sum = 0.;
-        Tensor<1, dim> interpolated;
-        for (std::size_t e = hierarchy.row_begin[n];
-             e < hierarchy.row_begin[n + 1];
-             ++e)
-          {
-            const auto &[parent, weight] = hierarchy.parents[e];
-            sum += weight;
-            for (unsigned int d = 0; d < dim; ++d)
-              interpolated[d] += weight * x[parent * dim + d];
-          }
-        EXPECT_NEAR(sum, 1., 1e-14);
-        for (unsigned int d = 0; d < dim; ++d)
-          EXPECT_NEAR(interpolated[d], x[first_dof + d], 1e-14);
-      }
-    Utilities::MPI::sum(n_new, MPI_COMM_WORLD, n_new);
-    // Of meshes of 2, 4 and 8 cells along x.
-    EXPECT_EQ(n_new[0], dim == 2 ? 6u : 12u);
-    EXPECT_EQ(n_new[0] * dim, scenario.space->n_first_dofs());
-    EXPECT_EQ(n_new[0] + n_new[1], dim == 2 ? 15u : 45u);
-    EXPECT_EQ(n_new[0] + n_new[1] + n_new[2], dim == 2 ? 45u : 225u);
-    EXPECT_GT(n_new[3], 0u);
-  }
-
-
-
-  TYPED_TEST(BulkSolvers, IterationsDoNotGrowWithTheMesh)
-  {
-    // Nothing sticks, about half of the face, all of it; with one set-up. What
-    // filters a preconditioner for a free face takes 20 more on the last mesh.
-    constexpr int                               dim = TypeParam::value;
-    std::map<double, std::vector<unsigned int>> iterations;
-    for (const unsigned int n_levels : {1, 2, 3})
-      {
-        const Scenario<dim> scenario(1,
-                                     dim == 2 ? n_levels + 2 : n_levels,
-                                     true);
-        const unsigned int  m      = scenario.face->layout().n_dofs();
-        const auto          solver = scenario.geometric();
-        for (const double radius : {-1., 0.9, 10.})
-          {
-            Vector<double>    force(m), w(m);
-            DistributedVector u(scenario.start);
-            solver->begin(scenario.load, u);
-            solver->set_truncation(sticking_within(radius, scenario));
-            iterations[radius].push_back(solver->correct(force, 1e-8, w));
-          }
-      }
-    for (const auto &[radius, counts] : iterations)
-      {
-        SCOPED_TRACE(radius);
-        EXPECT_LE(counts[2], counts[1] + 2);
-        EXPECT_LE(counts[2], counts[0] + 3);
-        EXPECT_LE(counts[2], 20u);
-      }
-  }
-
-
-
-  TYPED_TEST(BulkSolvers, RenewedSetUpIsANewOne)
-  {
-    constexpr int        dim = TypeParam::value;
-    Scenario<dim>        scenario(1, 2, true);
-    const auto           renewed    = scenario.geometric();
-    const FaceTruncation truncation = sticking_within<dim>(0.9, scenario);
-    const unsigned int   m          = scenario.face->layout().n_dofs();
-    const auto           correction = [&](BulkSolver &solver) {
-      Vector<double>    force(m), w(m);
-      DistributedVector u(scenario.start);
-      solver.begin(scenario.load, u);
-      solver.set_truncation(truncation);
-      solver.correct(force, 1e-8, w);
-      return w;
-    };
-    correction(*renewed);
-    // Another material, of another unit of stress.
-    const ElasticModuli<dim> moduli(Stiffness::isotropic(1e9, 0.4));
-    assemble_elastic_matrix(*scenario.space, moduli, true, scenario.matrix);
-    ASSERT_TRUE(renewed->renew(scenario.matrix));
-    const auto fresh = scenario.geometric();
-    EXPECT_EQ(distance(correction(*renewed), correction(*fresh)), 0.);
-    const DistributedMatrix other;
-    EXPECT_FALSE(renewed->renew(other));
-  }
-
-
-
   TYPED_TEST(BulkSolvers, WithoutFriction)
   {
-    constexpr int         dim = TypeParam::value;
-    const Scenario<dim>   scenario(2, 0);
-    const Dense           dense(scenario);
-    const FaceRestriction no_face;
-    Vector<double>        exact = dense.solve(dense.residual(dense.start));
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(2, 0);
+    const Dense             dense(scenario);
+    const FaceRestriction   no_face;
+    Vector<double>          exact = dense.solve(dense.residual(dense.start));
     exact += dense.start;
     const bool serial = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
     const BulkSystem system =
@@ -839,8 +574,8 @@ namespace
   {
     if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
       GTEST_SKIP() << "The direct solver runs on one rank.";
-    constexpr int dim = TypeParam::value;
-    Scenario<dim> scenario(2, 0);
+    constexpr int     dim = TypeParam::value;
+    BulkScenario<dim> scenario(2, 0);
     scenario.matrix *= -1.;
     expect_refusal([&] { scenario.direct(); }, "not positive definite");
   }

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Geometric multigrid: its hierarchy of spaces, its iterations on finer and
+// finer meshes, and what a renewal leaves of the former matrix.
+
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/mapping_q1.h>
+
+#include "bulk_scenario.h"
+
+#include <map>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  template <typename Dimension>
+  class NestedMeshes : public testing::Test
+  {};
+  TYPED_TEST_SUITE(NestedMeshes, Dimensions, );
+
+
+
+  /// Points stick within this distance of a vertex of the face.
+  template <int dim>
+  FaceTruncation
+  sticking_within(const double radius, const BulkScenario<dim> &scenario)
+  {
+    std::map<types::global_dof_index, Point<dim>> position;
+    DoFTools::map_dofs_to_support_points(MappingQ1<dim>(),
+                                         scenario.dof_handler,
+                                         position);
+    const FaceRestriction &restriction = scenario.face->restriction();
+    const FrictionFace    &face        = restriction.face();
+    const Point<dim>       vertex = scenario.triangulation.begin(0)->vertex(0);
+    // Face vectors are the same on all ranks.
+    std::vector<double> distance(face.n_nodes(), 0.);
+    for (unsigned int n = 0; n < face.n_nodes(); ++n)
+      {
+        const auto dof = restriction.dofs()[face.first_dof[n]];
+        if (scenario.space->owned.is_element(dof))
+          distance[n] = position.at(dof).distance(vertex);
+      }
+    Utilities::MPI::sum(distance, MPI_COMM_WORLD, distance);
+    FaceTruncation truncation;
+    truncation.spring.resize(face.n_nodes());
+    for (const double r : distance)
+      truncation.projector.emplace_back(
+        r <= radius ? Tensor<2, 3>() :
+                      Tensor<2, 3>(unit_symmetric_tensor<3>()));
+    return truncation;
+  }
+
+
+
+  TYPED_TEST(NestedMeshes, NestedSpacesHaveLinearFunctions)
+  {
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(1, 2, true);
+    const NodeHierarchy     hierarchy = make_node_hierarchy(*scenario.space);
+    std::map<types::global_dof_index, Point<dim>> position;
+    DoFTools::map_dofs_to_support_points(MappingQ1<dim>(),
+                                         scenario.dof_handler,
+                                         position);
+    std::vector<double> x(scenario.dof_handler.n_dofs(), 0.);
+    for (const auto dof : scenario.space->owned)
+      x[dof] = position.at(dof)[dof % dim];
+    Utilities::MPI::sum(x, MPI_COMM_WORLD, x);
+    std::vector<unsigned int> n_new(hierarchy.n_levels, 0);
+    for (std::size_t n = 0; n < hierarchy.first_level.size(); ++n)
+      {
+        const auto first_dof = (hierarchy.begin + n) * dim;
+        if (scenario.space->cartesian_hanging_nodes().is_constrained(first_dof))
+          {
+            EXPECT_GE(hierarchy.first_level[n], hierarchy.n_levels);
+            continue;
+          }
+        ASSERT_LT(hierarchy.first_level[n], hierarchy.n_levels);
+        ++n_new[hierarchy.first_level[n]];
+        EXPECT_EQ(hierarchy.row_begin[n] == hierarchy.row_begin[n + 1],
+                  hierarchy.first_level[n] == 0);
+        if (hierarchy.first_level[n] == 0)
+          continue;
+        double         sum = 0.;
+        Tensor<1, dim> interpolated;
+        for (std::size_t e = hierarchy.row_begin[n];
+             e < hierarchy.row_begin[n + 1];
+             ++e)
+          {
+            const auto &[parent, weight] = hierarchy.parents[e];
+            sum += weight;
+            for (unsigned int d = 0; d < dim; ++d)
+              interpolated[d] += weight * x[parent * dim + d];
+          }
+        EXPECT_NEAR(sum, 1., 1e-14);
+        for (unsigned int d = 0; d < dim; ++d)
+          EXPECT_NEAR(interpolated[d], x[first_dof + d], 1e-14);
+      }
+    Utilities::MPI::sum(n_new, MPI_COMM_WORLD, n_new);
+    // Of meshes of 2, 4 and 8 cells along x.
+    EXPECT_EQ(n_new[0], dim == 2 ? 6u : 12u);
+    EXPECT_EQ(n_new[0] * dim, scenario.space->n_first_dofs());
+    EXPECT_EQ(n_new[0] + n_new[1], dim == 2 ? 15u : 45u);
+    EXPECT_EQ(n_new[0] + n_new[1] + n_new[2], dim == 2 ? 45u : 225u);
+    EXPECT_GT(n_new[3], 0u);
+  }
+
+
+
+  TYPED_TEST(NestedMeshes, IterationsDoNotGrowWithTheMesh)
+  {
+    // Nothing sticks, about half of the face, all of it; with one set-up. What
+    // filters a preconditioner for a free face takes 20 more on the last mesh.
+    constexpr int                               dim = TypeParam::value;
+    std::map<double, std::vector<unsigned int>> iterations;
+    for (const unsigned int n_levels : {1, 2, 3})
+      {
+        const BulkScenario<dim> scenario(1,
+                                         dim == 2 ? n_levels + 2 : n_levels,
+                                         true);
+        const unsigned int      m      = scenario.face->layout().n_dofs();
+        const auto              solver = scenario.geometric();
+        for (const double radius : {-1., 0.9, 10.})
+          {
+            Vector<double>    force(m), w(m);
+            DistributedVector u(scenario.start);
+            solver->begin(scenario.load, u);
+            solver->set_truncation(sticking_within(radius, scenario));
+            iterations[radius].push_back(solver->correct(force, 1e-8, w));
+          }
+      }
+    for (const auto &[radius, counts] : iterations)
+      {
+        SCOPED_TRACE(radius);
+        EXPECT_LE(counts[2], counts[1] + 2);
+        EXPECT_LE(counts[2], counts[0] + 3);
+        EXPECT_LE(counts[2], 20u);
+      }
+  }
+
+
+
+  TYPED_TEST(NestedMeshes, RenewedSetUpIsANewOne)
+  {
+    constexpr int        dim = TypeParam::value;
+    BulkScenario<dim>    scenario(1, 2, true);
+    const auto           renewed    = scenario.geometric();
+    const FaceTruncation truncation = sticking_within<dim>(0.9, scenario);
+    const unsigned int   m          = scenario.face->layout().n_dofs();
+    const auto           correction = [&](BulkSolver &solver) {
+      Vector<double>    force(m), w(m);
+      DistributedVector u(scenario.start);
+      solver.begin(scenario.load, u);
+      solver.set_truncation(truncation);
+      solver.correct(force, 1e-8, w);
+      return w;
+    };
+    correction(*renewed);
+    // Another material, of another unit of stress.
+    const ElasticModuli<dim> moduli(Stiffness::isotropic(1e9, 0.4));
+    assemble_elastic_matrix(*scenario.space, moduli, true, scenario.matrix);
+    ASSERT_TRUE(renewed->renew(scenario.matrix));
+    const auto fresh = scenario.geometric();
+    EXPECT_TRUE(correction(*renewed) == correction(*fresh));
+    const DistributedMatrix other;
+    EXPECT_FALSE(renewed->renew(other));
+  }
+} // namespace

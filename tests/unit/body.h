@@ -94,6 +94,19 @@ namespace Viscoplastic::Testing
 
 
 
+  /// The box in 4 x 2 (x 2) cells, all of whose faces have one role.
+  template <int dim>
+  std::string
+  box_with(const std::string &entries)
+  {
+    std::string text = box<dim>(2);
+    for (unsigned int id = 0; id < 2 * dim; ++id)
+      text += boundary(id, entries);
+    return text;
+  }
+
+
+
   /// A rotation about a skew axis, so that nothing stays along an axis.
   template <int dim>
   std::string

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Which cells are marked for another mesh, on any number of ranks.
+
+#include "body.h"
+#include <viscoplastic_contact/error/mesh_adaptation.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  template <typename Dimension>
+  class Marking : public testing::Test
+  {};
+  TYPED_TEST_SUITE(Marking, Dimensions, );
+
+
+
+  TYPED_TEST(Marking, RespectsLevels)
+  {
+    constexpr int        dim = TypeParam::value;
+    Body<dim>            body(box_with<dim>("set Role = clamped\n"));
+    RefinementParameters parameters;
+    parameters.refinement_fraction = 0.8;
+    parameters.coarsening_fraction = 0.1;
+    parameters.minimal_level       = 1;
+    parameters.maximal_level       = 2;
+    body.triangulation.refine_global(1);
+    // A peak that moves from left to right.
+    for (const double peak : {0., 0., 2., 2.})
+      {
+        Vector<double> estimate(body.triangulation.n_active_cells());
+        for (const auto &cell : body.triangulation.active_cell_iterators())
+          estimate[cell->active_cell_index()] =
+            std::exp(-10. * std::abs(cell->center()[0] - peak));
+        mark_cells(body.triangulation, estimate, parameters);
+        body.triangulation.execute_coarsening_and_refinement();
+        int coarsest = 100, finest = 0;
+        for (const auto &cell : body.triangulation.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              coarsest = std::min(coarsest, cell->level());
+              finest   = std::max(finest, cell->level());
+            }
+        EXPECT_EQ(Utilities::MPI::min(coarsest, MPI_COMM_WORLD), 1);
+        EXPECT_EQ(Utilities::MPI::max(finest, MPI_COMM_WORLD), 2);
+      }
+    // Nothing left to do.
+    parameters.coarsening_fraction = 0.;
+    parameters.maximal_level       = 1;
+    Vector<double> estimate(body.triangulation.n_active_cells());
+    estimate = 1.;
+    EXPECT_FALSE(mark_cells(body.triangulation, estimate, parameters));
+    estimate                 = 0.;
+    parameters.maximal_level = 6;
+    EXPECT_FALSE(mark_cells(body.triangulation, estimate, parameters));
+  }
+
+
+
+  TYPED_TEST(Marking, ThatChangesAlmostNothingKeepsTheMesh)
+  {
+    constexpr int dim = TypeParam::value;
+    Body<dim>     body(box_with<dim>("set Role = clamped\n"));
+    body.triangulation.refine_global(1);
+    body.refine_where([](const Point<dim> &x) { return x[0] < 1.; });
+    // The fine half cannot be refined further; the other one has a share of
+    // the estimate.
+    RefinementParameters parameters;
+    parameters.refinement_fraction = 1.;
+    parameters.coarsening_fraction = 0.;
+    parameters.maximal_level       = 2;
+    Vector<double> estimate(body.triangulation.n_active_cells());
+    const auto     mark = [&](const double share) {
+      for (const auto &cell : body.triangulation.active_cell_iterators())
+        {
+          const bool is_fine = cell->center()[0] < 1.;
+          estimate[cell->active_cell_index()] =
+            cell->measure() * (is_fine ? 1. - share : share);
+        }
+      return mark_cells(body.triangulation, estimate, parameters);
+    };
+    const auto any_flag = [&] {
+      for (const auto &cell : body.triangulation.active_cell_iterators())
+        if (cell->refine_flag_set() || cell->coarsen_flag_set())
+          return true;
+      return false;
+    };
+    parameters.smallest_share = 0.02;
+    EXPECT_FALSE(mark(0.019));
+    EXPECT_FALSE(any_flag());
+    EXPECT_TRUE(mark(0.021));
+    parameters.smallest_share = 0.;
+    EXPECT_TRUE(mark(0.001));
+
+    // Coarsening alone: of one family in vain, of all of them not.
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      cell->clear_refine_flag();
+    parameters.smallest_share      = 0.02;
+    parameters.refinement_fraction = 0.;
+    parameters.coarsening_fraction = 0.001;
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      {
+        const bool is_in_the_corner =
+          cell->level() == 2 && cell->center().norm() < 0.25 * std::sqrt(dim);
+        estimate[cell->active_cell_index()] = is_in_the_corner ? 1e-9 : 1.;
+      }
+    EXPECT_FALSE(mark_cells(body.triangulation, estimate, parameters));
+    EXPECT_FALSE(any_flag());
+    parameters.coarsening_fraction = 1.;
+    EXPECT_TRUE(mark_cells(body.triangulation, estimate, parameters));
+  }
+
+
+
+  TYPED_TEST(Marking, RespectsTheBudget)
+  {
+    constexpr int        dim = TypeParam::value;
+    Body<dim>            body(box_with<dim>("set Role = clamped\n"));
+    RefinementParameters parameters;
+    parameters.refinement_fraction = 0.9;
+    parameters.coarsening_fraction = 0.02;
+    parameters.cell_budget         = 300;
+    std::vector<unsigned int> n_cells;
+    for (unsigned int round = 0; round < 8; ++round)
+      {
+        // A corner singularity that no mesh resolves.
+        Vector<double> estimate(body.triangulation.n_active_cells());
+        for (const auto &cell : body.triangulation.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              const Point<dim> x = cell->center();
+              estimate[cell->active_cell_index()] =
+                cell->measure() / (x[0] + 0.5 * x[1] + 0.2 * x[dim - 1]);
+            }
+        mark_cells(body.triangulation, estimate, parameters);
+        body.triangulation.execute_coarsening_and_refinement();
+        n_cells.push_back(body.triangulation.n_global_active_cells());
+      }
+    // Beyond the budget only by cells that grade the mesh.
+    EXPECT_GT(n_cells.back(), 280u);
+    for (const unsigned int n : n_cells)
+      EXPECT_LT(n, 315u);
+  }
+} // namespace

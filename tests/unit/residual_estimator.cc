@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Error estimators in space against estimates by hand, on any number of ranks.
+
+#include "sampled_body.h"
+#include <viscoplastic_contact/error/kelly_estimator.h>
+#include <viscoplastic_contact/error/residual_estimator.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  const double mu = 1. / 2.6; // of the default material, E = 1, nu = 0.3
+
+
+
+  template <typename Dimension>
+  class Estimate : public testing::Test
+  {};
+  TYPED_TEST_SUITE(Estimate, Dimensions, );
+
+
+
+  template <int dim>
+  Vector<double>
+  residual_estimate(const StressSpace<dim>   &stress_space,
+                    const DistributedVector  &u,
+                    const IrreversibleStress &z,
+                    const double              t,
+                    const DistributedVector  *multiplier_density)
+  {
+    return ResidualEstimator<dim>(stress_space)
+      .estimate(u, z, t, multiplier_density);
+  }
+
+
+
+  /// E eps of linear_displacement() plus constant_stress().
+  template <int dim>
+  Stress
+  patch_stress()
+  {
+    Stress strain;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = i; j < dim; ++j)
+        strain[i][j] =
+          0.5 * ((linear_displacement(Point<dim>(Point<dim>::unit_vector(j))) -
+                  linear_displacement(Point<dim>()))[i] +
+                 (linear_displacement(Point<dim>(Point<dim>::unit_vector(i))) -
+                  linear_displacement(Point<dim>()))[j]);
+    return Stiffness::isotropic(1., 0.3).stress(strain) + constant_stress();
+  }
+
+
+
+  /// Uniform stress and data that match it: y min is a Tresca or Coulomb face,
+  /// y max carries a traction, x max is a foundation without friction.
+  template <int dim>
+  std::string
+  patch(const bool coulomb, const Tensor<1, dim> &traction_error)
+  {
+    const Stress   stress = patch_stress<dim>();
+    Tensor<1, dim> top;
+    for (unsigned int d = 0; d < dim; ++d)
+      top[d] = stress[1][d] + traction_error[d];
+    std::ostringstream traction, normal_stress;
+    traction.precision(17);
+    normal_stress.precision(17);
+    for (unsigned int d = 0; d < dim; ++d)
+      traction << (d > 0 ? "; " : "") << top[d];
+    normal_stress << stress[1][1];
+
+    std::string text =
+      box<dim>(2) + boundary(0, "set Role = clamped\n") +
+      boundary(1, "set Role = clamped\n") +
+      boundary(2,
+               std::string("set Role = contact\n") +
+                 (coulomb ? "set Friction law = coulomb\n"
+                            "set Friction coefficient = 1\n"
+                            "set Normal stress = " +
+                              normal_stress.str() + "\n" :
+                            "set Friction law = tresca\n"
+                            "set Friction bound = 1\n")) +
+      boundary(3,
+               "set Role = traction\nset Traction = " + traction.str() + "\n");
+    for (unsigned int id = 4; id < 2 * dim; ++id)
+      text += boundary(id,
+                       "set Role = displacement\n"
+                       "set Displacement = 0; 0; 0\n");
+    return text;
+  }
+
+
+
+  /// lambda_h of the patch: minus the tangential traction on the body.
+  template <int dim>
+  Tensor<1, dim>
+  patch_multiplier(const Point<dim> &)
+  {
+    Tensor<1, dim> lambda;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (d != 1)
+        lambda[d] = patch_stress<dim>()[d][1];
+    return lambda;
+  }
+
+
+
+  TYPED_TEST(Estimate, VanishesForUniformStress)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const bool coulomb : {false, true})
+      for (const bool at_quadrature_points : {false, true})
+        for (const bool mean_dilatation : {false, true})
+          {
+            SampledBody<dim> body(patch<dim>(coulomb, Tensor<1, dim>()),
+                                  at_quadrature_points,
+                                  mean_dilatation);
+            body.distort();
+            body.refine_where([](const Point<dim> &x) {
+              return x[0] > 0.7 && x[dim - 1] < 0.5;
+            });
+            body.set_up();
+            const DistributedVector u =
+              body.interpolate(linear_displacement<dim>);
+            const DistributedVector density =
+              body.interpolate(patch_multiplier<dim>);
+            const auto z =
+              body.sample([](const Point<dim> &) { return constant_stress(); });
+            EXPECT_LT(total_estimate(residual_estimate(
+                                       *body.stress_space, u, z, 0., &density),
+                                     body.triangulation),
+                      1e-13);
+            EXPECT_LT(total_estimate(kelly_estimate(*body.space, u),
+                                     body.triangulation),
+                      1e-13);
+            // Friction is seen.
+            const DistributedVector none = body.space->ghosted_vector();
+            EXPECT_GT(total_estimate(
+                        residual_estimate(*body.stress_space, u, z, 0., &none),
+                        body.triangulation),
+                      1e-3);
+          }
+  }
+
+
+
+  TYPED_TEST(Estimate, SeesWrongTractionWhereItActs)
+  {
+    constexpr int  dim = TypeParam::value;
+    Tensor<1, dim> error;
+    error[0] = 0.3;
+    error[1] = -0.4;
+    SampledBody<dim> body(patch<dim>(false, error));
+    body.refine_where([](const Point<dim> &x) { return x[0] < 0.7; });
+    body.set_up();
+    const DistributedVector density = body.interpolate(patch_multiplier<dim>);
+    const Vector<double>    estimate =
+      residual_estimate(*body.stress_space,
+                        body.interpolate(linear_displacement<dim>),
+                        body.sample(
+                          [](const Point<dim> &) { return constant_stress(); }),
+                        0.,
+                        &density);
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      {
+        double expected = 0.;
+        if (cell->is_locally_owned())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->at_boundary(f) && cell->face(f)->boundary_id() == 3)
+              expected = cell->face(f)->diameter() * cell->face(f)->measure() *
+                         0.25 / (2. * mu);
+        EXPECT_NEAR(estimate[cell->active_cell_index()], expected, 1e-14);
+      }
+  }
+
+
+
+  TYPED_TEST(Estimate, SeesBodyForce)
+  {
+    constexpr int    dim = TypeParam::value;
+    SampledBody<dim> body(box_with<dim>("set Role = clamped\n") +
+                          "subsection Loads\nset Body force = 0; 2*t" +
+                          (dim == 3 ? "; 0" : "") + "\nend\n");
+    body.set_up();
+    const Vector<double> estimate = residual_estimate(
+      *body.stress_space, body.space->ghosted_vector(), {}, 0.5, nullptr);
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          EXPECT_NEAR(estimate[cell->active_cell_index()],
+                      Utilities::fixed_power<2>(cell->diameter()) *
+                        cell->measure() / (2. * mu),
+                      1e-14);
+        }
+  }
+
+
+
+  TYPED_TEST(Estimate, SeesStressJumpsOnHangingFaces)
+  {
+    // z jumps at x = 1, where cells of different size meet; their faces are
+    // those of the finer ones, of length h.
+    constexpr int dim = TypeParam::value;
+    for (const bool left_is_finer : {false, true})
+      {
+        SampledBody<dim> body(box_with<dim>("set Role = clamped\n"));
+        body.refine_where([left_is_finer](const Point<dim> &x) {
+          return (x[0] < 1.) == left_is_finer;
+        });
+        body.set_up();
+        const auto   z      = body.sample([](const Point<dim> &x) {
+          return (x[0] < 1. ? 1. : -1.) * constant_stress();
+        });
+        const double h      = 0.25 * std::sqrt(dim - 1.);
+        double       square = 0.; // of the jump
+        for (unsigned int d = 0; d < dim; ++d)
+          square += Utilities::fixed_power<2>(2. * constant_stress()[0][d]);
+        const Vector<double> estimate = residual_estimate(
+          *body.stress_space, body.space->ghosted_vector(), z, 0., nullptr);
+        // Half of it on either side of the interface, which has measure 1.
+        double left = 0., right = 0.;
+        for (const auto &cell : body.triangulation.active_cell_iterators())
+          {
+            const double value = estimate[cell->active_cell_index()];
+            (cell->center()[0] < 1. ? left : right) += value;
+            if (std::abs(cell->center()[0] - 1.) > 0.26)
+              {
+                // Squares of what rounding leaves of tractions of size 1.
+                EXPECT_LE(value, 1e-30);
+              }
+          }
+        const double expected = 0.5 * h * square / (2. * mu);
+        EXPECT_NEAR(Utilities::MPI::sum(left, MPI_COMM_WORLD), expected, 1e-13);
+        EXPECT_NEAR(Utilities::MPI::sum(right, MPI_COMM_WORLD),
+                    expected,
+                    1e-13);
+      }
+  }
+
+
+
+  TYPED_TEST(Estimate, SeesMaterialInterfacesAcrossRanks)
+  {
+    // One strain, two moduli: the traction jumps by eps_xx (lambda + 2 mu) and
+    // each side is scaled by its own 1/(2 mu).
+    constexpr int    dim = TypeParam::value;
+    SampledBody<dim> body(box_with<dim>("set Role = clamped\n") +
+                          "subsection Material\n"
+                          "set Young's modulus = if(x < 1, 1, 3)\n"
+                          "set Poisson's ratio = 0\nend\n");
+    body.set_up();
+    const DistributedVector u = body.interpolate([](const Point<dim> &x) {
+      Tensor<1, dim> u;
+      u[0] = x[0];
+      return u;
+    });
+    const Vector<double>    estimate =
+      residual_estimate(*body.stress_space, u, {}, 0., nullptr);
+    const double h      = 0.5 * std::sqrt(dim - 1.);
+    const double square = 0.5 * h * 4.; // E = lambda + 2 mu for nu = 0
+    double       left = 0., right = 0.;
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      (cell->center()[0] < 1. ? left : right) +=
+        estimate[cell->active_cell_index()];
+    EXPECT_NEAR(Utilities::MPI::sum(left, MPI_COMM_WORLD), square, 1e-13);
+    EXPECT_NEAR(Utilities::MPI::sum(right, MPI_COMM_WORLD), square / 3., 1e-13);
+  }
+
+
+
+  TYPED_TEST(Estimate, UsesSecondDerivatives)
+  {
+    // u_x = x y on the one large cell (0,1)^dim without faces that count:
+    // div E eps = (0, lambda + mu), (0, mu/3) under mean dilatation.
+    constexpr int dim = TypeParam::value;
+    for (const bool mean_dilatation : {false, true})
+      {
+        std::string text = geometry("hyper_cube", "0 : 1 : true");
+        for (unsigned int id = 0; id < 2 * dim; ++id)
+          text += boundary(id, "set Role = clamped\n");
+        SampledBody<dim> body(text, false, mean_dilatation);
+        body.set_up();
+        const DistributedVector u = body.interpolate([](const Point<dim> &x) {
+          Tensor<1, dim> u;
+          u[0] = x[0] * x[1];
+          return u;
+        });
+        const double            lambda = 0.3 / (1.3 * 0.4);
+        const double            force = mean_dilatation ? mu / 3. : lambda + mu;
+        EXPECT_NEAR(total_estimate(
+                      residual_estimate(*body.stress_space, u, {}, 0., nullptr),
+                      body.triangulation),
+                    std::sqrt(dim * force * force / (2. * mu)),
+                    1e-13);
+      }
+  }
+} // namespace

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// The transfer of a state to a new mesh, on any number of ranks.
+
+#include "sampled_body.h"
+#include <viscoplastic_contact/error/mesh_adaptation.h>
+
+#include <cmath>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  template <typename Dimension>
+  class Transfer : public testing::Test
+  {};
+  TYPED_TEST_SUITE(Transfer, Dimensions, );
+
+
+
+  template <int dim>
+  Stress
+  linear_stress(const Point<dim> &x)
+  {
+    Stress z;
+    for (unsigned int e = 0; e < Stress::n_independent_components; ++e)
+      for (unsigned int d = 0; d < dim; ++d)
+        z.access_raw_entry(e) += (1. + e - 2. * d) * x[d] + 0.1;
+    return z;
+  }
+
+
+
+  template <int dim>
+  Stress
+  wavy_stress(const Point<dim> &x)
+  {
+    return (1. + std::sin(9. * x[0]) * std::cos(7. * x[dim - 1])) *
+           linear_stress(x);
+  }
+
+
+
+  /// Mark some cells for refinement and all families elsewhere for coarsening,
+  /// change the mesh and carry the state over.
+  template <int dim>
+  typename StateTransfer<dim>::Result
+  adapt(SampledBody<dim>        &body,
+        const State<dim>        &state,
+        const double             refined_up_to_x,
+        const DistributedVector *density = nullptr)
+  {
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          if (cell->center()[0] < refined_up_to_x)
+            cell->set_refine_flag();
+          else if (cell->level() > 0)
+            cell->set_coarsen_flag();
+        }
+    body.triangulation.prepare_coarsening_and_refinement();
+    StateTransfer<dim> transfer(body.triangulation,
+                                *body.stress_space,
+                                state,
+                                density);
+    body.triangulation.execute_coarsening_and_refinement();
+    body.set_up();
+    return transfer.unpack(*body.stress_space);
+  }
+
+
+
+  TYPED_TEST(Transfer, ConservesStressOnDistortedCells)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const bool at_quadrature_points : {false, true})
+      {
+        SampledBody<dim> body(box_with<dim>("set Role = clamped\n"),
+                              at_quadrature_points);
+        body.distort();
+        body.refine_where([](const Point<dim> &x) { return x[0] > 0.7; });
+        body.set_up();
+
+        State<dim> state;
+        state.n                 = 7;
+        state.t                 = 0.25;
+        state.u                 = body.interpolate(linear_displacement<dim>);
+        state.velocity          = body.space->ghosted_vector();
+        state.z                 = body.sample(wavy_stress<dim>);
+        const Stress   integral = body.integral(state.z);
+        const unsigned n_cells  = body.triangulation.n_global_active_cells();
+        for (const double x : {1., 0., 0.6})
+          {
+            auto result = adapt(body, state, x);
+            EXPECT_LT((body.integral(result.state.z) - integral).norm(),
+                      1e-13 * integral.norm());
+            state = std::move(result.state);
+          }
+        EXPECT_NE(body.triangulation.n_global_active_cells(), n_cells);
+        EXPECT_EQ(state.n, 7u);
+        EXPECT_EQ(state.t, 0.25);
+      }
+  }
+
+
+
+  TYPED_TEST(Transfer, ConservesStressOnCurvedCells)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const bool at_quadrature_points : {false, true})
+      {
+        SampledBody<dim> body(geometry("hyper_ball",
+                                       dim == 2 ? "0, 0 : 1 : false" :
+                                                  "0, 0, 0 : 1 : false") +
+                                boundary(0, "set Role = clamped\n"),
+                              at_quadrature_points);
+        body.refine_where([](const Point<dim> &x) { return x[0] > 0.1; });
+        body.set_up();
+        State<dim> state;
+        state.u               = body.space->ghosted_vector();
+        state.velocity        = body.space->ghosted_vector();
+        state.z               = body.sample(wavy_stress<dim>);
+        const Stress integral = body.integral(state.z);
+        for (const double x : {-0.1, -2., 0.})
+          {
+            state = adapt(body, state, x).state;
+            EXPECT_LT((body.integral(state.z) - integral).norm(),
+                      1e-13 * integral.norm());
+          }
+      }
+  }
+
+
+
+  TYPED_TEST(Transfer, ReproducesPolynomials)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const bool distorted : {false, true})
+      for (const bool at_quadrature_points : {false, true})
+        {
+          SampledBody<dim> body(box_with<dim>("set Role = clamped\n"),
+                                at_quadrature_points);
+          if (distorted)
+            body.distort();
+          body.refine_where([](const Point<dim> &x) { return x[0] > 0.7; });
+          body.set_up();
+          // What quadrature points carry exactly, also on coarsening, is
+          // linear on parallelograms; otherwise constants.
+          const bool linear = at_quadrature_points && !distorted;
+          const std::function<Stress(const Point<dim> &)> field =
+            [linear](const Point<dim> &x) {
+              return linear ? linear_stress(x) : constant_stress();
+            };
+          State<dim> state;
+          state.u        = body.interpolate(linear_displacement<dim>);
+          state.velocity = state.u;
+          state.z        = body.sample(field);
+          DistributedVector density = state.u;
+          for (const double x : {1., 0., 0.6})
+            {
+              const auto result = adapt(body, state, x, &density);
+              state             = result.state;
+              density           = result.multiplier_density;
+              const DistributedVector exact =
+                body.interpolate(linear_displacement<dim>);
+              for (const DistributedVector &vector :
+                   {state.u, state.velocity, density})
+                {
+                  for (const auto i : body.space->relevant)
+                    EXPECT_NEAR(vector[i], exact[i], 1e-13);
+                }
+              EXPECT_EQ(state.initial_u.size(), 0u);
+              EXPECT_LT(body.max_difference(state.z, field), 1e-12);
+            }
+        }
+  }
+
+
+
+  TYPED_TEST(Transfer, LeavesOutWhatIsAbsent)
+  {
+    constexpr int    dim = TypeParam::value;
+    SampledBody<dim> body(box_with<dim>("set Role = clamped\n"));
+    body.set_up();
+    State<dim> state;
+    state.u           = body.interpolate(linear_displacement<dim>);
+    state.velocity    = body.space->ghosted_vector();
+    const auto result = adapt(body, state, 1.);
+    EXPECT_TRUE(result.state.z.empty());
+    EXPECT_EQ(result.state.initial_u.size(), 0u);
+    EXPECT_EQ(result.multiplier_density.size(), 0u);
+  }
+} // namespace

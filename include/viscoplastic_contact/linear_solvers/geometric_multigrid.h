@@ -4,18 +4,16 @@
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/coarse_problem.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
+#include <viscoplastic_contact/linear_solvers/level_masks.h>
 #include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
 #include <viscoplastic_contact/linear_solvers/preconditioner.h>
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace Viscoplastic
 {
-  struct Interpolation;
-
   /**
    * A multigrid cycle on the nested meshes from which the mesh has come: one
    * sweep of Gauss-Seidel by nodes before and after the correction by the mesh
@@ -23,10 +21,7 @@ namespace Viscoplastic
    *
    * The matrices of coarser meshes are those of the same bilinear form on their
    * spaces (Galerkin products), whatever the material. They know nothing of the
-   * truncation: masks on all levels do. Residuals and corrections are zero in
-   * the directions that are cut off, and a coarse node sticks if at least 40 %
-   * of the weight of the face nodes around it does. So another truncation costs
-   * nothing but the inverse diagonal blocks of face nodes.
+   * truncation: LevelMasks do, and another truncation costs little.
    *
    * The levels are in single precision, which is enough for a preconditioner.
    */
@@ -64,12 +59,6 @@ namespace Viscoplastic
                       const DistributedVector &x) const override;
 
   private:
-    /// What is known of an owned face node on all meshes.
-    struct FaceNode;
-    /// What a truncation means at a face node.
-    struct Treatment;
-    /// What a truncation means to the cycle on one level.
-    struct Masks;
     struct Level;
 
     /// Rows of the interpolation to a level: of its owned nodes and ghosts.
@@ -77,46 +66,14 @@ namespace Viscoplastic
     make_interpolation(const unsigned int                      level,
                        const std::vector<NodeHierarchy::Node> &ghosts) const;
 
-    void
-    make_face_nodes();
-
     /// Give all levels the values of the present matrix.
     void
     fill();
 
-    /// Masks that do not depend on the truncation, and the blocks of face
-    /// nodes.
+    /// Make masks and the factor that goes with them.
     void
-    make_fixed_masks();
-
-    /// What is behind the masks: what the face of the last mesh is given, ...
-    std::vector<Treatment>
-    treatments(const FaceTruncation *truncation) const;
-
-    /// ... what follows for the mesh below @p level, ...
-    std::vector<Treatment>
-    coarsen(const std::vector<Treatment> &fine,
-            const FaceTruncation         &truncation,
-            const unsigned int            level) const;
-
-    /// ... and the masks.
-    Masks
-    make_masks(const std::vector<Treatment> &treatments,
-               const Level                  &level) const;
-
-    /// Make the masks of all levels for a truncation, or without one those of
-    /// the excluded degrees of freedom alone.
-    enum Masking
-    {
-      untruncated,
-      truncated
-    };
-    void
-    set_masks(const Masking masking, const FaceTruncation *truncation);
-
-    /// Make masks those of the next cycle.
-    void
-    use_masks(const Masking masking) const;
+    set_masks(const typename LevelMasks<dim>::Masking masking,
+              const FaceTruncation                   *truncation);
 
     void
     cycle(const unsigned int level) const;
@@ -127,7 +84,6 @@ namespace Viscoplastic
     const DistributedMatrix &matrix;
     const std::vector<bool> &excluded;
     const NodeHierarchy      hierarchy;
-    const FaceRestriction   &restriction;
     const MPI_Comm           communicator;
 
     /// The first node of each rank, and the end.
@@ -136,11 +92,10 @@ namespace Viscoplastic
     unsigned int first_mesh = 0;
     /// Nodes of the last level whose frames are rotated, and their directions.
     std::vector<std::pair<unsigned int, Tensor<2, dim>>> rotated_nodes;
-    std::vector<FaceNode>                                face_nodes;
     std::vector<std::unique_ptr<Level>>                  levels;
     std::unique_ptr<CoarseProblem<dim>>                  coarse;
     std::array<typename CoarseProblem<dim>::Factor, 2>   coarse_factors;
-    mutable std::optional<Masking>                       masks_in_use;
+    LevelMasks<dim>                                      masks;
     /// Levels are in this unit of stiffness: in single precision, numbers have
     /// a small range.
     double unit = 1.;

@@ -86,6 +86,13 @@ namespace Viscoplastic
                    const std::vector<NodeHierarchy::Node> &begins,
                    const MPI_Comm                          communicator);
 
+    /// By their numbers in the last mesh, ascending.
+    const std::vector<NodeHierarchy::Node> &
+    owned_nodes() const
+    {
+      return nodes;
+    }
+
     /// The local number of a node that is owned or a ghost.
     unsigned int
     local_number(const NodeHierarchy::Node node) const;

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/linear_solvers/coarse_problem.h>
+#include <viscoplastic_contact/linear_solvers/face_restriction.h>
+#include <viscoplastic_contact/linear_solvers/multigrid_level.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * What the levels of a multigrid cycle know of excluded degrees of freedom
+   * and of a truncation on the face: at the nodes concerned a projector onto
+   * what is free, and springs.
+   *
+   * Matrices know nothing of it. Residuals and corrections are zero in the
+   * directions that are cut off, and a coarse node sticks if at least 40 % of
+   * the weight of the face nodes around it does. So another truncation costs
+   * nothing but the inverse diagonal blocks of face nodes.
+   */
+  template <int dim>
+  class LevelMasks
+  {
+  public:
+    using Node   = NodeHierarchy::Node;
+    using Vector = typename MultigridLevel<dim>::Vector;
+
+    /// Masks are kept for cycles without and with a truncation.
+    enum Masking
+    {
+      untruncated,
+      truncated
+    };
+
+    /// @p excluded: owned degrees of freedom that are no unknowns.
+    LevelMasks(const std::vector<bool> &excluded,
+               const NodeHierarchy     &hierarchy,
+               const FaceRestriction   &restriction);
+
+    /// Take note of levels with new values, the first one first, and give them
+    /// the inverse blocks of nodes off the face. All masks are lost.
+    void
+    set_levels(const std::vector<MultigridLevel<dim> *> &levels);
+
+    /// Make the masks of all levels for a truncation, or without one those of
+    /// the excluded degrees of freedom alone. @p unit: the stiffness in which
+    /// levels are measured. Returns what they are on the first level.
+    /// Collective.
+    std::vector<typename CoarseProblem<dim>::Mask>
+    set(const Masking         masking,
+        const FaceTruncation *truncation,
+        const double          unit);
+
+    /// Make masks those of the next cycle.
+    void
+    use(const Masking masking) const;
+
+    /// The masks of the present cycle.
+    Masking
+    in_use() const
+    {
+      return *used;
+    }
+
+    /// Cut off what is not free in the present cycle from a vector of a level.
+    void
+    project(const unsigned int level, Vector &v) const;
+
+  private:
+    /// What is known of an owned face node on all levels.
+    struct FaceNode
+    {
+      Node         node;
+      unsigned int index; // among the nodes of the face
+      /// Projector onto the directions that are unknowns, and the directions of
+      /// the entries of face vectors.
+      Tensor<2, dim>                  unknown;
+      std::array<Tensor<1, dim>, dim> direction;
+      unsigned int                    n_dofs;
+
+      /// A block of face entries in Cartesian components.
+      Tensor<2, dim>
+      to_cartesian(const Tensor<2, 3> &block) const;
+
+      /// How many of the directions a projector of face entries blocks.
+      double
+      n_blocked(const Tensor<2, 3> &projector) const;
+    };
+
+    /// What a truncation means at a face node.
+    struct Treatment
+    {
+      /// Onto what is free of the entries of face vectors, and which share of
+      /// them is not.
+      Tensor<2, 3>   projector;
+      double         blocked = 0.;
+      Tensor<2, dim> spring; // Cartesian
+    };
+
+    /// What a truncation means to the cycle at a node of a level.
+    struct Entry
+    {
+      unsigned int   node; // local
+      Tensor<2, dim> free; // a projector
+      NodeBlock<dim> row_sum, inverse;
+    };
+    using Entries = std::vector<Entry>;
+
+    /// A face node on a level: its local number, its number among the face
+    /// nodes, the sum of its row and its block for the smoother, without
+    /// springs.
+    struct FaceEntry
+    {
+      unsigned int   local, number;
+      NodeBlock<dim> row_sum, smoothing;
+    };
+
+    struct Level
+    {
+      MultigridLevel<dim>   *space;
+      std::vector<FaceEntry> face;
+      /// Of other nodes with excluded components, and of face nodes without and
+      /// with the present truncation.
+      Entries                fixed;
+      std::array<Entries, 2> on_face;
+    };
+
+    /// The direction of a degree of freedom at an owned node.
+    Tensor<1, dim>
+    direction(const Node node, const unsigned int component) const;
+
+    /// What is behind the masks: what the face of the last mesh is given, ...
+    std::vector<Treatment>
+    treatments(const FaceTruncation *truncation, const double unit) const;
+
+    /// ... what follows for the level below @p level, ...
+    std::vector<Treatment>
+    coarsen(const std::vector<Treatment> &fine,
+            const FaceTruncation         &truncation,
+            const unsigned int            level) const;
+
+    /// ... and the masks.
+    Entries
+    make_entries(const std::vector<Treatment> &treatments,
+                 const Level                  &level) const;
+
+    const std::vector<bool> &excluded;
+    const NodeHierarchy     &hierarchy;
+
+    std::vector<FaceNode>          face_nodes;
+    std::vector<Level>             levels;
+    mutable std::optional<Masking> used;
+  };
+
+
+  /// Multiply the values of a node by a tensor.
+  template <int dim>
+  void
+  multiply(const Tensor<2, dim> &tensor, float *value)
+  {
+    Tensor<1, dim> x;
+    for (unsigned int d = 0; d < dim; ++d)
+      x[d] = value[d];
+    x = tensor * x;
+    for (unsigned int d = 0; d < dim; ++d)
+      value[d] = x[d];
+  }
+} // namespace Viscoplastic

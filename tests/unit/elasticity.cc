@@ -6,6 +6,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include "body.h"
@@ -370,6 +371,67 @@ namespace
         // matrix.
         body->set_excluded_to_zero(work);
         EXPECT_LT(work.linfty_norm(), 1e-12 * size);
+      }
+  }
+
+
+  /// The sum of all cell matrices, each computed by itself.
+  template <int dim>
+  void
+  assemble_one_by_one(const Body<dim> &body, DistributedMatrix &matrix)
+  {
+    const AdmissibleSpace<dim>          &space = *body.space;
+    const unsigned int                   n     = body.fe.n_dofs_per_cell();
+    FullMatrix<double>                   cell_matrix(n, n);
+    std::vector<types::global_dof_index> dofs(n);
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
+      {
+        FEValues<dim> fe_values(body.fe,
+                                QGauss<dim>(2),
+                                update_gradients | update_JxW_values);
+        fe_values.reinit(space.cells[c]);
+        elastic_cell_matrix(fe_values, (*body.moduli)(c), false, cell_matrix);
+        space.cells[c]->get_dof_indices(dofs);
+        space.rotate(dofs, cell_matrix);
+        space.hanging_nodes().distribute_local_to_global(cell_matrix,
+                                                         dofs,
+                                                         matrix);
+      }
+    matrix.compress(VectorOperation::add);
+  }
+
+
+
+  TYPED_TEST(ElasticMatrix, IsTheSumOfCellMatrices)
+  {
+    // On the left cells are translates of each other, on the right they are
+    // not, and some are refined; whatever the material.
+    constexpr int dim = TypeParam::value;
+    for (const std::string material : {"", "set Young's modulus = 2 + x"})
+      {
+        Body<dim> body(box_with<dim>("set Role = clamped\n") +
+                       subsection("Material", material));
+        GridTools::transform(
+          [](Point<dim> x) {
+            if (x[0] > 1.1 && x[0] < 1.9)
+              x[0] += 0.05 * std::sin(5. * x[1] + 9. * x[dim - 1]);
+            return x;
+          },
+          body.triangulation);
+        body.refine_where([](const Point<dim> &x) { return x[1] > 0.5; });
+        body.set_up();
+        DistributedMatrix matrix, expected;
+        assemble_elastic_matrix(*body.space, *body.moduli, false, matrix);
+        expected.reinit(matrix);
+        assemble_one_by_one(body, expected);
+        for (const auto row : body.space->owned)
+          {
+            const double size = expected.diag_element(row);
+            for (auto entry = expected.begin(row), ours = matrix.begin(row);
+                 entry != expected.end(row);
+                 ++entry, ++ours)
+              EXPECT_NEAR(ours->value(), entry->value(), 1e-13 * size);
+          }
       }
   }
 } // namespace

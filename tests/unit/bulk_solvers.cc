@@ -535,12 +535,13 @@ namespace
     const auto             kind = [](const unsigned int n_dofs,
                          const unsigned int n_solves,
                          const unsigned int n_first_dofs,
-                         const double       poissons_ratio = 0.3) {
+                         const double       poissons_ratio = 0.3,
+                         const unsigned int n_face_dofs    = 100) {
       return choose_bulk_solver(
         {LinearSolver::automatic, poissons_ratio, n_solves, n_first_dofs},
         dim,
         n_dofs,
-        100,
+        n_face_dofs,
         MPI_COMM_WORLD);
     };
     using Kind = BulkSolverKind;
@@ -563,6 +564,16 @@ namespace
               dim == 2 ? Kind::direct : Kind::geometric_multigrid);
     EXPECT_EQ(kind(100000, 2, 500), Kind::geometric_multigrid);
     EXPECT_EQ(kind(100000, 100, 500, 0.4999), Kind::direct);
+    // Without levels, in three dimensions: a mesh that is kept and not large,
+    // or a body that is nearly incompressible.
+    const Kind in_3d = dim == 2 ? Kind::direct : Kind::algebraic_multigrid;
+    EXPECT_EQ(kind(100000, 5, 0), in_3d);
+    EXPECT_EQ(kind(100000, 50, 0), Kind::direct);
+    EXPECT_EQ(kind(160000, 50, 0), in_3d);
+    EXPECT_EQ(kind(160000, 50, 0, 0.48), Kind::direct);
+    // The dense matrix of a large face.
+    EXPECT_EQ(kind(15000, 30, 500, 0.3, 5000), Kind::direct);
+    EXPECT_EQ(kind(15000, 30, 500, 0.3, 5001), Kind::geometric_multigrid);
     // The memory of the factor.
     EXPECT_EQ(kind(2100000, 100, 500, 0.4999), Kind::geometric_multigrid);
     EXPECT_EQ(kind(2100000, 100, 0), Kind::algebraic_multigrid);

@@ -11,10 +11,10 @@ import numpy as np
 from . import rates, style
 from .results import UserError
 
-TEXT = ("run", "strategy", "scheme", "history", "ladder")
-LEVELS = ("mesh_level", "time_level")
-NEEDED = (*TEXT[1:], *LEVELS, "h", "k", "seconds_total")
 VARIANT = ("strategy", "scheme", "history")  # what tells one variant of the method
+TEXT = ("run", *VARIANT, "solver", "ladder")
+LEVELS = ("mesh_level", "time_level")
+NEEDED = (*VARIANT, "ladder", *LEVELS, "h", "k", "seconds_total")
 COEFFICIENTS = ("C_h", "p", "C_k", "q", "m")  # of a fit
 
 LADDERS = {"space": "$h$ alone", "time": "$k$ alone", "both": "$h$ and $k$"}

@@ -73,9 +73,10 @@ switched off (`Error control/Error bar = false`) at the price of not knowing.
 **Prices.** For each tolerance the cheapest run of the study that is at least so
 accurate. *Italics* mark predictions for runs that nobody made, from the fits of
 error and time: expect them within a factor of about two, and less the further
-they are from the measured runs, which took seconds; what would take more than
-an hour is out of reach of such a prediction. **Bold** is the cheapest of a scene for an error, of
-measured ones if there are any. Between
+they are from the measured runs. Their seconds are those of the linear solver
+that they would have, which a few steps on finer meshes have timed. What would
+take more than an hour or 16 GB is out of reach. **Bold** is the cheapest of a
+scene for an error, of measured ones if there are any. Between
 runs of a ladder prices jump by what one refinement costs; the run that is named
 may therefore be more accurate than asked. To halve an error of first order in
 $h$ and $k$ takes four times as many cells in two dimensions, eight times as many

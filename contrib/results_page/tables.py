@@ -201,16 +201,18 @@ def price(study, variant, tolerance, error):
     }
 
 
-# A prediction so far from the runs that it rests on, some seconds long, is no
-# number any more.
-BEYOND_REACH = 3600
+# What nobody would run here: seconds, and the memory (MB) of a good workstation.
+LONGEST = 3600
+LARGEST = 16e3
 
 
 def price_cell(found, is_cheapest):
     """Seconds bold where no other variant is cheaper, all italic if predicted."""
     if found is None:
         return UNKNOWN
-    if not found["measured"] and found["seconds"] > BEYOND_REACH:
+    if not found["measured"] and not (
+        found["seconds"] <= LONGEST and (found["memory"] or 0) <= LARGEST
+    ):
         return "*out of reach*"
     time = seconds(found["seconds"])
     rest = ", ".join(

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
 #include <viscoplastic_contact/discretization/discretization.h>
 
 #include <algorithm>
@@ -68,6 +70,24 @@ namespace Viscoplastic
   Discretization<dim>::assemble_matrix()
   {
     assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
+  }
+
+
+
+  template <int dim>
+  SolverDemand
+  Discretization<dim>::solver_demand() const
+  {
+    SolverDemand demand;
+    demand.choice  = scene().parameters.solver.linear_solver;
+    demand.dim     = dim;
+    demand.n_ranks = Utilities::MPI::n_mpi_processes(space.communicator);
+    demand.max_poissons_ratio = moduli.max_poissons_ratio();
+    demand.n_solves           = n_solves;
+    demand.n_dofs             = space.dof_handler.n_dofs();
+    demand.n_face_dofs        = face ? face->layout().n_dofs() : 0;
+    demand.n_first_dofs       = space.n_first_dofs();
+    return demand;
   }
 
 

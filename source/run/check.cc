@@ -4,7 +4,7 @@
 
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/solution_errors.h>
-#include <viscoplastic_contact/linear_solvers/bulk_solver_factory.h>
+#include <viscoplastic_contact/linear_solvers/solver_choice.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
 
@@ -14,37 +14,6 @@
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    /**
-     * Memory in bytes that matrix, solver and vectors take beyond mesh and
-     * spaces: fitted to measurements (doc/solvers.md), good to a factor of
-     * 1.5 or so.
-     */
-    double
-    solver_memory(const unsigned int   dim,
-                  const double         n_dofs,
-                  const double         n_face_dofs,
-                  const BulkSolverKind solver)
-    {
-      // 12 bytes an entry, 9 or 27 neighbors a node; some 20 vectors.
-      const double matrix  = n_dofs * (dim == 2 ? 18. : 81.) * 12.;
-      const double vectors = n_dofs * 20. * 8.;
-      if (solver == BulkSolverKind::geometric_multigrid)
-        return matrix + vectors + n_dofs * (dim == 2 ? 1200. : 1500.);
-      // A second matrix without the prescribed rows, and ML.
-      if (solver == BulkSolverKind::algebraic_multigrid)
-        return 2. * matrix + vectors + n_dofs * (dim == 2 ? 850. : 2700.);
-      // Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
-      const double factor = dim == 2 ?
-                              n_dofs * 78. * std::log2(std::max(n_dofs, 2.)) :
-                              n_dofs * 190. * std::cbrt(n_dofs);
-      return matrix + vectors + factor + 2. * 8. * n_face_dofs * n_face_dofs;
-    }
-  } // namespace
-
-
-
   template <int dim>
   void
   ViscoplasticContact<dim>::check_steps()
@@ -124,22 +93,14 @@ namespace Viscoplastic
           }
       }
 
-    const unsigned int   n_face_dofs = d.face ? d.face->layout().n_dofs() : 0;
-    const BulkSolverKind solver =
-      choose_bulk_solver({parameters.solver.linear_solver,
-                          d.moduli.max_poissons_ratio(),
-                          d.n_solves,
-                          d.space.n_first_dofs()},
-                         dim,
-                         dof_handler.n_dofs(),
-                         n_face_dofs,
-                         communicator);
+    const SolverDemand             demand = d.solver_demand();
+    const BulkSolverKind           solver = choose_bulk_solver(demand);
     Utilities::System::MemoryStats now;
     Utilities::System::get_memory_stats(now);
     const double bytes =
       Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
                           communicator) +
-      solver_memory(dim, dof_handler.n_dofs(), n_face_dofs, solver) +
+      expected_memory(solver, demand) +
       (scene.is_implicit() || scene.is_implicit_beyond_the_limit() ?
          // A second matrix, and two tensors of rank 4 a sample.
          dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
@@ -149,7 +110,7 @@ namespace Viscoplastic
     out << "Linear solver: "
         << (solver == BulkSolverKind::direct ?
               "direct (CHOLMOD)" :
-              "conjugate gradients with multigrid")
+              "conjugate gradients with " + to_string(solver))
         << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()
         << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
         << (scene.is_adaptive() ? " on the initial mesh" : "")

@@ -128,7 +128,11 @@ namespace Viscoplastic
     result.dofs    = model.dofs_at(result.h);
     result.error   = model.error(result.h, result.k);
     result.seconds = model.seconds(result.h, result.steps);
-    result.memory  = model.cost.memory(result.dofs);
+    const double n_set_ups =
+      number_of_set_ups(result.steps, model.steps_per_mesh);
+    result.memory = model.cost.memory(result.dofs, result.steps, n_set_ups);
+    result.solver = choose_bulk_solver(
+      model.cost.demand_at(result.dofs, result.steps, n_set_ups));
     result.is_far =
       result.h < 0.49 * model.smallest_h || result.k < 0.49 * model.smallest_k;
     return result;
@@ -249,7 +253,7 @@ namespace Viscoplastic
       text << "h = " << digits(run.h) << " (mesh level " << run.mesh_level
            << "), " << run.steps << " steps, " << digits(run.dofs)
            << " unknowns, about " << seconds_in_words(run.seconds) << " and "
-           << digits(run.memory, 2) << " MB";
+           << digits(run.memory, 2) << " MB (" << to_string(run.solver) << ')';
     };
     text << "Error " << digits(price.tolerance) << ": ";
     if (price.is_in_budget)

@@ -3,7 +3,7 @@
 
 #include <viscoplastic_contact/results/output.h>
 #include <viscoplastic_contact/study/price_mode.h>
-#include <viscoplastic_contact/study/study_analysis.h>
+#include <viscoplastic_contact/study/timing_runs.h>
 
 #include <algorithm>
 #include <cmath>
@@ -160,10 +160,37 @@ namespace Viscoplastic
                            "runs know none: neither an error bar nor an exact "
                            "solution has given one."));
 
-    const WorkPrecisionModel model =
-      fit_work_precision(runs, pilots.all(), measure, nullptr);
     const double eps    = command_line.price;
     const double budget = scene.study.budget;
+    Records      timed  = pilots.all();
+    const auto   fit    = [&] {
+      return fit_work_precision(runs, pilots.all(), timed, measure, nullptr);
+    };
+    WorkPrecisionModel model = fit();
+    // A run on a mesh that is much finer than those of the pilots may have
+    // another solver.
+    TimingRuns timings;
+    if (const auto wanted = cheapest(model, eps))
+      timings =
+        make_timing_runs(runs,
+                         pilots.all(),
+                         wanted->mesh_level,
+                         seconds_for_timing(pilot_seconds,
+                                            std::min(wanted->seconds, budget)),
+                         console);
+    if (!timings.interruption.empty())
+      return timings.interruption;
+    for (const RunRecord &record : timings.records)
+      {
+        out << "  " << record.name << ": "
+            << std::lround(record.number("cells")) << " cells, "
+            << record.number("steps") << " steps, "
+            << seconds_in_words(record.number("seconds_total"))
+            << ", for its cost alone\n";
+        pilot_seconds += record.number("seconds_total");
+        timed.push_back(&record);
+      }
+    model = fit();
     out << "Prices by the " << measure_in_words(measure) << ", from pilots of "
         << seconds_in_words(pilot_seconds) << ":\n";
     const auto prices = list_prices(model, {2. * eps, eps, 0.5 * eps}, budget);

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/study/study.h>
 #include <viscoplastic_contact/study/study_report.h>
+#include <viscoplastic_contact/study/timing_runs.h>
 
 #include <algorithm>
 #include <cmath>
@@ -141,6 +142,19 @@ namespace Viscoplastic
 
 
 
+  Records
+  Study::timed(const MethodVariant &variant) const
+  {
+    Records    result = of_variant(records(), variant);
+    const auto more   = timings.find(variant.name());
+    if (more != timings.end())
+      for (const RunRecord &record : more->second)
+        result.push_back(&record);
+    return result;
+  }
+
+
+
   const RunRecord *
   Study::reference() const
   {
@@ -188,7 +202,7 @@ namespace Viscoplastic
     const double      dim  = runs.scene.dimension;
     const std::string name = key.variant.name();
     if (costs.count(name) == 0)
-      costs.emplace(name, cost_of(known, runs.scene.dimension));
+      costs.emplace(name, cost_of(known));
     const RunRecord *finest =
       *std::max_element(known.begin(),
                         known.end(),
@@ -287,10 +301,7 @@ namespace Viscoplastic
     if (!outcome.interruption.empty())
       {
         report(false);
-        return outcome.interruption.substr(
-                 0, outcome.interruption.find(" has ended")) +
-               " has ended the study in the run " + name +
-               "; the same command goes on.";
+        return interruption_in(name, outcome.interruption);
       }
     if (!outcome.record)
       {
@@ -306,6 +317,55 @@ namespace Viscoplastic
       {
         report(false);
         last_report = elapsed();
+      }
+    return "";
+  }
+
+
+
+  std::string
+  Study::interruption_in(const std::string &run,
+                         const std::string &sentence) const
+  {
+    return sentence.substr(0, sentence.find(" has ended")) +
+           " has ended the study in the run " + run +
+           "; the same command goes on.";
+  }
+
+
+
+  std::string
+  Study::make_timings()
+  {
+    for (const VariantResult &result : analyze(*this))
+      {
+        const std::string name       = result.variant.name();
+        int               mesh_level = 0;
+        double            spent = 0., largest = 0.;
+        for (const Price &price : result.prices)
+          {
+            if (price.run)
+              mesh_level = std::max(mesh_level, price.run->mesh_level);
+            if (price.is_in_budget)
+              largest = std::max(largest, price.run->seconds);
+          }
+        for (const RunRecord *record : result.records)
+          spent += record->number("seconds_total");
+        TimingRuns found =
+          make_timing_runs(runs,
+                           result.records,
+                           mesh_level,
+                           std::min(seconds_for_timing(spent, largest),
+                                    parameters.budget - elapsed()),
+                           console);
+        for (const RunRecord &record : found.records)
+          announce(record);
+        timings[name] = std::move(found.records);
+        if (!found.interruption.empty())
+          {
+            report(false);
+            return interruption_in("for timing of " + name, found.interruption);
+          }
       }
     return "";
   }
@@ -375,6 +435,9 @@ namespace Viscoplastic
     AssertThrow(!records().empty(),
                 ExcMessage("No run of the study could be computed: " +
                            failure));
+    const std::string interruption = make_timings();
+    if (!interruption.empty())
+      return interruption;
     report(true);
     out << prices_in_words(*this) << "Results in " << runs.directory
         << "\nPictures: contrib/plot " << runs.directory << std::endl;

@@ -174,17 +174,17 @@ namespace Viscoplastic
 
 
   CostModel
-  cost_of(const Records &records, const unsigned int dim)
+  cost_of(const Records &records)
   {
     std::vector<CostSample> samples;
     for (const RunRecord *record : records)
-      samples.push_back({record->number("dofs"),
+      samples.push_back({record->solver_demand,
                          record->number("steps"),
                          record->number("set_ups"),
                          record->number("seconds_set_up"),
                          record->number("seconds_total"),
                          record->number("peak_memory_MB")});
-    return fit_cost(samples, dim);
+    return fit_cost(samples);
   }
 
 
@@ -192,13 +192,14 @@ namespace Viscoplastic
   WorkPrecisionModel
   fit_work_precision(const StudyRuns   &runs,
                      const Records     &records,
+                     const Records     &timed,
                      const std::string &measure,
                      const RunRecord   *reference)
   {
     WorkPrecisionModel model;
     model.error      = fit_measure(records, measure, reference);
     model.dim        = runs.scene.dimension;
-    model.cost       = cost_of(records, model.dim);
+    model.cost       = cost_of(timed);
     model.h          = runs.h;
     model.phases     = runs.phases;
     model.k          = TimeSchedule(runs.scene.time.phases).largest_step().k;

@@ -38,44 +38,140 @@ namespace Viscoplastic
 
 
 
+  SolverDemand
+  CostModel::demand_at(const double dofs,
+                       const double steps,
+                       const double n_set_ups) const
+  {
+    SolverDemand result = demand;
+    result.n_dofs       = std::llround(dofs);
+    result.n_solves =
+      static_cast<unsigned int>(std::clamp(steps / n_set_ups, 1., 1e8));
+    if (demand.n_dofs > 0)
+      // A face has one dimension less than its body.
+      result.n_face_dofs = std::llround(
+        demand.n_face_dofs *
+        std::pow(dofs / demand.n_dofs, (demand.dim - 1.) / demand.dim));
+    return result;
+  }
+
+
+
   double
   CostModel::seconds(const double dofs,
                      const double steps,
                      const double n_set_ups) const
   {
-    return n_set_ups * set_up(dofs, 1.) + steps * step(dofs, 1.);
+    if (solvers.empty())
+      return 0.;
+    const SolverDemand   wanted = demand_at(dofs, steps, n_set_ups);
+    const BulkSolverKind kind   = choose_bulk_solver(wanted);
+    const auto           found  = solvers.find(kind);
+    if (found != solvers.end())
+      return n_set_ups * found->second.set_up(dofs, 1.) +
+             steps * found->second.step(dofs, 1.);
+
+    const auto largest =
+      std::max_element(solvers.begin(),
+                       solvers.end(),
+                       [](const auto &a, const auto &b) {
+                         return a.second.largest < b.second.largest;
+                       });
+    const auto &[known_kind, known] = *largest;
+    const double     n              = known.largest;
+    const SolverCost there          = expected_cost(known_kind,
+                                           demand_at(n, steps, n_set_ups)),
+                     here           = expected_cost(kind, wanted);
+    return n_set_ups * known.set_up(n, 1.) * here.set_up / there.set_up +
+           steps * known.step(n, 1.) * here.step / there.step;
+  }
+
+
+
+  double
+  CostModel::memory(const double dofs,
+                    const double steps,
+                    const double n_set_ups) const
+  {
+    const SolverDemand wanted = demand_at(dofs, steps, n_set_ups);
+    return 1e-6 * expected_memory(choose_bulk_solver(wanted), wanted) +
+           other_memory(dofs, 1.);
   }
 
 
 
   CostModel
-  fit_cost(const std::vector<CostSample> &samples, const unsigned int dim)
+  fit_cost(const std::vector<CostSample> &samples)
   {
-    std::vector<Sample> set_up, step, memory, simple;
+    CostModel model;
+    if (samples.empty())
+      return model;
     for (const CostSample &s : samples)
       {
-        set_up.push_back({s.dofs, 1., s.set_up_seconds / s.n_set_ups});
-        step.push_back({s.dofs, 1., (s.seconds - s.set_up_seconds) / s.steps});
-        memory.push_back({s.dofs, 1., s.memory});
-        simple.push_back({s.dofs, 1., s.seconds / s.steps});
+        const auto n_first =
+          std::max(model.demand.n_first_dofs, s.demand.n_first_dofs);
+        if (s.demand.n_dofs >= model.demand.n_dofs)
+          model.demand = s.demand;
+        // Coarse runs may have nothing coarser.
+        model.demand.n_first_dofs = n_first;
       }
+
+    struct Samples
+    {
+      std::vector<Sample> set_up, step;
+    };
+    std::map<BulkSolverKind, Samples> by_solver;
+    std::vector<Sample>               other_memory, simple;
+    for (const CostSample &s : samples)
+      {
+        const double         n    = s.demand.n_dofs;
+        const BulkSolverKind kind = choose_bulk_solver(s.demand);
+        Samples             &own  = by_solver[kind];
+        own.set_up.push_back({n, 1., s.set_up_seconds / s.n_set_ups});
+        own.step.push_back({n, 1., (s.seconds - s.set_up_seconds) / s.steps});
+        other_memory.push_back(
+          {n, 1., s.memory - 1e-6 * expected_memory(kind, s.demand)});
+        simple.push_back({n, 1., s.seconds / s.steps});
+      }
+
     // Some 10 % of noise in seconds against exponents known to a few tenths.
     // Solving is nearly linear; assembly is, factorizations n^(3/2) and n^2.
-    Prior solve, factorize;
-    solve.weight = factorize.weight = 0.3;
-    solve.p                         = dim == 2 ? 1. : 4. / 3.;
-    factorize.p                     = dim == 2 ? 1.2 : 1.7;
-    CostModel model;
-    model.set_up       = fit_two_powers(set_up, factorize);
-    model.step         = fit_two_powers(step, solve);
-    model.memory_model = fit_two_powers(memory, solve);
+    const bool is_2d = model.demand.dim == 2;
+    Prior      linear, solve, factorize;
+    linear.weight = solve.weight = factorize.weight = 0.3;
+    solve.p                                         = is_2d ? 1. : 4. / 3.;
+    factorize.p                                     = is_2d ? 1.2 : 1.7;
+    for (const auto &[kind, own] : by_solver)
+      {
+        const bool             is_direct = kind == BulkSolverKind::direct;
+        CostModel::SolverModel fit       = {
+                fit_two_powers(own.set_up, is_direct ? factorize : linear),
+                fit_two_powers(own.step, is_direct ? solve : linear),
+                0.};
+        for (const Sample &sample : own.step)
+          fit.largest = std::max(fit.largest, sample.x_1);
+        model.solvers.emplace(kind, fit);
+      }
+    // Meshes, spaces and states.
+    linear.weight      = 10.;
+    model.other_memory = fit_two_powers(other_memory, linear);
     model.simple       = fit_line(simple, solve.p);
 
-    std::vector<double> log_ratios;
+    std::vector<double> seconds, memory;
     for (const CostSample &s : samples)
-      log_ratios.push_back(
-        std::log(model.seconds(s.dofs, s.steps, s.n_set_ups) / s.seconds));
-    model.misfit = misfit_of(log_ratios);
+      {
+        const double n      = s.demand.n_dofs;
+        const auto  &solver = model.solvers.at(choose_bulk_solver(s.demand));
+        seconds.push_back(std::log(
+          (s.n_set_ups * solver.set_up(n, 1.) + s.steps * solver.step(n, 1.)) /
+          s.seconds));
+        memory.push_back(std::log(
+          (1e-6 * expected_memory(choose_bulk_solver(s.demand), s.demand) +
+           model.other_memory(n, 1.)) /
+          s.memory));
+      }
+    model.misfit        = misfit_of(seconds);
+    model.memory_misfit = misfit_of(memory);
     return model;
   }
 

@@ -141,11 +141,12 @@ namespace Viscoplastic
 
 
     std::string
-    fits_in_words(const VariantResult &result)
+    fits_in_words(const Study &study, const VariantResult &result)
     {
       std::ostringstream text;
       const TwoPowers   &error = result.model->error;
       const CostModel   &cost  = result.model->cost;
+      const Records      timed = study.timed(result.variant);
       text << "Fit to the " << measure_in_words(result.measure)
            << ", relative:\n\n    error = ";
       if (error.m == 1.)
@@ -187,22 +188,35 @@ namespace Viscoplastic
           formula += " + " + digits(fit.c_2);
         return formula;
       };
-      text << "    seconds = "
-           << (result.variant.strategy == MeshStrategy::adaptive ? "meshes" :
-                                                                   "1")
-           << " (" << power(cost.set_up) << ")\n            + steps ("
-           << power(cost.step)
-           << ")\n    MB      = " << power(cost.memory_model)
-           << "\n\nThe seconds miss " << cost.misfit.n_samples
+      for (const auto &[kind, fit] : cost.solvers)
+        text << "With "
+             << (kind == BulkSolverKind::direct ? "the direct solver" :
+                                                  to_string(kind))
+             << ", measured up to " << digits(fit.largest)
+             << " unknowns:\n\n    seconds = "
+             << (result.variant.strategy == MeshStrategy::adaptive ? "meshes" :
+                                                                     "1")
+             << " (" << power(fit.set_up) << ")\n            + steps ("
+             << power(fit.step) << ")\n\n";
+      text << "The seconds miss " << cost.misfit.n_samples
            << " runs by a factor of " << digits(std::exp(cost.misfit.rms), 3)
            << " (root mean square) and " << digits(cost.misfit.worst_factor, 3)
-           << " at worst (`" << result.records[cost.misfit.worst_sample]->name
+           << " at worst (`" << timed[cost.misfit.worst_sample]->name
            << "`), the memory by "
-           << digits(std::exp(cost.memory_model.misfit.rms), 3)
+           << digits(std::exp(cost.memory_misfit.rms), 3)
            << ". One power alone, seconds = " << digits(cost.simple.c_1)
            << " dofs^" << digits(cost.simple.p, 3) << " steps, misses by "
            << digits(std::exp(cost.simple.misfit.rms), 3) << " and "
            << digits(cost.simple.misfit.worst_factor, 3) << " at worst.\n";
+      std::string list;
+      for (const RunRecord *record : timed)
+        if (record->key.is_timing)
+          list += (list.empty() ? "" : ", ") + ('`' + record->name + "` (") +
+                  digits(record->number("dofs")) + " unknowns, " +
+                  to_string(choose_bulk_solver(record->solver_demand)) + ", " +
+                  seconds_in_words(record->number("seconds_total")) + ")";
+      if (!list.empty())
+        text << "Runs that only tell what they cost: " << list << ".\n";
       return text.str();
     }
 
@@ -219,6 +233,7 @@ namespace Viscoplastic
                           "steps",
                           "k",
                           "unknowns",
+                          "solver",
                           "seconds",
                           "MB",
                           "half the error costs"});
@@ -238,6 +253,7 @@ namespace Viscoplastic
              std::to_string(run.steps),
              digits(run.k),
              digits(run.dofs),
+             to_string(run.solver),
              digits(run.seconds, 2),
              digits(run.memory, 2),
              digits(price.halving, 2) + " times"});
@@ -333,7 +349,7 @@ namespace Viscoplastic
              << "\nObserved orders between neighbours:\n\n"
              << orders_table(study, result) << '\n';
         if (result.model)
-          text << fits_in_words(result) << "\n### Price list\n\n"
+          text << fits_in_words(study, result) << "\n### Price list\n\n"
                << prices_table(study, result);
         else
           text << "No price list: the error is known of fewer than three "

@@ -77,6 +77,38 @@ namespace Viscoplastic
     {
       return size > 0. ? value / size : not_a_number;
     }
+
+
+
+    nlohmann::ordered_json
+    to_json(const SolverDemand &demand)
+    {
+      return {{"choice", static_cast<int>(demand.choice)},
+              {"dimension", demand.dim},
+              {"ranks", demand.n_ranks},
+              {"poissons_ratio", demand.max_poissons_ratio},
+              {"solves", demand.n_solves},
+              {"dofs", demand.n_dofs},
+              {"face_dofs", demand.n_face_dofs},
+              {"first_dofs", demand.n_first_dofs}};
+    }
+
+
+
+    SolverDemand
+    read_solver_demand(const nlohmann::ordered_json &json)
+    {
+      SolverDemand demand;
+      demand.choice = static_cast<LinearSolver>(json.at("choice").get<int>());
+      json.at("dimension").get_to(demand.dim);
+      json.at("ranks").get_to(demand.n_ranks);
+      json.at("poissons_ratio").get_to(demand.max_poissons_ratio);
+      json.at("solves").get_to(demand.n_solves);
+      json.at("dofs").get_to(demand.n_dofs);
+      json.at("face_dofs").get_to(demand.n_face_dofs);
+      json.at("first_dofs").get_to(demand.n_first_dofs);
+      return demand;
+    }
   } // namespace
 
 
@@ -199,9 +231,11 @@ namespace Viscoplastic
         if (!phase.is_cost)
           total -= seconds;
       }
-    number["seconds_total"]  = total;
-    number["seconds_rest"]   = rest;
-    number["peak_memory_MB"] = measurements.peak_memory;
+    record.solver_demand        = measurements.solver_demand;
+    record.solver_demand.n_dofs = std::llround(number["dofs"]);
+    number["seconds_total"]     = total;
+    number["seconds_rest"]      = rest;
+    number["peak_memory_MB"]    = measurements.peak_memory;
     for (const std::string name : {"contact_iterations", "linear_iterations"})
       number[name] = sum(name);
 
@@ -251,7 +285,10 @@ namespace Viscoplastic
                                 {"history", variant.history},
                                 {"mesh_level", record.key.mesh_level},
                                 {"time_level", record.key.time_level},
+                                {"timing", record.key.is_timing},
                                 {"stamp", record.stamp},
+                                {"solver_demand",
+                                 to_json(record.solver_demand)},
                                 {"numbers", record.numbers},
                                 {"quantities", nlohmann::json::object()}};
     for (const auto &[name, value] : record.quantities)
@@ -279,7 +316,9 @@ namespace Viscoplastic
         json.at("history").get_to(record.key.variant.history);
         json.at("mesh_level").get_to(record.key.mesh_level);
         json.at("time_level").get_to(record.key.time_level);
+        json.at("timing").get_to(record.key.is_timing);
         json.at("stamp").get_to(record.stamp);
+        record.solver_demand = read_solver_demand(json.at("solver_demand"));
         for (const auto &[name, value] :
              json.at("numbers").get_ref<const Json::object_t &>())
           record.numbers[name] = number(value);

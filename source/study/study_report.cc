@@ -56,7 +56,7 @@ namespace Viscoplastic
                                estimate_parts,
                                std::vector<std::string>{"effectivity"}})
         columns.insert(columns.end(), more.begin(), more.end());
-      text << "run,strategy,scheme,history,ladder,mesh_level,time_level";
+      text << "run,strategy,scheme,history,solver,ladder,mesh_level,time_level";
       for (const std::string &column : columns)
         text << ',' << column;
       for (const std::string &name : quantities(study))
@@ -70,6 +70,7 @@ namespace Viscoplastic
               const MethodVariant &variant = record.key.variant;
               text << record.name << ',' << to_string(variant.strategy) << ','
                    << variant.scheme << ',' << variant.history << ','
+                   << to_string(choose_bulk_solver(record.solver_demand)) << ','
                    << to_string(ladder) << ',' << record.key.mesh_level << ','
                    << record.key.time_level;
               for (const std::string &column : columns)
@@ -134,21 +135,25 @@ namespace Viscoplastic
     void
     add_cost(const Study &study, const VariantResult &result, Json &costs)
     {
-      const CostModel cost =
-        cost_of(result.records, study.runs.scene.dimension);
-      const auto power = [](const TwoPowers &fit) -> Json {
+      const CostModel cost  = cost_of(study.timed(result.variant));
+      const auto      power = [](const TwoPowers &fit) -> Json {
         return {{"c", fit.c_1},
                 {"a", fit.p},
                 {"constant", fit.c_2},
                 {"rms_of_log", fit.misfit.rms}};
       };
+      Json solvers = Json::array();
+      for (const auto &[kind, fit] : cost.solvers)
+        solvers.push_back({{"solver", to_string(kind)},
+                           {"largest_dofs", fit.largest},
+                           {"seconds_per_set_up", power(fit.set_up)},
+                           {"seconds_per_step", power(fit.step)}});
       costs.push_back(entry(result.variant,
-                            {{"seconds_per_set_up", power(cost.set_up)},
-                             {"seconds_per_step", power(cost.step)},
+                            {{"solvers", solvers},
                              {"c_dofs_a_steps", power(cost.simple)},
-                             {"memory_MB", power(cost.memory_model)},
                              {"rms_of_log", cost.misfit.rms},
-                             {"worst_factor", cost.misfit.worst_factor}}));
+                             {"worst_factor", cost.misfit.worst_factor},
+                             {"memory_rms_of_log", cost.memory_misfit.rms}}));
     }
 
 
@@ -169,6 +174,7 @@ namespace Viscoplastic
                                   {"steps", price.run->steps},
                                   {"dofs", price.run->dofs},
                                   {"predicted_error", price.run->error},
+                                  {"solver", to_string(price.run->solver)},
                                   {"seconds", price.run->seconds},
                                   {"memory_MB", price.run->memory},
                                   {"halving_factor", price.halving}});

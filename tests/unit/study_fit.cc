@@ -249,21 +249,39 @@ namespace
 
 
 
+  /// A demand of a scene in two dimensions with that solver, or automatic.
+  SolverDemand
+  demand(const double dofs, const LinearSolver choice = LinearSolver::direct)
+  {
+    SolverDemand result;
+    result.choice       = choice;
+    result.n_dofs       = std::llround(dofs);
+    result.n_first_dofs = 50;
+    return result;
+  }
+
+
+
+  /// Runs with the direct solver. Beside it meshes fill 2 kB an unknown.
   std::vector<CostSample>
-  costs()
+  costs(const LinearSolver choice = LinearSolver::direct)
   {
     std::vector<CostSample> samples;
     for (const double dofs : {1e3, 4e3, 1.6e4, 6.4e4})
       for (const double steps : {20., 40.})
         {
           const double set_up = 2e-6 * std::pow(dofs, 1.2);
-          samples.push_back(
-            {dofs,
-             steps,
-             1.,
-             set_up,
-             set_up + steps * (1e-3 + 1e-6 * std::pow(dofs, 1.1)),
-             90. + 2e-3 * dofs});
+          CostSample   sample{demand(dofs, choice),
+                            steps,
+                            1.,
+                            set_up,
+                            set_up +
+                              steps * (1e-3 + 1e-6 * std::pow(dofs, 1.1)),
+                            90. + 2e-3 * dofs};
+          sample.demand.n_solves = static_cast<unsigned int>(steps);
+          sample.memory +=
+            1e-6 * expected_memory(BulkSolverKind::direct, sample.demand);
+          samples.push_back(sample);
         }
     return samples;
   }
@@ -272,10 +290,15 @@ namespace
 
   TEST(StudyFit, Costs)
   {
-    const CostModel model = fit_cost(costs(), 2);
-    EXPECT_NEAR(model.set_up.p, 1.2, 0.01);
-    EXPECT_NEAR(model.step.p, 1.1, 0.01);
-    EXPECT_NEAR(model.memory(1e6), 2090., 20.);
+    const CostModel model = fit_cost(costs());
+    ASSERT_EQ(model.solvers.size(), 1u);
+    const auto &direct = model.solvers.at(BulkSolverKind::direct);
+    EXPECT_NEAR(direct.set_up.p, 1.2, 0.01);
+    EXPECT_NEAR(direct.step.p, 1.1, 0.01);
+    EXPECT_NEAR(model.memory(1e6, 100.),
+                2090. +
+                  1e-6 * expected_memory(BulkSolverKind::direct, demand(1e6)),
+                20.);
     // Sixteen times the unknowns of the largest sample, to 1 %: what is
     // believed of the exponents has a weight.
     EXPECT_NEAR(model.seconds(1e6, 100.),
@@ -283,11 +306,52 @@ namespace
                   100. * (1e-3 + 1e-6 * std::pow(1e6, 1.1)),
                 5.);
     EXPECT_LT(model.misfit.worst_factor, 1.01);
+    EXPECT_LT(model.memory_misfit.worst_factor, 1.01);
     EXPECT_GT(model.simple.misfit.worst_factor, 1.1);
     // One run: what is believed of sparse solvers.
-    const CostModel one = fit_cost({costs()[0]}, 3);
-    EXPECT_NEAR(one.step(8e3, 1.) / one.step(1e3, 1.), 16., 1e-3);
-    EXPECT_EQ(fit_cost({}, 2).misfit.n_samples, 0u);
+    CostSample sample    = costs()[0];
+    sample.demand.dim    = 3;
+    const CostModel one  = fit_cost({sample});
+    const auto     &step = one.solvers.at(BulkSolverKind::direct).step;
+    EXPECT_NEAR(step(8e3, 1.) / step(1e3, 1.), 16., 1e-3);
+    const CostModel none = fit_cost({});
+    EXPECT_EQ(none.misfit.n_samples, 0u);
+    EXPECT_EQ(none.seconds(1e4, 10.), 0.);
+  }
+
+
+
+  TEST(StudyFit, CostsOfTheSolverThatARunWouldHave)
+  {
+    // Small meshes have the direct solver. A large one that is kept for a few
+    // steps only has multigrid, whose cost is known from elsewhere at first,
+    std::vector<CostSample> samples = costs(LinearSolver::automatic);
+    const CostModel         before  = fit_cost(samples);
+    const BulkSolverKind    kind    = BulkSolverKind::geometric_multigrid;
+    ASSERT_EQ(choose_bulk_solver(before.demand_at(1e6, 2.)), kind);
+    ASSERT_EQ(choose_bulk_solver(before.demand_at(1e6, 1e3)),
+              BulkSolverKind::direct);
+    const SolverDemand large = before.demand_at(1e6, 2.);
+    const auto        &known = before.solvers.at(BulkSolverKind::direct);
+    const SolverCost   there = expected_cost(BulkSolverKind::direct,
+                                           before.demand_at(6.4e4, 2.)),
+                     here    = expected_cost(kind, large);
+    EXPECT_NEAR(before.seconds(1e6, 2.),
+                known.set_up(6.4e4, 1.) * here.set_up / there.set_up +
+                  2. * known.step(6.4e4, 1.) * here.step / there.step,
+                1e-9);
+    // and measured as soon as there is a run with it.
+    CostSample timing{before.demand_at(2.5e5, 2.), 2., 1., 3., 4., 1000.};
+    ASSERT_EQ(choose_bulk_solver(timing.demand), kind);
+    samples.push_back(timing);
+    const CostModel after = fit_cost(samples);
+    EXPECT_EQ(after.solvers.at(kind).largest, 2.5e5);
+    EXPECT_NEAR(after.seconds(2.5e5, 2.), 4., 1e-6);
+    EXPECT_NEAR(after.seconds(1e6, 2.), 16., 1e-3); // linear
+    EXPECT_NEAR(after.seconds(6.4e4, 40.), before.seconds(6.4e4, 40.), 1e-9);
+    // A face has one dimension less than its body.
+    samples.back().demand.n_face_dofs = 300;
+    EXPECT_EQ(fit_cost(samples).demand_at(1e6, 2.).n_face_dofs, 600u);
   }
 
 
@@ -297,7 +361,7 @@ namespace
   {
     WorkPrecisionModel result;
     result.error          = fit_error(ladders({2., 1., 3., 1.}));
-    result.cost           = fit_cost(costs(), 2);
+    result.cost           = fit_cost(costs());
     result.h              = 0.125;
     result.k              = 0.05;
     result.dofs           = 162.;

@@ -17,11 +17,11 @@ namespace
 
   /// A table of three rows in which each phase that it may have takes seconds
   /// of its own: powers of two, whose sums are exact and tell who is missing.
-  Table
+  Viscoplastic::Table
   table_of_all_phases()
   {
-    Table      table;
-    const auto add = [&](const std::string &name, const double value) {
+    Viscoplastic::Table table;
+    const auto          add = [&](const std::string &name, const double value) {
       table.names.push_back(name);
       table.columns[name] = {value, 2. * value, 4. * value};
     };
@@ -47,7 +47,7 @@ namespace
 
   TEST(StudyRecord, SecondsOfAllPhasesAndTheRestAreThoseOfTheRun)
   {
-    const Table     table = table_of_all_phases();
+    const auto      table = table_of_all_phases();
     RunMeasurements measurements;
     double          outside = 0.;
     for (const RunPhase &phase : run_phases)
@@ -88,7 +88,7 @@ namespace
   /// runs estimate.
   TEST(StudyRecord, PhasesThatTheTableLacksAreThoseOfTheTimer)
   {
-    Table table = table_of_all_phases();
+    auto table = table_of_all_phases();
     for (const char *name : {"wall_tangent", "wall_estimate"})
       table.columns.erase(name);
     RunMeasurements measurements;

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/loads.h>
 #include <viscoplastic_contact/discretization/stress_space.h>
+#include <viscoplastic_contact/linear_solvers/solver_choice.h>
 
 #include <memory>
 #include <vector>
@@ -50,6 +51,10 @@ namespace Viscoplastic
     {
       return face ? face->restriction() : no_face;
     }
+
+    /// What decides on the linear solver of this mesh.
+    SolverDemand
+    solver_demand() const;
 
     /// V_h, with its boundary conditions.
     AdmissibleSpace<dim> space;

@@ -4,7 +4,7 @@
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 #include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
-#include <viscoplastic_contact/parameters/choices.h>
+#include <viscoplastic_contact/linear_solvers/solver_choice.h>
 
 #include <functional>
 #include <memory>
@@ -29,42 +29,9 @@ namespace Viscoplastic
   };
 
 
-  /// What decides on the solver of a system.
-  struct SolverDemand
-  {
-    LinearSolver choice = LinearSolver::automatic;
-    /// The largest Poisson's ratio of the material that the matrix stands for.
-    double max_poissons_ratio = 0.;
-    /// How often the solver will be used at least.
-    unsigned int n_solves = 1;
-    /// Degrees of freedom of the mesh that the present one is refined from; 0
-    /// where it is not refined.
-    types::global_dof_index n_first_dofs = 0;
-  };
-
-
-  enum class BulkSolverKind
-  {
-    direct,
-    geometric_multigrid,
-    algebraic_multigrid
-  };
-
-  /**
-   * The solver that make_bulk_solver() would take for a system with @p n_dofs
-   * degrees of freedom in @p dim dimensions, @p n_face_dofs of them on the
-   * face. Throws ExcMessage for a choice that cannot be had.
-   */
-  BulkSolverKind
-  choose_bulk_solver(const SolverDemand           &demand,
-                     const unsigned int            dim,
-                     const types::global_dof_index n_dofs,
-                     const unsigned int            n_face_dofs,
-                     const MPI_Comm                communicator);
-
-
-  /// Choose and set up a solver. Throws ExcMessage for a choice that cannot be
+  /// Choose and set up a solver for this system and, beyond what that says by
+  /// itself, for the @p demand. Throws ExcMessage for a choice that cannot be
   /// had. Collective.
   std::unique_ptr<BulkSolver>
-  make_bulk_solver(const BulkSystem &system, const SolverDemand &demand);
+  make_bulk_solver(const BulkSystem &system, SolverDemand demand);
 } // namespace Viscoplastic

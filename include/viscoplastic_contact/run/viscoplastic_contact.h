@@ -70,6 +70,14 @@ namespace Viscoplastic
       return recorder.seconds();
     }
 
+    /// What decides on the linear solver of the present mesh, after a run or
+    /// check().
+    SolverDemand
+    solver_demand() const
+    {
+      return discretization->solver_demand();
+    }
+
   private:
     /// Begin from the start: everything up to the initial state.
     void

@@ -68,6 +68,7 @@ namespace Viscoplastic
     double                  h = 0., k = 0.;
     unsigned int            steps = 0;
     double                  dofs = 0., error = 0., seconds = 0., memory = 0.;
+    BulkSolverKind          solver = BulkSolverKind::direct;
     /// Whether h or k is below half of the smallest one that was measured.
     bool is_far = false;
   };

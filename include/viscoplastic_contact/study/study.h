@@ -85,6 +85,11 @@ namespace Viscoplastic
     const RunRecord *
     reference() const;
 
+    /// The records of a method variant that tell what its runs cost: all its
+    /// finished runs, and those that were made for that alone.
+    Records
+    timed(const MethodVariant &variant) const;
+
     /// The method variants of which there are finished runs, in the order of
     /// the plan.
     std::vector<MethodVariant>
@@ -98,6 +103,15 @@ namespace Viscoplastic
     /// Make a run unless it takes too long. Returns the sentence of a signal.
     std::string
     make(PlannedRun &run);
+
+    /// Time the method variants on meshes for which prices are wanted and that
+    /// no finished run has. Returns the sentence of a signal.
+    std::string
+    make_timings();
+
+    /// The sentence for a study that a signal has ended, in that run.
+    std::string
+    interruption_in(const std::string &run, const std::string &sentence) const;
 
     /// Make the reference run, if there is time for it. Returns the sentence of
     /// a signal.
@@ -125,6 +139,8 @@ namespace Viscoplastic
     void
     announce(const RunRecord &record) const;
 
+    /// Runs that only tell what they cost, by the name of the method variant.
+    std::map<std::string, std::vector<RunRecord>> timings;
     /// Fits to the present records, by the name of the method variant.
     mutable std::map<std::string, CostModel> costs;
     /// Runs since the study began.

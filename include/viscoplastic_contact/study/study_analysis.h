@@ -51,12 +51,14 @@ namespace Viscoplastic
 
   /// The fit of seconds and memory.
   CostModel
-  cost_of(const Records &records, const unsigned int dim);
+  cost_of(const Records &records);
 
-  /// All that follows from runs of one method variant. There must be a run.
+  /// All that follows from runs of one method variant, of which there must be
+  /// one. Those that are @p timed tell what runs cost.
   WorkPrecisionModel
   fit_work_precision(const StudyRuns   &runs,
                      const Records     &records,
+                     const Records     &timed,
                      const std::string &measure,
                      const RunRecord   *reference);
 

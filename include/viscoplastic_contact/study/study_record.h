@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/linear_solvers/solver_choice.h>
+
 #include <limits>
 #include <map>
 #include <string>
@@ -59,12 +61,14 @@ namespace Viscoplastic
     MethodVariant variant;
     /// Halvings of h and k from those of the scene; negative: doublings.
     int mesh_level = 0, time_level = 0;
+    /// Whether it only tells what it costs, and is compared with nothing.
+    bool is_timing = false;
 
     bool
     operator==(const RunKey &other) const
     {
       return variant == other.variant && mesh_level == other.mesh_level &&
-             time_level == other.time_level;
+             time_level == other.time_level && is_timing == other.is_timing;
     }
   };
 
@@ -93,6 +97,8 @@ namespace Viscoplastic
     /// Wall time by phase, see ViscoplasticContact::seconds().
     std::map<std::string, double> seconds;
     double                        peak_memory = 0.; // MB, of all ranks
+    /// That of the last mesh.
+    SolverDemand solver_demand;
   };
 
 
@@ -106,6 +112,8 @@ namespace Viscoplastic
     std::map<std::string, std::string> stamp;
     /// Sizes, costs and errors, by the name of their column in study.csv.
     std::map<std::string, double> numbers;
+    /// What decides on the linear solver, with the mean number of unknowns.
+    SolverDemand solver_demand;
     /// Quantities of interest at the end, by name, in the order of the table.
     std::vector<std::pair<std::string, double>> quantities;
 

@@ -109,9 +109,16 @@ namespace Viscoplastic
     mesh_width(const double n_cells) const;
 
   private:
+    /// Whether a run is compared with the reference.
+    bool
+    is_compared(const RunKey &key) const
+    {
+      return reference && !(key == *reference) && !key.is_timing;
+    }
+
     /// What tells a run from those of other scenes and programs.
     std::map<std::string, std::string>
-    stamp(const Parameters &parameters) const;
+    stamp(const Parameters &parameters, const RunKey &key) const;
 
     MPI_Comm      communicator, agreement;
     DirectoryLock lock; // on rank 0

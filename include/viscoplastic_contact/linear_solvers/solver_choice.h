@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/types.h>
+
+#include <viscoplastic_contact/parameters/choices.h>
+
+#include <string>
+
+namespace Viscoplastic
+{
+  // Which linear solver a scene gets, and what it is expected to cost. Pure
+  // functions of numbers.
+
+  enum class BulkSolverKind
+  {
+    direct,
+    geometric_multigrid,
+    algebraic_multigrid
+  };
+
+  /// As tables of a study have it.
+  std::string
+  to_string(const BulkSolverKind kind);
+
+
+  /// What decides on the solver of a system.
+  struct SolverDemand
+  {
+    LinearSolver choice = LinearSolver::automatic;
+    unsigned int dim = 2, n_ranks = 1;
+    /// The largest Poisson's ratio of the material that the matrix stands for.
+    double max_poissons_ratio = 0.;
+    /// How often the solver will be used at least.
+    unsigned int n_solves = 1;
+    /// Degrees of freedom in all, and of these on the friction face.
+    dealii::types::global_dof_index n_dofs = 0, n_face_dofs = 0;
+    /// Those of the mesh that the present one is refined from; 0 where it is
+    /// not refined.
+    dealii::types::global_dof_index n_first_dofs = 0;
+  };
+
+
+  /// The solver for a demand. Throws ExcMessage for a choice that cannot be
+  /// had.
+  BulkSolverKind
+  choose_bulk_solver(const SolverDemand &demand);
+
+
+  /// Seconds of one set-up, with all that a new mesh brings, and of one step.
+  struct SolverCost
+  {
+    double set_up, step;
+  };
+
+  /**
+   * What a solver is expected to cost: powers of the degrees of freedom,
+   * measured by benchmarks/step_cost.py and benchmarks/new_mesh.py. Only ratios
+   * mean anything on other machines and in other scenes.
+   */
+  SolverCost
+  expected_cost(const BulkSolverKind kind, const SolverDemand &demand);
+
+
+  /**
+   * Memory in bytes that matrix, solver and vectors take beyond mesh and
+   * spaces: fitted to measurements (doc/solvers.md), good to a factor of 1.5 or
+   * so.
+   */
+  double
+  expected_memory(const BulkSolverKind kind, const SolverDemand &demand);
+} // namespace Viscoplastic

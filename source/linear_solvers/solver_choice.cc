@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+
+#include <viscoplastic_contact/linear_solvers/solver_choice.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// Seconds that are proportional to a power of the degrees of freedom.
+    struct Power
+    {
+      double seconds, exponent;
+    };
+
+    /// The seconds of the solvers in one dimension at @p n_dofs.
+    struct Costs
+    {
+      double n_dofs;
+      /// A new mesh without a factorization, and what that adds.
+      Power mesh, factorization;
+      Power direct_step, multigrid_step;
+      /// How many times more a step with algebraic multigrid takes than one
+      /// with geometric multigrid.
+      double algebraic;
+
+      double
+      at(const Power &power, const double n) const
+      {
+        return power.seconds * std::pow(n / n_dofs, power.exponent);
+      }
+    };
+
+    Costs
+    costs(const unsigned int dim)
+    {
+      return dim == 2 ?
+               Costs{5e5, {6.5, 1.}, {6., 1.1}, {0.29, 1.07}, {1., 1.08}, 4.} :
+               Costs{
+                 1.1e5, {2.4, 1.}, {13., 1.3}, {0.59, 1.24}, {0.44, 1.}, 6.};
+    }
+
+
+
+    /// How many times more iterations nearly incompressible bodies take.
+    double
+    growth_by_incompressibility(const double poissons_ratio)
+    {
+      return std::max(1.,
+                      0.35 /
+                        std::sqrt(std::max(1. - 2. * poissons_ratio, 1e-8)));
+    }
+
+
+
+    /// Whether the mesh is refined from a small one. That one is solved on
+    /// directly, whenever its stick set changes: it must be little against a
+    /// cycle on the present one.
+    bool
+    has_small_first_mesh(const SolverDemand &demand)
+    {
+      using Number       = types::global_dof_index;
+      const Number share = demand.n_dofs / 20;
+      return demand.n_first_dofs > 0 &&
+             demand.n_first_dofs <=
+               (demand.dim == 2 ?
+                  std::max(Number(2000), std::min(share, Number(20000))) :
+                  std::max(Number(600), std::min(share, Number(6000))));
+    }
+
+
+
+    /// Whether the direct solver is expected to win.
+    bool
+    prefer_direct(const SolverDemand &demand)
+    {
+      const auto [dim, n_dofs] = std::make_pair(demand.dim, demand.n_dofs);
+      // The dense face problem: 200 MB and a cubic set-up. Beyond, the memory
+      // of the factor.
+      if (demand.n_face_dofs > 5000 || n_dofs >= (dim == 2 ? 2000000 : 200000))
+        return false;
+      // An exact solution, where it costs next to nothing.
+      const bool has_levels = has_small_first_mesh(demand);
+      if (n_dofs < (demand.n_solves < 4 && has_levels ? 2000 : 20000))
+        return true;
+      if (has_levels)
+        {
+          const auto total = [&](const BulkSolverKind kind) {
+            const SolverCost cost = expected_cost(kind, demand);
+            return cost.set_up + demand.n_solves * cost.step;
+          };
+          return total(BulkSolverKind::direct) <
+                 total(BulkSolverKind::geometric_multigrid);
+        }
+      // Algebraic multigrid takes several times the iterations.
+      return dim == 2 || demand.max_poissons_ratio > 0.45 ||
+             (n_dofs < 150000 && demand.n_solves >= 20);
+    }
+  } // namespace
+
+
+
+  std::string
+  to_string(const BulkSolverKind kind)
+  {
+    return kind == BulkSolverKind::direct              ? "direct" :
+           kind == BulkSolverKind::geometric_multigrid ? "geometric multigrid" :
+                                                         "algebraic multigrid";
+  }
+
+
+
+  BulkSolverKind
+  choose_bulk_solver(const SolverDemand &demand)
+  {
+    const LinearSolver choice = demand.choice;
+    AssertThrow(choice != LinearSolver::direct || demand.n_ranks == 1,
+                ExcMessage("'Solver/Linear solver' = direct works on one MPI "
+                           "rank, but the run has " +
+                           std::to_string(demand.n_ranks) +
+                           "; use multigrid or automatic."));
+    if (choice == LinearSolver::direct ||
+        (choice == LinearSolver::automatic && demand.n_ranks == 1 &&
+         prefer_direct(demand)))
+      return BulkSolverKind::direct;
+    return choice != LinearSolver::algebraic_multigrid &&
+               has_small_first_mesh(demand) ?
+             BulkSolverKind::geometric_multigrid :
+             BulkSolverKind::algebraic_multigrid;
+  }
+
+
+
+  SolverCost
+  expected_cost(const BulkSolverKind kind, const SolverDemand &demand)
+  {
+    const Costs  c      = costs(demand.dim);
+    const double n      = demand.n_dofs;
+    const double set_up = c.at(c.mesh, n);
+    if (kind == BulkSolverKind::direct)
+      return {set_up + c.at(c.factorization, n), c.at(c.direct_step, n)};
+    return {set_up,
+            c.at(c.multigrid_step, n) *
+              growth_by_incompressibility(demand.max_poissons_ratio) *
+              (kind == BulkSolverKind::algebraic_multigrid ? c.algebraic : 1.)};
+  }
+
+
+
+  double
+  expected_memory(const BulkSolverKind kind, const SolverDemand &demand)
+  {
+    const unsigned int dim    = demand.dim;
+    const double       n_dofs = demand.n_dofs, n_face_dofs = demand.n_face_dofs;
+    // 12 bytes an entry, 9 or 27 neighbors a node; some 20 vectors.
+    const double matrix  = n_dofs * (dim == 2 ? 18. : 81.) * 12.;
+    const double vectors = n_dofs * 20. * 8.;
+    if (kind == BulkSolverKind::geometric_multigrid)
+      return matrix + vectors + n_dofs * (dim == 2 ? 1200. : 1500.);
+    // A second matrix without the prescribed rows, and ML.
+    if (kind == BulkSolverKind::algebraic_multigrid)
+      return 2. * matrix + vectors + n_dofs * (dim == 2 ? 850. : 2700.);
+    // Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
+    const double factor = dim == 2 ?
+                            n_dofs * 78. * std::log2(std::max(n_dofs, 2.)) :
+                            n_dofs * 190. * std::cbrt(n_dofs);
+    return matrix + vectors + factor + 2. * 8. * n_face_dofs * n_face_dofs;
+  }
+} // namespace Viscoplastic

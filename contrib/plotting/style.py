@@ -15,7 +15,8 @@ import matplotlib.patheffects
 import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, NullFormatter
+from matplotlib.scale import LinearScale, register_scale
+from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
 from .results import UserError
 
@@ -47,7 +48,25 @@ TENSORS = {
 }
 
 
+class PlainNumbers(ScalarFormatter):
+    """Tick labels as text, which matplotlib would parse as mathematics, each of
+    them: half of the time of a picture.  Their power of ten stays mathematics."""
+
+    def __call__(self, x, pos=None):
+        label = super().__call__(x, pos)
+        return label.removeprefix(r"$\mathdefault{").removesuffix("}$")
+
+
+class Linear(LinearScale):
+    """The linear scale of matplotlib with these labels."""
+
+    def set_default_locators_and_formatters(self, axis):
+        super().set_default_locators_and_formatters(axis)
+        axis.set_major_formatter(PlainNumbers())
+
+
 def set_up():
+    register_scale(Linear)
     matplotlib.rcParams.update(
         {
             "font.size": 10.5,

@@ -324,6 +324,7 @@ class Resumed(TestCase):
         "Geometry__Global_refinements": 1,
         "Time__Phases": "1: 8",
         "Study__Levels": 3,
+        "Study__Target_errors": 1,  # nothing to be timed beyond the ladders
     }
 
     def wait_for(self, folder, process, n):

@@ -85,6 +85,12 @@ end
 """
 
 
+def launcher(ranks):
+    if ranks == 1:
+        return []
+    return ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)]
+
+
 def scene(dim, n, solver, n_steps, tolerance, directory):
     """SLAB in 2D, PAD in 3D (see prm/verification), behind plain steps; n is
     halved while it is even, for meshes to coarsen to."""
@@ -134,22 +140,34 @@ def scene(dim, n, solver, n_steps, tolerance, directory):
     )
 
 
-def measure(executable, work, dim, n, solver, n_steps, tolerance):
+def run(command):
+    """Standard output of a command that must succeed, and the most memory in MB
+    that a process of it has had."""
+    with tempfile.TemporaryFile("w+") as output:
+        process = subprocess.Popen(
+            command, env={**os.environ, "OMP_NUM_THREADS": "1"}, stdout=output
+        )
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode != 0:
+            sys.exit(f"Error: {' '.join(command)} failed; the reason is above.")
+        output.seek(0)
+        return output.read(), usage.ru_maxrss / 1024
+
+
+def over_plain(rows, unit):
+    """Mean seconds of steps without output over those of a plain solve."""
+    return statistics.mean(sum(row[column] for column in WORK) for row in rows) / unit
+
+
+def measure(executable, work, dim, n, solver, n_steps, tolerance, ranks=1):
     name = f"{dim}d_{solver}"
     file = work / f"{name}.prm"
     file.write_text(
         scene(dim, n, SOLVERS[solver], n_steps, tolerance, work / name),
         encoding="utf-8",
     )
-    process = subprocess.run(
-        [executable, str(file)],
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        stdout=subprocess.PIPE,
-        text=True,
-        check=False,
-    )
-    if process.returncode != 0:
-        sys.exit(f"Error: the run of {file} failed; the reason is above.")
+    output, memory = run([*launcher(ranks), executable, str(file)])
     with open(work / name / "statistics.csv", newline="", encoding="utf-8") as table:
         rows = [
             {column: float(value) for column, value in row.items()}
@@ -160,7 +178,8 @@ def measure(executable, work, dim, n, solver, n_steps, tolerance):
     steps = rows[N_PLAIN + 2 :]
     unit = statistics.median(row["wall_contact"] for row in plain)
     cost = [sum(row[column] for column in WORK) / unit for row in steps]
-    set_up = re.search(r"^ *set-up +(\S+) ", process.stdout, re.MULTILINE)
+    set_up = re.search(r"^ *set-up +(\S+) ", output, re.MULTILINE)
+    middle = len(steps) // 2
     face = rows[1]["stick_area"]
     return {
         "case": f"{dim}D {solver}",
@@ -171,6 +190,9 @@ def measure(executable, work, dim, n, solver, n_steps, tolerance):
         "mean": statistics.mean(cost),
         "median": statistics.median(cost),
         "max": max(cost),
+        "load": over_plain(steps[:middle], unit),
+        "reversal": over_plain(steps[middle:], unit),
+        "peak MB": memory,
         "contact": sum(row["wall_contact"] for row in steps) / len(steps) / unit,
         "its": statistics.mean(row["linear_iterations"] for row in steps),
         "sets": statistics.mean(row["contact_iterations"] for row in steps),

@@ -108,9 +108,7 @@ namespace Viscoplastic
   double
   WorkPrecisionModel::seconds(const double mesh_width, const double steps) const
   {
-    return cost.seconds(dofs_at(mesh_width),
-                        steps,
-                        number_of_set_ups(steps, steps_per_mesh));
+    return cost.seconds(dofs_at(mesh_width), steps, n_set_ups(steps));
   }
 
 
@@ -123,13 +121,12 @@ namespace Viscoplastic
     result.h          = model.h * std::pow(0.5, mesh_level);
     result.phases =
       scale_phases(model.phases, model.k / std::min(k, model.largest_k));
-    result.k       = largest_step(result.phases);
-    result.steps   = n_steps(result.phases);
-    result.dofs    = model.dofs_at(result.h);
-    result.error   = model.error(result.h, result.k);
-    result.seconds = model.seconds(result.h, result.steps);
-    const double n_set_ups =
-      number_of_set_ups(result.steps, model.steps_per_mesh);
+    result.k               = largest_step(result.phases);
+    result.steps           = n_steps(result.phases);
+    result.dofs            = model.dofs_at(result.h);
+    result.error           = model.error(result.h, result.k);
+    result.seconds         = model.seconds(result.h, result.steps);
+    const double n_set_ups = model.n_set_ups(result.steps);
     result.memory = model.cost.memory(result.dofs, result.steps, n_set_ups);
     result.solver = choose_bulk_solver(
       model.cost.demand_at(result.dofs, result.steps, n_set_ups));

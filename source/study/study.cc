@@ -214,11 +214,9 @@ namespace Viscoplastic
       std::pow(2., dim * (key.mesh_level - finest->key.mesh_level));
     const unsigned int steps =
       n_steps(scale_phases(runs.phases, std::pow(2., key.time_level)));
-    return costs.at(name).seconds(
-      dofs,
-      steps,
-      number_of_set_ups(steps,
-                        runs.steps_per_mesh(key.variant.strategy, steps)));
+    return costs.at(name).seconds(dofs,
+                                  steps,
+                                  runs.n_set_ups(key.variant.strategy, steps));
   }
 
 

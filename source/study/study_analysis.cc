@@ -227,9 +227,11 @@ namespace Viscoplastic
         if (std::isfinite(limit) && limit >= k)
           model.largest_k = std::min(model.largest_k, 0.95 * limit);
       }
-    model.largest_k      = std::min(model.largest_k, largest_k);
-    model.steps_per_mesh = runs.steps_per_mesh(records[0]->key.variant.strategy,
-                                               n_steps(runs.phases));
+    model.largest_k = std::min(model.largest_k, largest_k);
+    model.n_set_ups =
+      [&runs, strategy = records[0]->key.variant.strategy](const double steps) {
+        return runs.n_set_ups(strategy, steps);
+      };
     return model;
   }
 

@@ -175,13 +175,4 @@ namespace Viscoplastic
     return model;
   }
 
-
-
-  double
-  number_of_set_ups(const double steps, const double steps_per_mesh)
-  {
-    return steps_per_mesh > 0. ?
-             std::max(1., std::ceil(steps / steps_per_mesh)) :
-             1.;
-  }
 } // namespace Viscoplastic

@@ -247,6 +247,16 @@ namespace Viscoplastic
 
 
 
+  double
+  StudyRuns::n_set_ups(const MeshStrategy strategy, const double n_steps) const
+  {
+    const double every =
+      steps_per_mesh(strategy, static_cast<unsigned int>(n_steps));
+    return every > 0. ? std::max(1., std::ceil(n_steps / every)) : 1.;
+  }
+
+
+
   int
   StudyRuns::n_coarser_meshes() const
   {
@@ -478,19 +488,16 @@ namespace Viscoplastic
       return outcome;
     on_first_rank(communicator, [&] {
       console.check();
-      RunRecord record    = make_record(key,
+      RunRecord record          = make_record(key,
                                      read_table(place + "statistics.csv"),
                                      measurements,
                                      is_compared(key));
-      record.name         = name(key);
-      record.stamp        = run_stamp;
-      record.numbers["h"] = mesh_width(record.number("cells"));
-      const double steps  = record.number("steps");
-      record.numbers["set_ups"] =
-        number_of_set_ups(steps,
-                          steps_per_mesh(key.variant.strategy,
-                                         static_cast<unsigned int>(steps)));
-      std::string &list = record.stamp["overrides"];
+      record.name               = name(key);
+      record.stamp              = run_stamp;
+      record.numbers["h"]       = mesh_width(record.number("cells"));
+      const double steps        = record.number("steps");
+      record.numbers["set_ups"] = n_set_ups(key.variant.strategy, steps);
+      std::string &list         = record.stamp["overrides"];
       for (const std::string &assignment : all_overrides)
         list += (list.empty() ? "" : "; ") + assignment;
       replace_file(place + "result.json",

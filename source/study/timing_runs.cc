@@ -55,8 +55,8 @@ namespace Viscoplastic
           {
             const unsigned int steps =
               n_steps(scale_phases(runs.phases, std::pow(2., key.time_level)));
-            const double n_set_ups = number_of_set_ups(
-              steps, runs.steps_per_mesh(key.variant.strategy, steps));
+            const double n_set_ups =
+              runs.n_set_ups(key.variant.strategy, steps);
             expected       = cost.seconds(dofs, steps, n_set_ups);
             memory         = cost.memory(dofs, steps, n_set_ups);
             outcome.record = runs.find(key);

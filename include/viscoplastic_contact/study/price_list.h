@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/study/study_cost.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,8 +48,8 @@ namespace Viscoplastic
     int coarsest_level = 0;
     /// The longest step that was measured, or the limit of stability.
     double largest_k = std::numeric_limits<double>::infinity();
-    /// Steps between new meshes; 0 for a mesh that stays.
-    double steps_per_mesh = 0.;
+    /// How often a run of so many steps is set up, once for each of its meshes.
+    std::function<double(double)> n_set_ups = [](double) { return 1.; };
     /// The smallest h and k that have been measured, to tell extrapolations.
     double smallest_h = 0., smallest_k = 0.;
 

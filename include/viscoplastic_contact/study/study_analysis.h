@@ -54,7 +54,7 @@ namespace Viscoplastic
   cost_of(const Records &records);
 
   /// All that follows from runs of one method variant, of which there must be
-  /// one. Those that are @p timed tell what runs cost.
+  /// one. Those that are @p timed tell what runs cost. The model uses @p runs.
   WorkPrecisionModel
   fit_work_precision(const StudyRuns   &runs,
                      const Records     &records,

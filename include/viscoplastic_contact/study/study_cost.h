@@ -69,9 +69,4 @@ namespace Viscoplastic
   /// The model of these runs; without any, seconds() and memory() are zero.
   CostModel
   fit_cost(const std::vector<CostSample> &samples);
-
-  /// How often a run of @p steps is set up, once for each of its meshes: there
-  /// is a new one after @p steps_per_mesh, or never if that is 0.
-  double
-  number_of_set_ups(const double steps, const double steps_per_mesh);
 } // namespace Viscoplastic

@@ -67,6 +67,10 @@ namespace Viscoplastic
     steps_per_mesh(const MeshStrategy strategy,
                    const unsigned int n_steps) const;
 
+    /// How often a run of so many steps is set up, once for each of its meshes.
+    double
+    n_set_ups(const MeshStrategy strategy, const double n_steps) const;
+
     /// How often the mesh can be made coarser by halving.
     int
     n_coarser_meshes() const;

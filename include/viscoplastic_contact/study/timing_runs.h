@@ -20,10 +20,10 @@ namespace Viscoplastic
    * Time runs of one method variant on meshes that are finer than those of its
    * @p records, of which there must be one: each with half of the mesh width of
    * the one before, up to @p mesh_level, and with as many steps as a record has
-   * and half of the seconds left allow. Prices of long runs go by these instead of by extrapolation, and
-   * learn of solvers that small meshes do not have. They end where the next one
-   * would take more than is left of @p seconds, or half of the memory of this
-   * machine. Collective.
+   * and half of the seconds left allow. Prices of long runs go by these instead
+   * of by extrapolation, and learn of solvers that small meshes do not have.
+   * They end where the next one would take more than is left of @p seconds, or
+   * half of the memory of this machine. Collective.
    */
   TimingRuns
   make_timing_runs(const StudyRuns &runs,

@@ -64,7 +64,7 @@ namespace Viscoplastic
     bool
     has_small_first_mesh(const SolverDemand &demand)
     {
-      using Number       = types::global_dof_index;
+      using Number       = std::uint64_t;
       const Number share = demand.n_dofs / 20;
       return demand.n_first_dofs > 0 &&
              demand.n_first_dofs <=

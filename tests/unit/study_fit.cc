@@ -349,6 +349,9 @@ namespace
     EXPECT_NEAR(after.seconds(2.5e5, 2.), 4., 1e-6);
     EXPECT_NEAR(after.seconds(1e6, 2.), 16., 1e-3); // linear
     EXPECT_NEAR(after.seconds(6.4e4, 40.), before.seconds(6.4e4, 40.), 1e-9);
+    // Prices look at far finer meshes than anybody has.
+    for (const CostModel &model : {before, after})
+      EXPECT_NEAR(model.seconds(1e13, 2.) / model.seconds(1e12, 2.), 10., 2.5);
     // A face has one dimension less than its body.
     samples.back().demand.n_face_dofs = 300;
     EXPECT_EQ(fit_cost(samples).demand_at(1e6, 2.).n_face_dofs, 600u);

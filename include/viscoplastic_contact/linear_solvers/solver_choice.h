@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/base/types.h>
-
 #include <viscoplastic_contact/parameters/choices.h>
 
+#include <cstdint>
 #include <string>
 
 namespace Viscoplastic
@@ -33,11 +32,12 @@ namespace Viscoplastic
     double max_poissons_ratio = 0.;
     /// How often the solver will be used at least.
     unsigned int n_solves = 1;
-    /// Degrees of freedom in all, and of these on the friction face.
-    dealii::types::global_dof_index n_dofs = 0, n_face_dofs = 0;
+    /// Degrees of freedom in all, and of these on the friction face. Prices are
+    /// those of systems beyond dealii::types::global_dof_index, too.
+    std::uint64_t n_dofs = 0, n_face_dofs = 0;
     /// Those of the mesh that the present one is refined from; 0 where it is
     /// not refined.
-    dealii::types::global_dof_index n_first_dofs = 0;
+    std::uint64_t n_first_dofs = 0;
   };
 
 

@@ -47,6 +47,9 @@ namespace Viscoplastic
     result.n_dofs       = std::llround(dofs);
     result.n_solves =
       static_cast<unsigned int>(std::clamp(steps / n_set_ups, 1., 1e8));
+    // What is finer than a mesh that is not refined is refined from it.
+    if (demand.n_first_dofs == 0 && dofs > 1.5 * demand.n_dofs)
+      result.n_first_dofs = demand.n_dofs;
     if (demand.n_dofs > 0)
       // A face has one dimension less than its body.
       result.n_face_dofs = std::llround(
@@ -66,24 +69,24 @@ namespace Viscoplastic
       return 0.;
     const SolverDemand   wanted = demand_at(dofs, steps, n_set_ups);
     const BulkSolverKind kind   = choose_bulk_solver(wanted);
-    const auto           found  = solvers.find(kind);
-    if (found != solvers.end())
-      return n_set_ups * found->second.set_up(dofs, 1.) +
-             steps * found->second.step(dofs, 1.);
+    auto                 known  = solvers.find(kind);
+    if (known != solvers.end() && known->second.step.p_is_fitted)
+      return n_set_ups * known->second.set_up(dofs, 1.) +
+             steps * known->second.step(dofs, 1.);
 
-    const auto largest =
-      std::max_element(solvers.begin(),
-                       solvers.end(),
-                       [](const auto &a, const auto &b) {
-                         return a.second.largest < b.second.largest;
-                       });
-    const auto &[known_kind, known] = *largest;
-    const double     n              = known.largest;
-    const SolverCost there          = expected_cost(known_kind,
+    if (known == solvers.end())
+      known = std::max_element(solvers.begin(),
+                               solvers.end(),
+                               [](const auto &a, const auto &b) {
+                                 return a.second.largest < b.second.largest;
+                               });
+    const auto &[known_kind, fit] = *known;
+    const double     n            = fit.largest;
+    const SolverCost there        = expected_cost(known_kind,
                                            demand_at(n, steps, n_set_ups)),
-                     here           = expected_cost(kind, wanted);
-    return n_set_ups * known.set_up(n, 1.) * here.set_up / there.set_up +
-           steps * known.step(n, 1.) * here.step / there.step;
+                     here         = expected_cost(kind, wanted);
+    return n_set_ups * fit.set_up(n, 1.) * here.set_up / there.set_up +
+           steps * fit.step(n, 1.) * here.step / there.step;
   }
 
 

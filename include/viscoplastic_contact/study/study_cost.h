@@ -27,8 +27,9 @@ namespace Viscoplastic
   /**
    * seconds = n_set_ups s(dofs) + steps r(dofs), where s and r have the form
    * c_1 dofs^a + c_2 and are those of the solver that a run would have. Where
-   * no run has had that solver, s and r are those of expected_cost() times the
-   * factor by which the largest run differs from them.
+   * the runs do not tell the exponent of that solver, or none has had it, s and
+   * r are those of expected_cost() times the factor by which the largest run
+   * with it, or the largest of all, differs from them.
    */
   struct CostModel
   {

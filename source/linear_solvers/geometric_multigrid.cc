@@ -29,19 +29,31 @@ namespace Viscoplastic
 
 
 
+  /// The matrix on the last mesh in double precision and Cartesian components.
+  template <int dim>
+  struct GeometricMultigrid<dim>::Operator
+  {
+    SharedRows<dim, double>                    rows;
+    LinearAlgebra::distributed::Vector<double> x, y;
+  };
+
+
+
   template <int dim>
   GeometricMultigrid<dim>::GeometricMultigrid(
     const DistributedMatrix &matrix,
     const std::vector<bool> &excluded,
     NodeHierarchy            hierarchy_,
     const FaceRestriction   &restriction,
-    const unsigned int       coarse_size)
+    const unsigned int       coarse_size,
+    const double             largest_shared_part)
     : matrix(matrix)
     , excluded(excluded)
     , hierarchy(std::move(hierarchy_))
     , communicator(matrix.get_mpi_communicator())
     , begins(1, 0)
     , masks(excluded, hierarchy, restriction)
+    , largest_shared_part(largest_shared_part)
   {
     for (const Node n_owned :
          Utilities::MPI::all_gather(communicator,
@@ -160,6 +172,8 @@ namespace Viscoplastic
         else
           level.space = std::make_unique<MultigridLevel<dim>>(
             rows, level.nodes, others, begins, communicator);
+        if (l + 1 == levels.size())
+          share_matrix(rows);
         if (l == 0)
           break;
         std::set<Node> ghosts;
@@ -206,6 +220,28 @@ namespace Viscoplastic
       spaces.push_back(level->space.get());
     masks.set_levels(spaces);
     set_masks(LevelMasks<dim>::untruncated, nullptr);
+  }
+
+
+
+  template <int dim>
+  void
+  GeometricMultigrid<dim>::share_matrix(const BlockRows<dim> &matrix_rows)
+  {
+    const MultigridLevel<dim> &level  = *levels.back()->space;
+    auto                       result = std::make_unique<Operator>();
+    result->rows.set_values(matrix_rows, [&level](const Node node) {
+      return level.local_number(node);
+    });
+    const std::vector<std::uint64_t> on_rank{result->rows.n_blocks(),
+                                             result->rows.n_stored_blocks()};
+    std::vector<std::uint64_t>       n_blocks(2);
+    Utilities::MPI::sum(on_rank, communicator, n_blocks);
+    if (n_blocks[1] > largest_shared_part * n_blocks[0])
+      return;
+    result->x.reinit(level.x.get_partitioner());
+    result->y.reinit(level.x.get_partitioner());
+    shared_matrix = std::move(result);
   }
 
 
@@ -300,6 +336,42 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           to[d] = u[i * dim + d] / (scale * unit);
       }
+  }
+
+
+
+  template <int dim>
+  bool
+  GeometricMultigrid<dim>::vmult_matrix(DistributedVector       &y,
+                                        const DistributedVector &x) const
+  {
+    if (shared_matrix == nullptr)
+      return false;
+    y                 = 0.;
+    auto       &u     = shared_matrix->x;
+    auto       &v     = shared_matrix->y;
+    const auto &nodes = levels.back()->nodes;
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      {
+        const double *const from =
+          x.begin() + (nodes[i] - hierarchy.begin) * dim;
+        for (unsigned int d = 0; d < dim; ++d)
+          u.begin()[i * dim + d] = unit * from[d];
+      }
+    for (const auto &[i, directions] : rotated_nodes)
+      multiply(directions, u.begin() + i * dim);
+    u.update_ghost_values();
+    shared_matrix->rows.vmult(v.begin(), u.begin());
+    u.zero_out_ghost_values();
+    for (const auto &[i, directions] : rotated_nodes)
+      multiply(transpose(directions), v.begin() + i * dim);
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      {
+        double *const to = y.begin() + (nodes[i] - hierarchy.begin) * dim;
+        for (unsigned int d = 0; d < dim; ++d)
+          to[d] = v.begin()[i * dim + d];
+      }
+    return true;
   }
 
 

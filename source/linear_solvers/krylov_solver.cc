@@ -31,7 +31,9 @@ namespace Viscoplastic
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
-      solver.matrix.vmult(y, x);
+      // The residuals that decide are those of the matrix itself.
+      if (!solver.preconditioner->vmult_matrix(y, x))
+        solver.matrix.vmult(y, x);
       if (is_truncated && solver.has_springs)
         solver.restriction.add_springs(solver.truncation, x, y);
       solver.restrict_to_unknowns(y);

@@ -1,86 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/linear_solvers/multigrid_level.h>
 
-#include <boost/functional/hash.hpp>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <numeric>
-#include <tuple>
-#include <unordered_map>
 
 namespace Viscoplastic
 {
   namespace
   {
     using Node = NodeHierarchy::Node;
-
-
-
-    template <int dim>
-    using FourNumbers = typename LevelBlock<dim>::FourNumbers;
-
-
-
-    /// sum := sum + block times y. In 2D the result is in two parts.
-    template <int dim>
-    inline void
-    add_product(const LevelBlock<dim>        &a,
-                const std::array<float, dim> &y,
-                FourNumbers<dim>             &sum)
-    {
-      if constexpr (dim == 2)
-        sum += a.columns[0] * FourNumbers<dim>{y[0], y[0], y[1], y[1]};
-      else
-        sum += a.columns[0] * y[0] + a.columns[1] * y[1] + a.columns[2] * y[2];
-    }
-
-
-
-    template <int dim>
-    inline std::array<float, dim>
-    values_of(const float *x)
-    {
-      std::array<float, dim> result;
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] = x[d];
-      return result;
-    }
-
-
-
-    template <int dim>
-    inline std::array<float, dim>
-    difference(const float *x, const std::array<float, dim> &y)
-    {
-      std::array<float, dim> result;
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] = x[d] - y[d];
-      return result;
-    }
-
-
-
-    template <int dim>
-    inline float
-    component(const FourNumbers<dim> &sum, const unsigned int d)
-    {
-      return dim == 2 ? sum[d] + sum[2 + d] : sum[d];
-    }
-
-
-
-    template <int dim>
-    inline void
-    add(const LevelBlock<dim> &a, const float *r, float *x)
-    {
-      FourNumbers<dim> sum = {};
-      add_product<dim>(a, values_of<dim>(r), sum);
-      for (unsigned int d = 0; d < dim; ++d)
-        x[d] += component<dim>(sum, d);
-    }
   } // namespace
 
 
@@ -131,7 +60,6 @@ namespace Viscoplastic
     , end(begins[Utilities::MPI::this_mpi_process(communicator) + 1])
     , n_owned(nodes.size())
     , is_serial(Utilities::MPI::n_mpi_processes(communicator) == 1)
-    , inverse(n_owned)
   {
     if (!is_serial)
       {
@@ -189,84 +117,8 @@ namespace Viscoplastic
   void
   MultigridLevel<dim>::set_values(const BlockRows<dim> &matrix)
   {
-    rows.clear();
-    columns.clear();
-    columns.reserve(matrix.columns.size() - n_owned);
-    values.clear();
-    row_sums.clear();
-    struct Entry
-    {
-      bool            is_upper;
-      std::size_t     key;
-      unsigned int    column;
-      LevelBlock<dim> block;
-    };
-    std::vector<Entry> row;
-    // Rows so far by what their values come to.
-    std::unordered_multimap<std::size_t, unsigned int> known;
-    for (unsigned int i = 0; i < n_owned; ++i)
-      {
-        NodeBlock<dim> sum;
-        row.clear();
-        for (std::size_t e = matrix.begin[i]; e < matrix.begin[i + 1]; ++e)
-          {
-            const unsigned int column = local_number(matrix.columns[e]);
-            sum += matrix.values[e];
-            if (column == i)
-              continue;
-            // To what single precision can tell apart: so rounding does not
-            // make rows differ.
-            NodeBlock<dim> block   = matrix.values[e];
-            double         largest = 0.;
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int d = 0; d < dim; ++d)
-                largest = std::max(largest, std::abs(block[c][d]));
-            const double unit =
-              largest > 0. ? std::ldexp(1., std::ilogb(largest) - 22) : 1.;
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int d = 0; d < dim; ++d)
-                block[c][d] =
-                  unit * std::nearbyint(block[c][d] / unit) + 0.; // no -0
-            const LevelBlock<dim> rounded(block);
-            row.push_back({column > i, rounded.key(), column, rounded});
-          }
-        // Neighbors in an order that does not depend on their numbers.
-        std::sort(row.begin(), row.end(), [](const Entry &a, const Entry &b) {
-          return std::tie(a.is_upper, a.key, a.column) <
-                 std::tie(b.is_upper, b.key, b.column);
-        });
-        Row result{columns.size(), values.size(), 0, 0};
-        result.n        = row.size();
-        std::size_t key = row.size();
-        for (const Entry &entry : row)
-          {
-            columns.push_back(entry.column);
-            result.n_lower += entry.is_upper ? 0 : 1;
-            boost::hash_combine(key, entry.key);
-          }
-        const auto [first, last] = known.equal_range(key);
-        const auto same = std::find_if(first, last, [&](const auto &other) {
-          const Row &candidate = rows[other.second];
-          return candidate.n == result.n &&
-                 std::equal(row.begin(),
-                            row.end(),
-                            values.begin() + candidate.values,
-                            [](const Entry &entry, const auto &block) {
-                              return entry.block == block;
-                            });
-        });
-        if (same != last)
-          result.values = rows[same->second].values;
-        else
-          {
-            known.emplace(key, i);
-            for (const Entry &entry : row)
-              values.push_back(entry.block);
-          }
-        rows.push_back(result);
-        row_sums.emplace_back(sum);
-      }
-    values.shrink_to_fit();
+    rows.set_values(matrix,
+                    [this](const Node node) { return local_number(node); });
   }
 
 
@@ -291,91 +143,15 @@ namespace Viscoplastic
 
   template <int dim>
   NodeBlock<dim>
-  MultigridLevel<dim>::row_sum(const unsigned int node) const
-  {
-    NodeBlock<dim> block;
-    for (unsigned int i = 0; i < dim; ++i)
-      for (unsigned int j = 0; j < dim; ++j)
-        block[i][j] = row_sums[node](i, j);
-    return block;
-  }
-
-
-
-  template <int dim>
-  NodeBlock<dim>
   MultigridLevel<dim>::smoothing_block(const unsigned int node) const
   {
     // With half the row sums of what couples ranks, Gauss-Seidel in which they
     // do not wait for each other converges as if they did (Baker, Falgout,
     // Kolev, Yang, SISC 33, 2011).
-    NodeBlock<dim> block = row_sum(node);
-    const Row     &row   = rows[node];
-    for (unsigned int e = 0; e < row.n; ++e)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          {
-            const double value = values[row.values + e](i, j);
-            block[i][j] -= value;
-            if (columns[row.columns + e] >= n_owned)
-              block[i][i] += 0.5 * std::abs(value);
-          }
-    return block;
-  }
-
-
-
-  template <int dim>
-  void
-  MultigridLevel<dim>::set_row_sum(const unsigned int    node,
-                                   const NodeBlock<dim> &block)
-  {
-    row_sums[node] = LevelBlock<dim>(block);
-  }
-
-
-
-  template <int dim>
-  void
-  MultigridLevel<dim>::set_inverse_block(const unsigned int    node,
-                                         const NodeBlock<dim> &block)
-  {
-    inverse[node] = LevelBlock<dim>(block);
-  }
-
-
-
-  template <int dim>
-  inline void
-  MultigridLevel<dim>::row_residual(const unsigned int i,
-                                    const unsigned int n,
-                                    const float       *x,
-                                    const float       *b,
-                                    float             *rest) const
-  {
-    // Two sums at a time: a single one waits for each addition, and a sweep for
-    // each node.
-    const LevelBlock<dim>       *a      = values.data() + rows[i].values;
-    const unsigned int          *column = columns.data() + rows[i].columns;
-    const std::array<float, dim> here   = values_of<dim>(x + i * dim);
-    FourNumbers<dim>             even = {}, odd = {};
-    add_product<dim>(row_sums[i], here, odd);
-    for (unsigned int e = 0; e + 1 < n; e += 2)
-      {
-        add_product<dim>(a[e],
-                         difference<dim>(x + column[e] * dim, here),
-                         even);
-        add_product<dim>(a[e + 1],
-                         difference<dim>(x + column[e + 1] * dim, here),
-                         odd);
-      }
-    if (n % 2 == 1)
-      add_product<dim>(a[n - 1],
-                       difference<dim>(x + column[n - 1] * dim, here),
-                       even);
-    even += odd;
+    auto [block, sums_of_others] = rows.diagonal_block(node);
     for (unsigned int d = 0; d < dim; ++d)
-      rest[d] = b[i * dim + d] - component<dim>(even, d);
+      block[d][d] += 0.5 * sums_of_others[d];
+    return block;
   }
 
 
@@ -385,17 +161,7 @@ namespace Viscoplastic
   MultigridLevel<dim>::smooth_forward_from_zero(Vector       &x,
                                                 const Vector &b) const
   {
-    const float *const b_begin = b.begin();
-    float *const       x_begin = x.begin();
-    for (unsigned int i = 0; i < n_owned; ++i)
-      {
-        // What comes later is still zero, and so are other ranks' nodes.
-        for (unsigned int d = 0; d < dim; ++d)
-          x_begin[i * dim + d] = 0.f;
-        float rest[dim];
-        row_residual(i, rows[i].n_lower, x_begin, b_begin, rest);
-        add<dim>(inverse[i], rest, x_begin + i * dim);
-      }
+    rows.smooth_forward_from_zero(x.begin(), b.begin());
   }
 
 
@@ -406,14 +172,7 @@ namespace Viscoplastic
   {
     if (!is_serial)
       x.update_ghost_values();
-    const float *const b_begin = b.begin();
-    float *const       x_begin = x.begin();
-    for (unsigned int i = n_owned; i-- > 0;)
-      {
-        float rest[dim];
-        row_residual(i, rows[i].n, x_begin, b_begin, rest);
-        add<dim>(inverse[i], rest, x_begin + i * dim);
-      }
+    rows.smooth_backward(x.begin(), b.begin());
     if (!is_serial)
       x.zero_out_ghost_values();
   }
@@ -426,16 +185,7 @@ namespace Viscoplastic
   {
     if (!is_serial)
       x.update_ghost_values();
-    const float *const b_begin = b.begin();
-    const float *const x_begin = x.begin();
-    float *const       r_begin = r.begin();
-    for (unsigned int i = 0; i < n_owned; ++i)
-      {
-        float rest[dim];
-        row_residual(i, rows[i].n, x_begin, b_begin, rest);
-        for (unsigned int d = 0; d < dim; ++d)
-          r_begin[i * dim + d] = rest[d];
-      }
+    rows.residual(r.begin(), x.begin(), b.begin());
     if (!is_serial)
       x.zero_out_ghost_values();
   }

@@ -32,13 +32,16 @@ namespace Viscoplastic
     /**
      * @p excluded: owned degrees of freedom that are no unknowns. The first
      * level is the finest mesh with at most @p coarse_size unknowns, or the
-     * first mesh. Collective.
+     * first mesh. Where more than @p largest_shared_part of the blocks of the
+     * matrix differ, products with it take as long as in the format that it
+     * has, and are left to it. Collective.
      */
     GeometricMultigrid(const DistributedMatrix &matrix,
                        const std::vector<bool> &excluded,
                        NodeHierarchy            hierarchy,
                        const FaceRestriction   &restriction,
-                       const unsigned int       coarse_size = 100);
+                       const unsigned int       coarse_size         = 100,
+                       const double             largest_shared_part = 0.25);
     ~GeometricMultigrid() override;
 
     std::string
@@ -58,8 +61,13 @@ namespace Viscoplastic
     vmult_untruncated(DistributedVector       &y,
                       const DistributedVector &x) const override;
 
+    bool
+    vmult_matrix(DistributedVector       &y,
+                 const DistributedVector &x) const override;
+
   private:
     struct Level;
+    struct Operator;
 
     /// Rows of the interpolation to a level: of its owned nodes and ghosts.
     Interpolation
@@ -69,6 +77,10 @@ namespace Viscoplastic
     /// Give all levels the values of the present matrix.
     void
     fill();
+
+    /// Keep the matrix in double precision if its rows share values.
+    void
+    share_matrix(const BlockRows<dim> &matrix_rows);
 
     /// Make masks and the factor that goes with them.
     void
@@ -96,6 +108,9 @@ namespace Viscoplastic
     std::unique_ptr<CoarseProblem<dim>>                  coarse;
     std::array<typename CoarseProblem<dim>::Factor, 2>   coarse_factors;
     LevelMasks<dim>                                      masks;
+    const double                                         largest_shared_part;
+    /// The matrix in double precision, where its rows share values.
+    std::unique_ptr<Operator> shared_matrix;
     /// Levels are in this unit of stiffness: in single precision, numbers have
     /// a small range.
     double unit = 1.;

@@ -157,9 +157,9 @@ namespace Viscoplastic
 
 
   /// Multiply the values of a node by a tensor.
-  template <int dim>
+  template <int dim, typename Number>
   void
-  multiply(const Tensor<2, dim> &tensor, float *value)
+  multiply(const Tensor<2, dim> &tensor, Number *value)
   {
     Tensor<1, dim> x;
     for (unsigned int d = 0; d < dim; ++d)

@@ -48,6 +48,15 @@ namespace Viscoplastic
     vmult_untruncated(DistributedVector       &y,
                       const DistributedVector &x) const = 0;
 
+    /// y := K x to some ten digits, zero on excluded components, if this takes
+    /// less time than with the matrix itself; otherwise nothing, and false.
+    virtual bool
+    vmult_matrix(DistributedVector & /*y*/,
+                 const DistributedVector & /*x*/) const
+    {
+      return false;
+    }
+
     /// A solve took @p iterations to reduce the residual by @p decades.
     virtual void
     learn(const unsigned int /*iterations*/, const double /*decades*/)

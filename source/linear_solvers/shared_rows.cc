@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/linear_solvers/shared_rows.h>
+
+#include <boost/functional/hash.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <tuple>
+#include <type_traits>
+#include <unordered_map>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    using Node = NodeHierarchy::Node;
+
+    /// Binary digits by which blocks are told apart: of their largest entry,
+    /// and of that of the row, below which there is only rounding.
+    template <typename Number>
+    constexpr int digits_of_block = std::is_same_v<Number, float> ? 22 : 36;
+    constexpr int digits_of_row   = 46;
+
+
+
+    template <int dim, typename Number>
+    PackedBlock<dim, Number>
+    packed(const NodeBlock<dim> &block)
+    {
+      PackedBlock<dim, Number> result = {};
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          if (dim == 2)
+            result.parts[0][i * dim + j] = block[i][j];
+          else
+            result.parts[i][j] = block[i][j];
+      return result;
+    }
+
+
+
+    template <int dim, typename Number>
+    NodeBlock<dim>
+    unpacked(const PackedBlock<dim, Number> &block)
+    {
+      NodeBlock<dim> result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          result[i][j] =
+            dim == 2 ? block.parts[0][i * dim + j] : block.parts[i][j];
+      return result;
+    }
+
+
+
+    template <int dim, typename Number>
+    bool
+    are_equal(const PackedBlock<dim, Number> &a,
+              const PackedBlock<dim, Number> &b)
+    {
+      return std::memcmp(a.parts, b.parts, sizeof(a.parts)) == 0;
+    }
+
+
+
+    /// The same for equal blocks.
+    template <int dim, typename Number>
+    std::size_t
+    key(const PackedBlock<dim, Number> &block)
+    {
+      std::uint32_t bits[sizeof(block.parts) / 4];
+      std::memcpy(bits, block.parts, sizeof(block.parts));
+      std::size_t result = 0;
+      for (const std::uint32_t part : bits)
+        result = (result ^ part) * 0x9E3779B97F4A7C15U + (result >> 29);
+      return result;
+    }
+
+
+
+    template <int dim>
+    double
+    largest_entry(const NodeBlock<dim> &block)
+    {
+      double result = 0.;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          result = std::max(result, std::abs(block[i][j]));
+      return result;
+    }
+
+
+
+    /// To multiples of a power of two.
+    template <int dim>
+    NodeBlock<dim>
+    rounded(const NodeBlock<dim> &block, const int exponent)
+    {
+      const double   unit = std::ldexp(1., exponent);
+      NodeBlock<dim> result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          result[i][j] =
+            unit * std::nearbyint(block[i][j] / unit) + 0.; // no -0
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim, typename Number>
+  void
+  SharedRows<dim, Number>::set_values(
+    const BlockRows<dim>                          &matrix,
+    const std::function<unsigned int(const Node)> &local_number)
+  {
+    rows.clear();
+    columns.clear();
+    values.clear();
+    row_sums.clear();
+    rows.reserve(matrix.n_rows());
+    row_sums.reserve(matrix.n_rows());
+    columns.reserve(matrix.columns.size());
+    struct Entry
+    {
+      bool         is_upper;
+      std::size_t  key;
+      unsigned int column;
+      Block        block;
+    };
+    std::vector<Entry> row;
+    // Rows so far by what their values come to.
+    std::unordered_multimap<std::size_t, unsigned int> known;
+    for (unsigned int i = 0; i < matrix.n_rows(); ++i)
+      {
+        double largest = 0.;
+        for (std::size_t e = matrix.begin[i]; e < matrix.begin[i + 1]; ++e)
+          largest = std::max(largest, largest_entry<dim>(matrix.values[e]));
+        NodeBlock<dim> sum;
+        row.clear();
+        for (std::size_t e = matrix.begin[i]; e < matrix.begin[i + 1]; ++e)
+          {
+            const unsigned int column = local_number(matrix.columns[e]);
+            sum += matrix.values[e];
+            if (column == i)
+              continue;
+            const double size  = largest_entry<dim>(matrix.values[e]);
+            const Block  block = packed<dim, Number>(
+              size > 0. ?
+                 rounded<dim>(matrix.values[e],
+                             std::max(std::ilogb(size) -
+                                        digits_of_block<Number>,
+                                      std::ilogb(largest) - digits_of_row)) :
+                 NodeBlock<dim>());
+            row.push_back({column > i, key(block), column, block});
+          }
+        // Neighbors in an order that does not depend on their numbers.
+        std::sort(row.begin(), row.end(), [](const Entry &a, const Entry &b) {
+          return std::tie(a.is_upper, a.key, a.column) <
+                 std::tie(b.is_upper, b.key, b.column);
+        });
+        Row result{columns.size(), values.size(), 0, 0};
+        result.n            = row.size();
+        std::size_t row_key = row.size();
+        for (const Entry &entry : row)
+          {
+            columns.push_back(entry.column);
+            result.n_lower += entry.is_upper ? 0 : 1;
+            boost::hash_combine(row_key, entry.key);
+          }
+        const auto [first, last] = known.equal_range(row_key);
+        const auto same = std::find_if(first, last, [&](const auto &other) {
+          const Row &candidate = rows[other.second];
+          return candidate.n == result.n &&
+                 std::equal(row.begin(),
+                            row.end(),
+                            values.begin() + candidate.values,
+                            [](const Entry &entry, const auto &block) {
+                              return are_equal(entry.block, block);
+                            });
+        });
+        if (same != last)
+          result.values = rows[same->second].values;
+        else
+          {
+            known.emplace(row_key, i);
+            for (const Entry &entry : row)
+              values.push_back(entry.block);
+          }
+        rows.push_back(result);
+        row_sums.push_back(packed<dim, Number>(sum));
+      }
+    values.shrink_to_fit();
+  }
+
+
+
+  template <int dim, typename Number>
+  NodeBlock<dim>
+  SharedRows<dim, Number>::row_sum(const unsigned int node) const
+  {
+    return unpacked(row_sums[node]);
+  }
+
+
+
+  template <int dim, typename Number>
+  void
+  SharedRows<dim, Number>::set_row_sum(const unsigned int    node,
+                                       const NodeBlock<dim> &block)
+  {
+    row_sums[node] = packed<dim, Number>(block);
+  }
+
+
+
+  template <int dim, typename Number>
+  std::pair<NodeBlock<dim>, Tensor<1, dim>>
+  SharedRows<dim, Number>::diagonal_block(const unsigned int node) const
+  {
+    const Row                                &row = rows[node];
+    std::pair<NodeBlock<dim>, Tensor<1, dim>> result{row_sum(node), {}};
+    for (unsigned int e = 0; e < row.n; ++e)
+      {
+        const NodeBlock<dim> block = unpacked(values[row.values + e]);
+        result.first -= block;
+        if (columns[row.columns + e] >= rows.size())
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int j = 0; j < dim; ++j)
+              result.second[i] += std::abs(block[i][j]);
+      }
+    return result;
+  }
+
+
+
+  template <int dim, typename Number>
+  RowTable<dim, Number>
+  SharedRows<dim, Number>::table() const
+  {
+    return {static_cast<unsigned int>(rows.size()),
+            rows.data(),
+            columns.data(),
+            values.data(),
+            row_sums.data()};
+  }
+
+
+
+  template <int dim, typename Number>
+  void
+  SharedRows<dim, Number>::vmult(Number *y, const Number *x) const
+  {
+    kernels.vmult(table(), y, x);
+  }
+
+
+
+  template <int dim, typename Number>
+  void
+  SharedRows<dim, Number>::residual(Number       *r,
+                                    const Number *x,
+                                    const Number *b) const
+  {
+    kernels.residual(table(), r, x, b);
+  }
+
+
+
+  template <int dim, typename Number>
+  void
+  SharedRows<dim, Number>::set_inverse_block(const unsigned int    node,
+                                             const NodeBlock<dim> &block)
+  {
+    inverse.resize(rows.size());
+    inverse[node] = packed<dim, Number>(block);
+  }
+
+
+
+  template <int dim, typename Number>
+  void
+  SharedRows<dim, Number>::smooth_forward_from_zero(Number       *x,
+                                                    const Number *b) const
+  {
+    kernels.smooth_forward_from_zero(table(), inverse.data(), x, b);
+  }
+
+
+
+  template <int dim, typename Number>
+  void
+  SharedRows<dim, Number>::smooth_backward(Number *x, const Number *b) const
+  {
+    kernels.smooth_backward(table(), inverse.data(), x, b);
+  }
+
+
+
+  template class SharedRows<2, float>;
+  template class SharedRows<3, float>;
+  template class SharedRows<2, double>;
+  template class SharedRows<3, double>;
+} // namespace Viscoplastic

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/block_rows.h>
 
 #include <Epetra_CrsMatrix.h>
 #include <Epetra_Import.h>
+#include <Epetra_MultiVector.h>
 #include <Epetra_Vector.h>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 namespace Viscoplastic
 {
@@ -35,15 +39,28 @@ namespace Viscoplastic
       keep_column.Import(keep, *K.Importer(), Insert);
     else
       keep_column = keep;
-    const auto rotate =
-      [&hierarchy](const Node row, const Node column, NodeBlock<dim> &block) {
-        const auto left  = hierarchy.frames.find(row),
-                   right = hierarchy.frames.find(column);
-        if (left != hierarchy.frames.end())
-          block = leading_block<dim>(left->second) * block;
-        if (right != hierarchy.frames.end())
-          block = block * transpose(leading_block<dim>(right->second));
-      };
+    // Where frames are rotated: the direction of each column. The owner knows
+    // it; hanging nodes couple rows with nodes that no cell here has.
+    const bool has_frames =
+      Utilities::MPI::max(hierarchy.frames.empty() ? 0 : 1,
+                          matrix.get_mpi_communicator()) == 1;
+    std::unique_ptr<Epetra_MultiVector> directions;
+    if (has_frames)
+      {
+        Epetra_MultiVector owned(K.DomainMap(), dim);
+        for (std::size_t i = 0; i < excluded.size(); ++i)
+          owned[i % dim][i] = 1.;
+        for (const auto &[node, frame] : hierarchy.frames)
+          if (node >= hierarchy.begin && node < hierarchy.end)
+            for (unsigned int d = 0; d < dim; ++d)
+              for (unsigned int i = 0; i < dim; ++i)
+                owned[d][(node - hierarchy.begin) * dim + i] = frame[d][i];
+        directions = std::make_unique<Epetra_MultiVector>(K.ColMap(), dim);
+        if (K.Importer() != nullptr)
+          directions->Import(owned, *K.Importer(), Insert);
+        else
+          *directions = owned;
+      }
 
     // The node of each column, if it is the first of the node, and where the
     // other ones are: of ghosts in any order.
@@ -94,8 +111,17 @@ namespace Viscoplastic
                   block[i][j] =
                     values[i][place[c]] * keep[n + i] * keep_column[c] / unit;
                 }
-            if (!hierarchy.frames.empty())
-              rotate(node, column, block);
+            if (has_frames)
+              {
+                NodeBlock<dim> to_cartesian;
+                for (unsigned int j = 0; j < dim; ++j)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    to_cartesian[j][d] = (*directions)[d][siblings[first][j]];
+                block            = block * to_cartesian;
+                const auto frame = hierarchy.frames.find(node);
+                if (frame != hierarchy.frames.end())
+                  block = leading_block<dim>(frame->second) * block;
+              }
             rows.columns.push_back(column);
             rows.values.push_back(block);
           }

@@ -33,6 +33,8 @@ def errors(scene, law, level, n_steps, overrides=None, ranks=1):
         "Geometry/Global refinements": level,
         "Time/Phases": f"1: {n_steps}",
         "Output/Fields every": 0,
+        # A quarter of the run; test_error_bar.py compares it with these errors.
+        "Error control/Error bar": "false",
         **(overrides or {}),
     }
     result = run(scene, overrides, text=text, ranks=ranks)

@@ -228,16 +228,23 @@ namespace Viscoplastic
   void
   GeometricMultigrid<dim>::share_matrix(const BlockRows<dim> &matrix_rows)
   {
-    const MultigridLevel<dim> &level  = *levels.back()->space;
-    auto                       result = std::make_unique<Operator>();
+    shared_matrix.reset();
+    const MultigridLevel<dim> &level     = *levels.back()->space;
+    const auto                 is_shared = [this](const auto &rows) {
+      const std::vector<std::uint64_t> on_rank{rows.n_blocks(),
+                                               rows.n_stored_blocks()};
+      std::vector<std::uint64_t>       n_blocks(2);
+      Utilities::MPI::sum(on_rank, communicator, n_blocks);
+      return n_blocks[1] <= largest_shared_part * n_blocks[0];
+    };
+    // What differs in single precision does so in double precision, too.
+    if (!has_four_doubles() || !is_shared(level.matrix_rows()))
+      return;
+    auto result = std::make_unique<Operator>();
     result->rows.set_values(matrix_rows, [&level](const Node node) {
       return level.local_number(node);
     });
-    const std::vector<std::uint64_t> on_rank{result->rows.n_blocks(),
-                                             result->rows.n_stored_blocks()};
-    std::vector<std::uint64_t>       n_blocks(2);
-    Utilities::MPI::sum(on_rank, communicator, n_blocks);
-    if (n_blocks[1] > largest_shared_part * n_blocks[0])
+    if (!is_shared(result->rows))
       return;
     result->x.reinit(level.x.get_partitioner());
     result->y.reinit(level.x.get_partitioner());

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "row_kernels_implementation.h"
 
-// This file alone is compiled for AVX2 and FMA.
+// This file alone is compiled for AVX2 and FMA; elsewhere it is empty.
+
+#ifdef VISCOPLASTIC_CONTACT_HAS_AVX2_KERNELS
+
+#  include "row_kernels_implementation.h"
 
 namespace Viscoplastic
 {
@@ -23,3 +26,5 @@ namespace Viscoplastic
   template RowKernels<3, double>
   avx2_row_kernels();
 } // namespace Viscoplastic
+
+#endif

@@ -33,8 +33,9 @@ namespace Viscoplastic
      * @p excluded: owned degrees of freedom that are no unknowns. The first
      * level is the finest mesh with at most @p coarse_size unknowns, or the
      * first mesh. Where more than @p largest_shared_part of the blocks of the
-     * matrix differ, products with it take as long as in the format that it
-     * has, and are left to it. Collective.
+     * matrix differ, or on a processor that does not multiply four doubles at
+     * a time, products with it take as long as in the format that it has, and
+     * are left to it. Collective.
      */
     GeometricMultigrid(const DistributedMatrix &matrix,
                        const std::vector<bool> &excluded,

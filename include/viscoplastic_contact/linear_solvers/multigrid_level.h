@@ -60,6 +60,12 @@ namespace Viscoplastic
     set_interpolation(const Interpolation       &interpolation,
                       const MultigridLevel<dim> &coarser);
 
+    const SharedRows<dim, float> &
+    matrix_rows() const
+    {
+      return rows;
+    }
+
     /// See SharedRows.
     NodeBlock<dim>
     row_sum(const unsigned int node) const

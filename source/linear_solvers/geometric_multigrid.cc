@@ -45,8 +45,8 @@ namespace Viscoplastic
     const std::vector<bool> &excluded,
     NodeHierarchy            hierarchy_,
     const FaceRestriction   &restriction,
-    const unsigned int       coarse_size,
-    const double             largest_shared_part)
+    const double             largest_shared_part,
+    const unsigned int       coarse_size)
     : matrix(matrix)
     , excluded(excluded)
     , hierarchy(std::move(hierarchy_))
@@ -108,6 +108,8 @@ namespace Viscoplastic
   bool
   GeometricMultigrid<dim>::renew()
   {
+    // Values that change are not worth it.
+    shared_matrix.reset();
     fill();
     return true;
   }
@@ -172,7 +174,7 @@ namespace Viscoplastic
         else
           level.space = std::make_unique<MultigridLevel<dim>>(
             rows, level.nodes, others, begins, communicator);
-        if (l + 1 == levels.size())
+        if (is_new && l + 1 == levels.size())
           share_matrix(rows);
         if (l == 0)
           break;
@@ -228,7 +230,6 @@ namespace Viscoplastic
   void
   GeometricMultigrid<dim>::share_matrix(const BlockRows<dim> &matrix_rows)
   {
-    shared_matrix.reset();
     const MultigridLevel<dim> &level     = *levels.back()->space;
     const auto                 is_shared = [this](const auto &rows) {
       const std::vector<std::uint64_t> on_rank{rows.n_blocks(),

@@ -106,6 +106,7 @@ namespace Viscoplastic::Testing
         this->space->excluded(),
         make_node_hierarchy(*this->space),
         this->face->restriction(),
+        /* largest_shared_part = */ 0.25,
         /* coarse_size = */ 0));
     }
 

@@ -41,8 +41,8 @@ namespace Viscoplastic
                        const std::vector<bool> &excluded,
                        NodeHierarchy            hierarchy,
                        const FaceRestriction   &restriction,
-                       const unsigned int       coarse_size         = 100,
-                       const double             largest_shared_part = 0.25);
+                       const double             largest_shared_part,
+                       const unsigned int       coarse_size = 100);
     ~GeometricMultigrid() override;
 
     std::string
@@ -110,7 +110,8 @@ namespace Viscoplastic
     std::array<typename CoarseProblem<dim>::Factor, 2>   coarse_factors;
     LevelMasks<dim>                                      masks;
     const double                                         largest_shared_part;
-    /// The matrix in double precision, where its rows share values.
+    /// The matrix in double precision, where its rows share values; none after
+    /// a renewal.
     std::unique_ptr<Operator> shared_matrix;
     /// Levels are in this unit of stiffness: in single precision, numbers have
     /// a small range.

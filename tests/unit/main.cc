@@ -34,8 +34,9 @@ main(int argc, char **argv)
       if (result.failed())
         std::cerr << "Rank "
                   << dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD)
-                  << ", " << result.file_name() << ":" << result.line_number()
-                  << ": " << result.summary() << std::endl;
+                  << ", " << (result.file_name() ? result.file_name() : "")
+                  << ":" << result.line_number() << ": " << result.summary()
+                  << std::endl;
     }
   };
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)

@@ -68,6 +68,68 @@ namespace Viscoplastic
       return std::array<decltype(&state.u), 3>{
         {&state.u, &state.velocity, &state.initial_u}};
     }
+
+
+
+    /// The nodes of the face by their first degrees of freedom.
+    template <int dim>
+    std::map<types::global_dof_index, unsigned int>
+    nodes_by_dof(const ContactFace<dim> *face)
+    {
+      std::map<types::global_dof_index, unsigned int> result;
+      if (face != nullptr)
+        for (unsigned int node = 0; node < face->layout().n_nodes(); ++node)
+          result[face->first_dof(node)] = node;
+      return result;
+    }
+
+
+
+    /// Call act(value), a reference, for all that friction and a truncation, if
+    /// there is one, know of a node.
+    template <typename StateType, typename TruncationType, typename Action>
+    void
+    for_each_value(const FrictionFace &face,
+                   const unsigned int  node,
+                   StateType          &friction,
+                   TruncationType     *truncation,
+                   const Action       &act)
+    {
+      for (unsigned int p = face.first_point[node];
+           p < face.first_point[node + 1];
+           ++p)
+        {
+          act(friction.bound[p]);
+          for (unsigned int i = 0; i < 2; ++i)
+            {
+              act(friction.slip[p][i]);
+              act(friction.multiplier[p][i]);
+            }
+        }
+      if (truncation != nullptr)
+        for (auto *blocks : {&truncation->projector, &truncation->spring})
+          for (unsigned int i = 0; i < 3; ++i)
+            for (unsigned int j = 0; j < 3; ++j)
+              act((*blocks)[node][i][j]);
+    }
+
+
+
+    /// Friction at the nodes of some cells' vertices.
+    struct PackedFriction
+    {
+      /// A bit a vertex with friction, and how many points its node has.
+      std::vector<std::uint8_t> vertices, n_points;
+      std::vector<double>       values;
+      std::vector<bool>         sticks;
+
+      template <typename Archive>
+      void
+      exchange(Archive &archive)
+      {
+        archive &vertices &n_points &values &sticks;
+      }
+    };
   } // namespace
 
 
@@ -140,7 +202,9 @@ namespace Viscoplastic
   template <int dim>
   std::string
   pack_fields(const StressSpace<dim> &stress_space,
+              const ContactFace<dim> *face,
               const State<dim>       &state,
+              const FaceTruncation   *truncation,
               const Vector<double>   &squared_estimate)
   {
     const AdmissibleSpace<dim> &space  = stress_space.space;
@@ -148,10 +212,12 @@ namespace Viscoplastic
     std::vector<bool>           is_packed(space.owned.n_elements(), false);
     std::vector<std::uint8_t>   vertices; // a bit a vertex with values here
     std::vector<double>         nodal, samples, estimate;
+    const auto                  face_nodes = nodes_by_dof(face);
+    PackedFriction              friction;
     std::size_t                 owned_cell = 0;
     for (const auto &cell : space.cells)
       {
-        std::uint8_t with_values = 0;
+        std::uint8_t with_values = 0, with_friction = 0;
         for (const unsigned int v : cell->vertex_indices())
           {
             const auto dof = cell->vertex_dof_index(v, 0);
@@ -166,8 +232,27 @@ namespace Viscoplastic
                 nodal.insert(nodal.end(),
                              field->begin() + first,
                              field->begin() + first + dim);
+            const auto node = face_nodes.find(dof);
+            if (node == face_nodes.end())
+              continue;
+            with_friction |= 1 << v;
+            const FrictionFace &layout = face->layout();
+            for_each_value(layout,
+                           node->second,
+                           state.friction,
+                           truncation,
+                           [&friction](const double value) {
+                             friction.values.push_back(value);
+                           });
+            friction.n_points.push_back(layout.n_node_points(node->second));
+            for (unsigned int p = layout.first_point[node->second];
+                 p < layout.first_point[node->second + 1];
+                 ++p)
+              friction.sticks.push_back(state.friction.sticks[p]);
           }
         vertices.push_back(with_values);
+        if (face != nullptr)
+          friction.vertices.push_back(with_friction);
         for (const IrreversibleStress *field : sample_fields(state))
           if (!field->empty())
             for (unsigned int s = 0; s < stress_space.n_samples; ++s)
@@ -185,6 +270,7 @@ namespace Viscoplastic
       }
     BinaryWriter                       archive;
     archive &vertices &nodal &samples &estimate;
+    friction.exchange(archive);
     return archive.bytes();
   }
 
@@ -194,7 +280,9 @@ namespace Viscoplastic
   bool
   unpack_fields(const PackedFields     &packed,
                 const StressSpace<dim> &stress_space,
+                const ContactFace<dim> *face,
                 State<dim>             &state,
+                FaceTruncation         *truncation,
                 Vector<double>         &squared_estimate)
   {
     AssertDimension(packed.meshes.size(), packed.fields.size());
@@ -231,7 +319,16 @@ namespace Viscoplastic
       field->resize(n_owned * stress_space.n_samples);
     if (packed.has_estimate)
       squared_estimate.reinit(triangulation.n_active_cells());
-    std::size_t n_values = 0, n_cells = 0;
+    const auto          face_nodes = nodes_by_dof(face);
+    const FrictionFace  no_face;
+    const FrictionFace &layout = face != nullptr ? face->layout() : no_face;
+    state.friction = FrictionState(std::vector<double>(layout.points.size()));
+    if (truncation != nullptr)
+      {
+        truncation->projector.resize(layout.n_nodes());
+        truncation->spring.resize(layout.n_nodes());
+      }
+    std::size_t n_values = 0, n_face_nodes = 0, n_cells = 0;
     for (std::size_t part = 0; part < packed.meshes.size(); ++part)
       {
         const std::vector<CellId> ids =
@@ -240,10 +337,13 @@ namespace Viscoplastic
         std::vector<double>                nodal, samples, estimate;
         BinaryReader                       archive(packed.fields[part]);
         archive &vertices &nodal &samples &estimate;
+        PackedFriction                     friction;
+        friction.exchange(archive);
         require(archive.is_at_end() && vertices.size() == ids.size() &&
+                friction.vertices.size() == (face ? ids.size() : 0) &&
                 samples.size() == sampled.size() * n_z * ids.size() &&
                 estimate.size() == (packed.has_estimate ? ids.size() : 0));
-        std::size_t next = 0;
+        std::size_t next = 0, next_node = 0, next_point = 0, next_value = 0;
         for (std::size_t i = 0; i < ids.size(); ++i)
           {
             const auto local =
@@ -273,6 +373,37 @@ namespace Viscoplastic
                     }
                   next += n_fields * dim;
                 }
+            for (unsigned int v = 0;
+                 face && v < GeometryInfo<dim>::vertices_per_cell;
+                 ++v)
+              if ((friction.vertices[i] >> v & 1) != 0)
+                {
+                  require(next_node < friction.n_points.size());
+                  const unsigned int n_points = friction.n_points[next_node++];
+                  const std::size_t  value = next_value, point = next_point;
+                  next_point += n_points;
+                  next_value += n_points * 5 + (truncation ? 18 : 0);
+                  require(next_point <= friction.sticks.size() &&
+                          next_value <= friction.values.size());
+                  if (!is_here)
+                    continue;
+                  const auto node =
+                    face_nodes.find(local->cell->vertex_dof_index(v, 0));
+                  if (node == face_nodes.end())
+                    continue;
+                  const unsigned int n = node->second;
+                  require(n_points == layout.n_node_points(n));
+                  const double *from = friction.values.data() + value;
+                  for_each_value(layout,
+                                 n,
+                                 state.friction,
+                                 truncation,
+                                 [&from](double &to) { to = *from++; });
+                  for (unsigned int p = 0; p < n_points; ++p)
+                    state.friction.sticks[layout.first_point[n] + p] =
+                      friction.sticks[point + p];
+                  ++n_face_nodes;
+                }
             if (!is_here || !local->cell->is_locally_owned())
               continue;
             ++n_cells;
@@ -285,7 +416,9 @@ namespace Viscoplastic
             if (packed.has_estimate)
               squared_estimate[local->cell->active_cell_index()] = estimate[i];
           }
-        require(next == nodal.size());
+        require(next == nodal.size() && next_node == friction.n_points.size() &&
+                next_point == friction.sticks.size() &&
+                next_value == friction.values.size());
       }
 
     const auto targets = nodal_fields(state);
@@ -294,7 +427,8 @@ namespace Viscoplastic
         *targets[f] = space.ghosted_vector();
         *targets[f] = values[f];
       }
-    return n_cells == n_owned && n_values * dim == space.owned.n_elements();
+    return n_cells == n_owned && n_values * dim == space.owned.n_elements() &&
+           n_face_nodes == face_nodes.size();
   }
 
 
@@ -419,11 +553,15 @@ namespace Viscoplastic
     const std::vector<std::string> &,                               \
     parallel::distributed::Triangulation<dim> &);                   \
   template std::string pack_fields<dim>(const StressSpace<dim> &,   \
+                                        const ContactFace<dim> *,   \
                                         const State<dim> &,         \
+                                        const FaceTruncation *,     \
                                         const Vector<double> &);    \
   template bool        unpack_fields<dim>(const PackedFields &,     \
                                    const StressSpace<dim> &, \
+                                   const ContactFace<dim> *, \
                                    State<dim> &,             \
+                                   FaceTruncation *,         \
                                    Vector<double> &);        \
   template CoarseMesh  describe_coarse_mesh<dim>(                   \
     const parallel::distributed::Triangulation<dim> &);

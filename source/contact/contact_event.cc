@@ -6,11 +6,13 @@
 namespace Viscoplastic
 {
   bool
-  has_contact_event(const FrictionState &old_state,
+  has_contact_event(const FrictionFace  &face,
+                    const FrictionState &old_state,
                     const FrictionState &state,
                     const bool           from_kink)
   {
-    unsigned int n_points = 0, n_old = 0, n_new = 0;
+    double n_points = 0., n_old = 0., n_new = 0.;
+    bool   turns_back = false;
     for (unsigned int p = 0; p < state.n_points(); ++p)
       if (state.bound[p] > 0. && std::isfinite(state.bound[p]))
         {
@@ -20,13 +22,15 @@ namespace Viscoplastic
           n_new += slips;
           // Multipliers are along the slip. A direction that turns by less
           // than a right angle in 3D does not turn back.
-          if (slipped && slips && !from_kink &&
-              old_state.multiplier[p] * state.multiplier[p] < 0.)
-            return true;
+          turns_back |= slipped && slips && !from_kink &&
+                        old_state.multiplier[p] * state.multiplier[p] < 0.;
         }
-    const bool begins = n_old == 0 && n_new > 0,
-               covers = n_old < n_points && n_new == n_points && n_points > 0,
-               ends   = n_old > 0 && n_new == 0;
-    return begins || covers || (ends && !from_kink);
+    n_points          = face.sum(n_points);
+    n_old             = face.sum(n_old);
+    n_new             = face.sum(n_new);
+    const bool begins = n_old == 0. && n_new > 0.,
+               covers = n_old < n_points && n_new == n_points && n_points > 0.,
+               ends   = n_old > 0. && n_new == 0.;
+    return face.any(turns_back) || begins || covers || (ends && !from_kink);
   }
 } // namespace Viscoplastic

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/contact/contact_solver.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -88,7 +89,7 @@ namespace Viscoplastic
 
 
     /// The functional of friction j(v) = sum_c rho_c |v_c| along a line:
-    /// j(s + step w) - j(s) and its derivative to the right.
+    /// j(s + step w) - j(s) and its derivative to the right. Collective.
     struct FrictionAlongLine
     {
       struct Term
@@ -96,7 +97,8 @@ namespace Viscoplastic
         double       bound;
         Tensor<1, 2> slip, change;
       };
-      std::vector<Term> terms;
+      const FrictionFace &face;
+      std::vector<Term>   terms; // of this rank
 
       double
       value(const double step) const
@@ -105,7 +107,7 @@ namespace Viscoplastic
         for (const Term &term : terms)
           sum += term.bound *
                  ((term.slip + step * term.change).norm() - term.slip.norm());
-        return sum;
+        return face.sum(sum);
       }
 
       double
@@ -120,7 +122,7 @@ namespace Viscoplastic
                                    (s * term.change) / size :
                                    term.change.norm());
           }
-        return sum;
+        return face.sum(sum);
       }
     };
 
@@ -131,7 +133,7 @@ namespace Viscoplastic
                    const FrictionState  &state,
                    const Vector<double> &direction)
     {
-      FrictionAlongLine friction;
+      FrictionAlongLine friction{face, {}};
       for (unsigned int p = 0; p < face.points.size(); ++p)
         if (!state.sticks[p] && state.bound[p] > 0.)
           friction.terms.push_back(
@@ -164,7 +166,7 @@ namespace Viscoplastic
 
 
     /// Shorten a correction @p w where a slip would change sides, so that it
-    /// ends at rest instead. Returns whether there is such a slip.
+    /// ends at rest instead. Returns whether there is such a slip. Collective.
     bool
     stop_at_reversal(const FrictionFace   &face,
                      const FrictionState  &state,
@@ -178,7 +180,7 @@ namespace Viscoplastic
             face.set_node_values(-1. * face.node_values(x, node), node, w);
             any = true;
           }
-      return any;
+      return face.any(any);
     }
 
 
@@ -273,7 +275,9 @@ namespace Viscoplastic
       Vector<double> new_residual(x.size()), force(x.size());
       bulk.face_residual(new_residual);
       // J is quadratic but for friction: its mean slope makes the change.
-      energy_change -= 0.5 * (stop * residual + stop * new_residual);
+      energy_change =
+        face.sum(energy_change) -
+        0.5 * (face.dot(stop, residual) + face.dot(stop, new_residual));
 
       fit_multipliers(face, new_residual, state, force);
       bulk.set_truncation(make_truncation(face, state, inverse_diagonal),
@@ -289,8 +293,9 @@ namespace Viscoplastic
       if (energy_change + result.search.energy_change < 0.)
         return result;
 
-      stop *= -1.;
-      bulk.move_face(stop);
+      Vector<double> back(x.size());
+      face.add(-1., stop, back);
+      bulk.move_face(back);
       x     = old_x;
       state = old_state;
       return {};
@@ -319,7 +324,7 @@ namespace Viscoplastic
 
     /// The Gauss-Seidel step at one node; adds it to @p change.
     void
-    relax(const unsigned int node, Vector<double> &change);
+    relax_node(const unsigned int node, Vector<double> &change);
 
     /// Whether the error bound is within the tolerance; then the multipliers
     /// are those that prove it.
@@ -429,16 +434,29 @@ namespace Viscoplastic
   ContactSolver::Iteration::relax(const unsigned int n_sweeps)
   {
     bulk.face_residual(residual);
-    AssertThrow(std::isfinite(residual.l2_norm()),
+    AssertThrow(!face.any(std::any_of(residual.begin(),
+                                      residual.end(),
+                                      [](const double r) {
+                                        return !std::isfinite(r);
+                                      })),
                 ExcMessage("The contact solver met a residual that is not "
                            "finite."));
+    const auto    &stages = matrix.stages();
     Vector<double> change(face.n_dofs());
+    const auto relax_stage = [&](const unsigned int s, const bool backward) {
+      const auto    &nodes = stages[s];
+      Vector<double> change_in_stage(face.n_dofs());
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        relax_node(nodes[backward ? nodes.size() - 1 - i : i], change_in_stage);
+      matrix.subtract_changes_elsewhere(s, change_in_stage, residual);
+      face.add(1., change_in_stage, change);
+    };
     for (unsigned int sweep = 0; sweep < n_sweeps; ++sweep)
       {
-        for (unsigned int node = 0; node < face.n_nodes(); ++node)
-          relax(node, change);
-        for (unsigned int node = face.n_nodes(); node-- > 0;)
-          relax(node, change);
+        for (unsigned int s = 0; s < stages.size(); ++s)
+          relax_stage(s, false);
+        for (unsigned int s = stages.size(); s-- > 0;)
+          relax_stage(s, true);
       }
     // rounding_error() is a hundred units of rounding.
     stop_rounding(
@@ -451,12 +469,12 @@ namespace Viscoplastic
 
 
   void
-  ContactSolver::Iteration::relax(const unsigned int node,
-                                  Vector<double>    &change)
+  ContactSolver::Iteration::relax_node(const unsigned int node,
+                                       Vector<double>    &change)
   {
     const Tensor<1, 3> old = face.node_values(x, node);
     const Tensor<1, 3> r   = face.node_values(residual, node);
-    const Tensor<1, 3> now = relax_node(
+    const Tensor<1, 3> now = Viscoplastic::relax_node(
       face, node, inverse_diagonal[node], r + diagonal[node] * old, state);
     const Tensor<1, 3> step = now - old;
     if (step.norm() == 0.)
@@ -489,7 +507,7 @@ namespace Viscoplastic
     fit_multipliers(face, residual, state, force);
     FaceTruncation last = std::move(truncation);
     truncation          = make_truncation(face, state, inverse_diagonal);
-    same_sets           = truncation == last;
+    same_sets           = truncation.blocks_as(last, face);
     bulk.set_truncation(truncation);
     const Certificate certificate =
       certify(face, residual, diagonal, state, force, bulk.rounding_error());
@@ -572,7 +590,7 @@ namespace Viscoplastic
         result = along(w);
       }
     bulk.take_step(result.step);
-    x.add(result.step, w);
+    face.add(result.step, w, x);
     return result.energy_change;
   }
 

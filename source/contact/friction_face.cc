@@ -1,8 +1,45 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
 #include <viscoplastic_contact/contact/friction_face.h>
 
 namespace Viscoplastic
 {
+  void
+  FrictionFace::add(const double          factor,
+                    const Vector<double> &x,
+                    Vector<double>       &y) const
+  {
+    for (unsigned int k = 0; k < n_dofs(); ++k)
+      y[k] += factor * x[k];
+  }
+
+
+
+  double
+  FrictionFace::sum(const double part) const
+  {
+    return Utilities::MPI::sum(part, communicator);
+  }
+
+
+
+  bool
+  FrictionFace::any(const bool here) const
+  {
+    return Utilities::MPI::max(here ? 1 : 0, communicator) == 1;
+  }
+
+
+
+  double
+  FrictionFace::dot(const Vector<double> &x, const Vector<double> &y) const
+  {
+    return sum(x.size() > 0 ? x * y : 0.);
+  }
+
+
+
   Tensor<1, 2>
   slip(const FrictionFace::Point &point, const Tensor<1, 3> &x)
   {
@@ -26,12 +63,21 @@ namespace Viscoplastic
 
 
   bool
-  FaceTruncation::has_springs() const
+  FaceTruncation::blocks_as(const FaceTruncation &other,
+                            const FrictionFace   &face) const
   {
+    return !face.any(projector != other.projector);
+  }
+
+
+
+  bool
+  FaceTruncation::has_springs(const FrictionFace &face) const
+  {
+    bool here = false;
     for (const Tensor<2, 3> &block : spring)
-      if (block.norm() > 0.)
-        return true;
-    return false;
+      here |= block.norm() > 0.;
+    return face.any(here);
   }
 
 

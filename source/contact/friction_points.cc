@@ -300,6 +300,7 @@ namespace Viscoplastic
         result.replaced.emplace_back(p, multiplier);
         face.set_node_values(node_force(point, multiplier), node, result.force);
       }
+    result.defect = face.sum(result.defect);
     return result;
   }
 

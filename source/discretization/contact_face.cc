@@ -2,40 +2,15 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/discretization/contact_face.h>
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    /// A face node as its owner knows it, for the other ranks.
-    template <int dim>
-    struct NodeRecord
-    {
-      types::global_dof_index                first_dof;
-      Point<dim>                             position;
-      Tensor<2, dim>                         directions;
-      std::vector<unsigned int>              n_tangents;   // a plane
-      std::vector<Tensor<1, dim>>            maps;         // dim - 1 a plane
-      std::vector<std::vector<unsigned int>> boundary_ids; // a plane
-
-      template <class Archive>
-      void
-      serialize(Archive &archive, const unsigned int)
-      {
-        archive &first_dof &position &directions &n_tangents &maps
-          &boundary_ids;
-      }
-    };
-  } // namespace
-
-
-
   template <int dim>
   ContactFace<dim>::ContactFace(const AdmissibleSpace<dim> &space)
     : space(space)
@@ -54,79 +29,62 @@ namespace Viscoplastic
   void
   ContactFace<dim>::make_nodes()
   {
-    std::vector<NodeRecord<dim>> records;
+    std::vector<typename AdmissibleSpace<dim>::BoundaryNode> frictional;
     for (const auto &node : space.boundary_nodes())
-      {
-        const NodalFrame<dim> &frame = space.frame(node.frame);
-        if (frame.planes.empty())
-          continue;
-        NodeRecord<dim> record;
-        record.first_dof  = node.first_dof;
-        record.position   = node.position;
-        record.directions = frame.directions;
-        for (const FrictionPlane<dim> &plane : frame.planes)
-          {
-            record.n_tangents.push_back(plane.n_tangents);
-            for (const auto &row : plane.map)
-              record.maps.push_back(row);
-            record.boundary_ids.emplace_back(plane.boundary_ids.begin(),
-                                             plane.boundary_ids.end());
-          }
-        records.push_back(record);
-      }
-    std::vector<NodeRecord<dim>> all;
-    for (auto &part : Utilities::MPI::all_gather(space.communicator, records))
-      all.insert(all.end(), part.begin(), part.end());
-    // By position: the order of sweeps must not depend on the partition.
-    std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
-      for (unsigned int d = 0; d < dim; ++d)
-        if (a.position[d] != b.position[d])
-          return a.position[d] < b.position[d];
-      return false;
-    });
+      if (!space.frame(node.frame).planes.empty())
+        frictional.push_back(node);
+    // By position: the order of sweeps must not depend on how the mesh has come
+    // about.
+    std::sort(frictional.begin(),
+              frictional.end(),
+              [](const auto &a, const auto &b) {
+                for (unsigned int d = 0; d < dim; ++d)
+                  if (a.position[d] != b.position[d])
+                    return a.position[d] < b.position[d];
+                return false;
+              });
 
-    FrictionFace                         face;
+    FrictionFace face;
+    face.communicator = space.communicator;
     std::vector<types::global_dof_index> dofs;
-    for (const NodeRecord<dim> &record : all)
+    for (const auto &[first_dof, position, frame_index] : frictional)
       {
-        Node node{record.first_dof, record.position, record.directions, {}};
+        const NodalFrame<dim> &frame = space.frame(frame_index);
+        Node                   node{first_dof, position, frame.directions, {}};
         // Face components: those that some point sees.
         std::array<unsigned int, dim> position_of;
         unsigned int                  n = 0;
         for (unsigned int d = 0; d < dim; ++d)
           {
             bool seen = false;
-            for (const auto &row : record.maps)
-              seen |= row[d] != 0.;
+            for (const FrictionPlane<dim> &plane : frame.planes)
+              for (const auto &row : plane.map)
+                seen |= row[d] != 0.;
             if (seen)
               {
                 node.components[n] = d;
                 position_of[d]     = n++;
-                dofs.push_back(record.first_dof + d);
+                dofs.push_back(first_dof + d);
               }
           }
         face.first_dof.push_back(face.first_dof.back() + n);
-        for (unsigned int p = 0; p < record.n_tangents.size(); ++p)
+        for (const FrictionPlane<dim> &plane : frame.planes)
           {
             FrictionFace::Point point;
             point.node       = nodes.size();
-            point.n_tangents = record.n_tangents[p];
+            point.n_tangents = plane.n_tangents;
             for (unsigned int i = 0; i < point.n_tangents; ++i)
               for (unsigned int d = 0; d < dim; ++d)
-                if (record.maps[p * (dim - 1) + i][d] != 0.)
-                  point.map[i][position_of[d]] =
-                    record.maps[p * (dim - 1) + i][d];
+                if (plane.map[i][d] != 0.)
+                  point.map[i][position_of[d]] = plane.map[i][d];
             face.points.push_back(point);
-            boundary_ids.emplace_back(record.boundary_ids[p].begin(),
-                                      record.boundary_ids[p].end());
+            boundary_ids.push_back(plane.boundary_ids);
           }
         face.first_point.push_back(face.points.size());
         nodes.push_back(node);
       }
-    face_restriction = FaceRestriction(std::move(face),
-                                       std::move(dofs),
-                                       space.owned,
-                                       space.communicator);
+    face_restriction =
+      FaceRestriction(std::move(face), std::move(dofs), space.owned);
   }
 
 
@@ -135,10 +93,32 @@ namespace Viscoplastic
   void
   ContactFace<dim>::make_shares()
   {
-    const FrictionFace                             &face = layout();
-    std::map<types::global_dof_index, unsigned int> node_of_dof;
-    for (unsigned int n = 0; n < nodes.size(); ++n)
-      node_of_dof[nodes[n].first_dof] = n;
+    // The number of each node's first point over all ranks, for those that see
+    // the node; its points are those of its frame.
+    const FrictionFace &face  = layout();
+    const IndexSet own_points = Utilities::MPI::create_ascending_partitioning(
+      space.communicator,
+      face.points.size())[Utilities::MPI::this_mpi_process(space.communicator)];
+    if (own_points.size() == 0)
+      return;
+    DistributedVector first_points = space.owned_vector(),
+                      ghosted      = space.ghosted_vector();
+    for (unsigned int n = 0; n < face.n_nodes(); ++n)
+      first_points.begin()[space.owned.index_within_set(nodes[n].first_dof)] =
+        own_points.nth_index_in_set(face.first_point[n]);
+    ghosted = first_points;
+
+    struct GlobalShare
+    {
+      unsigned int            sample;
+      types::global_dof_index point;
+      double                  value;
+    };
+    std::vector<GlobalShare> global_shares;
+    const auto               first_point = [&](const auto first_dof) {
+      return static_cast<types::global_dof_index>(
+        ghosted.begin()[space.relevant.index_within_set(first_dof)]);
+    };
 
     FEFaceValues<dim> face_values(space.dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
@@ -164,18 +144,15 @@ namespace Viscoplastic
                       continue; // not a vertex of the face
                     const auto add = [&](const types::global_dof_index dof,
                                          const double                  weight) {
-                      const auto node = node_of_dof.find(dof);
-                      if (node == node_of_dof.end())
-                        return; // held by other conditions
-                      for (unsigned int p = face.first_point[node->second];
-                           p < face.first_point[node->second + 1];
-                           ++p)
-                        if (std::count(boundary_ids[p].begin(),
-                                       boundary_ids[p].end(),
+                      // None where other conditions hold the node.
+                      const auto &planes = space.frame_at(dof).planes;
+                      for (unsigned int p = 0; p < planes.size(); ++p)
+                        if (std::count(planes[p].boundary_ids.begin(),
+                                       planes[p].boundary_ids.end(),
                                        id) > 0)
-                          shares.push_back(
+                          global_shares.push_back(
                             {static_cast<unsigned int>(samples.size()),
-                             p,
+                             first_point(dof) + p,
                              weight * value});
                     };
                     const auto dof = cell->vertex_dof_index(v, 0);
@@ -192,10 +169,50 @@ namespace Viscoplastic
                   {face_values.quadrature_point(q), &condition});
               }
           }
-    point_weights.assign(face.points.size(), 0.);
+
+    std::vector<types::global_dof_index> others;
+    for (const GlobalShare &share : global_shares)
+      if (!own_points.is_element(share.point))
+        others.push_back(share.point);
+    std::sort(others.begin(), others.end());
+    IndexSet ghost_points(own_points.size());
+    ghost_points.add_indices(others.begin(), others.end());
+    numbers =
+      std::make_shared<const Utilities::MPI::Partitioner>(own_points,
+                                                          ghost_points,
+                                                          space.communicator);
+    for (const GlobalShare &share : global_shares)
+      shares.push_back(
+        {share.sample, numbers->global_to_local(share.point), share.value});
+    point_weights = sum_shares([](const Sample &) { return 1.; });
+  }
+
+
+
+  template <int dim>
+  types::global_dof_index
+  ContactFace<dim>::n_global_points() const
+  {
+    return numbers ? numbers->size() : 0;
+  }
+
+
+
+  template <int dim>
+  template <typename Factor>
+  std::vector<double>
+  ContactFace<dim>::sum_shares(const Factor &factor) const
+  {
+    if (!numbers)
+      return {};
+    std::vector<double> factors;
+    for (const Sample &sample : samples)
+      factors.push_back(factor(sample));
+    LinearAlgebra::distributed::Vector<double> sums(numbers);
     for (const Share &share : shares)
-      point_weights[share.point] += share.value;
-    Utilities::MPI::sum(point_weights, space.communicator, point_weights);
+      sums.local_element(share.point) += share.value * factors[share.sample];
+    sums.compress(VectorOperation::add);
+    return {sums.begin(), sums.end()};
   }
 
 
@@ -204,13 +221,15 @@ namespace Viscoplastic
   std::set<types::boundary_id>
   ContactFace<dim>::held_boundaries() const
   {
+    std::set<types::boundary_id> ids_of_points;
+    for (const auto &ids : boundary_ids)
+      ids_of_points.insert(ids.begin(), ids.end());
+    ids_of_points =
+      Utilities::MPI::compute_set_union(ids_of_points, space.communicator);
     std::set<types::boundary_id> result;
     for (const auto &[id, condition] : space.scene.boundary)
-      if (condition.has_friction())
+      if (condition.has_friction() && ids_of_points.count(id) == 0)
         result.insert(id);
-    for (const auto &ids_of_point : boundary_ids)
-      for (const types::boundary_id id : ids_of_point)
-        result.erase(id);
     return result;
   }
 
@@ -220,17 +239,12 @@ namespace Viscoplastic
   std::vector<double>
   ContactFace<dim>::bounds(const double t) const
   {
-    const FrictionFace &face = layout();
-    if (!constant_bounds.empty())
-      return constant_bounds;
-    std::vector<double> rho(samples.size());
-    for (unsigned int s = 0; s < samples.size(); ++s)
-      rho[s] = samples[s].condition->bound(samples[s].x, t);
+    if (constant_bounds)
+      return *constant_bounds;
     // rho_c = int rho phi_c, with which j_n(v) = sum_c rho_c |v_c|.
-    std::vector<double> result(face.points.size(), 0.);
-    for (const Share &share : shares)
-      result[share.point] += share.value * rho[share.sample];
-    Utilities::MPI::sum(result, space.communicator, result);
+    std::vector<double> result = sum_shares([t](const Sample &sample) {
+      return sample.condition->bound(sample.x, t);
+    });
     if (!bounds_vary)
       constant_bounds = result;
     return result;
@@ -262,7 +276,7 @@ namespace Viscoplastic
     Tensor<1, dim>      sum;
     for (unsigned int p = 0; p < face.points.size(); ++p)
       sum += cartesian(p, state.multiplier[p]);
-    return sum;
+    return Utilities::MPI::sum(sum, space.communicator);
   }
 
 
@@ -275,15 +289,21 @@ namespace Viscoplastic
     for (const auto &ids : boundary_ids)
       first.push_back(first.back() + ids.size());
     std::vector<double> result(first.back(), 0.);
-    for (const Share &share : shares)
-      {
-        const Sample &sample = samples[share.sample];
-        const auto   &ids    = boundary_ids[share.point];
-        const auto id = std::find(ids.begin(), ids.end(), sample.condition->id);
-        result[first[share.point] + (id - ids.begin())] +=
-          share.value * sample.condition->bound(sample.x, t);
-      }
-    Utilities::MPI::sum(result, space.communicator, result);
+    for (const auto &[id, condition] : space.scene.boundary)
+      if (condition.has_friction())
+        {
+          const types::boundary_id  this_id = id;
+          const std::vector<double> part =
+            sum_shares([this_id, t](const Sample &sample) {
+              return sample.condition->id == this_id ?
+                       sample.condition->bound(sample.x, t) :
+                       0.;
+            });
+          for (unsigned int p = 0; p < part.size(); ++p)
+            for (unsigned int i = 0; i < boundary_ids[p].size(); ++i)
+              if (boundary_ids[p][i] == id)
+                result[first[p] + i] = part[p];
+        }
     return result;
   }
 
@@ -388,7 +408,7 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const auto dof = nodes[face.points[p].node].first_dof;
-        if (!space.owned.is_element(dof) || point_weights[p] == 0.)
+        if (point_weights[p] == 0.)
           continue;
         const Tensor<1, dim> traction =
           cartesian(p, state.multiplier[p]) / point_weights[p];
@@ -406,13 +426,12 @@ namespace Viscoplastic
   std::vector<Tensor<1, 2>>
   ContactFace<dim>::multipliers(const DistributedVector &ghosted_density) const
   {
-    const FrictionFace &face = layout();
-    std::vector<double> values(2 * face.points.size(), 0.);
+    const FrictionFace       &face = layout();
+    std::vector<Tensor<1, 2>> result(face.points.size());
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const Node &node = nodes[face.points[p].node];
-        if (!space.owned.is_element(node.first_dof) ||
-            face.n_node_points(face.points[p].node) > 1)
+        if (face.n_node_points(face.points[p].node) > 1)
           continue;
         Tensor<1, dim> density;
         for (unsigned int d = 0; d < dim; ++d)
@@ -423,16 +442,8 @@ namespace Viscoplastic
         Tensor<1, 3>         on_face;
         for (unsigned int i = 0; i < face.n_node_dofs(face.points[p].node); ++i)
           on_face[i] = in_frame[node.components[i]];
-        const Tensor<1, 2> multiplier =
-          slip(face.points[p], on_face) * point_weights[p];
-        values[2 * p]     = multiplier[0];
-        values[2 * p + 1] = multiplier[1];
+        result[p] = slip(face.points[p], on_face) * point_weights[p];
       }
-    Utilities::MPI::sum(values, space.communicator, values);
-    std::vector<Tensor<1, 2>> result(face.points.size());
-    for (unsigned int p = 0; p < result.size(); ++p)
-      for (unsigned int i = 0; i < 2; ++i)
-        result[p][i] = values[2 * p + i];
     return result;
   }
 
@@ -448,9 +459,8 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const auto dof = nodes[face.points[p].node].first_dof;
-        if (space.owned.is_element(dof))
-          values.begin()[space.owned.index_within_set(dof)] +=
-            point_values[p] / face.n_node_points(face.points[p].node);
+        values.begin()[space.owned.index_within_set(dof)] +=
+          point_values[p] / face.n_node_points(face.points[p].node);
       }
     space.distribute_hanging_nodes(values);
     ghosted = values;

@@ -85,7 +85,7 @@ namespace Viscoplastic
     demand.max_poissons_ratio = moduli.max_poissons_ratio();
     demand.n_solves           = n_solves;
     demand.n_dofs             = space.dof_handler.n_dofs();
-    demand.n_face_dofs        = face ? face->layout().n_dofs() : 0;
+    demand.n_face_dofs        = face_restriction().n_global_dofs();
     demand.n_first_dofs       = space.n_first_dofs();
     return demand;
   }

@@ -166,6 +166,16 @@ namespace Viscoplastic
             result.dissipation += state.multiplier[p] * slips[p];
           }
       }
+    const MPI_Comm communicator = face.layout().communicator;
+    for (double *const sum : {&result.foundation_work,
+                              &result.stick_area,
+                              &result.slip_area,
+                              &result.dissipation})
+      *sum = Utilities::MPI::sum(*sum, communicator);
+    for (double *const maximum : {&result.max_utilization,
+                                  &result.max_stick_slip,
+                                  &result.slip_misalignment})
+      *maximum = Utilities::MPI::max(*maximum, communicator);
     return result;
   }
 

@@ -18,7 +18,7 @@ namespace Viscoplastic
     demand.n_ranks =
       Utilities::MPI::n_mpi_processes(matrix.get_mpi_communicator());
     demand.n_dofs      = matrix.m();
-    demand.n_face_dofs = system.face.dofs().size();
+    demand.n_face_dofs = system.face.n_global_dofs();
     // Sharing rows pays after about four solves.
     const double shared_part = demand.n_solves < 4 ? 0. : 0.25;
     std::unique_ptr<Preconditioner> multigrid;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
@@ -8,31 +10,17 @@ namespace Viscoplastic
 {
   FaceRestriction::FaceRestriction(FrictionFace                         face,
                                    std::vector<types::global_dof_index> dofs,
-                                   const IndexSet &owned_dofs,
-                                   const MPI_Comm  communicator)
+                                   const IndexSet                      &owned)
     : friction_face(std::move(face))
     , global_dofs(std::move(dofs))
-    , communicator(communicator)
   {
+    const MPI_Comm communicator = friction_face.communicator;
     AssertDimension(global_dofs.size(), friction_face.n_dofs());
-    const auto position = [&](const unsigned int k) {
-      return static_cast<unsigned int>(
-        owned_dofs.index_within_set(global_dofs[k]));
-    };
-    for (unsigned int k = 0; k < global_dofs.size(); ++k)
-      if (owned_dofs.is_element(global_dofs[k]))
-        owned.push_back({k, position(k)});
-    // All degrees of freedom of a node belong to one rank.
-    for (unsigned int n = 0; n < friction_face.n_nodes(); ++n)
-      {
-        const unsigned int first = friction_face.first_dof[n];
-        if (!owned_dofs.is_element(global_dofs[first]))
-          continue;
-        OwnedNode node{n, friction_face.n_node_dofs(n), {{0, 0, 0}}};
-        for (unsigned int i = 0; i < node.n_dofs; ++i)
-          node.position[i] = position(first + i);
-        owned_nodes.push_back(node);
-      }
+    for (const types::global_dof_index dof : global_dofs)
+      owned_positions.push_back(owned.index_within_set(dof));
+    numbers = Utilities::MPI::create_ascending_partitioning(
+      communicator,
+      global_dofs.size())[Utilities::MPI::this_mpi_process(communicator)];
   }
 
 
@@ -41,12 +29,8 @@ namespace Viscoplastic
   FaceRestriction::gather(const DistributedVector &v) const
   {
     Vector<double> x(global_dofs.size());
-    for (const OwnedEntry &entry : owned)
-      x[entry.k] = v.begin()[entry.i];
-    if (x.size() > 0)
-      Utilities::MPI::sum(ArrayView<const double>(x.begin(), x.size()),
-                          communicator,
-                          ArrayView<double>(x.begin(), x.size()));
+    for (unsigned int k = 0; k < x.size(); ++k)
+      x[k] = v.begin()[owned_positions[k]];
     return x;
   }
 
@@ -55,8 +39,8 @@ namespace Viscoplastic
   void
   FaceRestriction::set(const Vector<double> &x, DistributedVector &v) const
   {
-    for (const OwnedEntry &entry : owned)
-      v.begin()[entry.i] = x[entry.k];
+    for (unsigned int k = 0; k < x.size(); ++k)
+      v.begin()[owned_positions[k]] = x[k];
   }
 
 
@@ -66,8 +50,8 @@ namespace Viscoplastic
                        const Vector<double> &x,
                        DistributedVector    &v) const
   {
-    for (const OwnedEntry &entry : owned)
-      v.begin()[entry.i] += factor * x[entry.k];
+    for (unsigned int k = 0; k < x.size(); ++k)
+      v.begin()[owned_positions[k]] += factor * x[k];
   }
 
 
@@ -78,14 +62,17 @@ namespace Viscoplastic
   {
     if (truncation.projector.empty())
       return;
-    for (const OwnedNode &node : owned_nodes)
+    for (unsigned int n = 0; n < friction_face.n_nodes(); ++n)
       {
-        Tensor<1, 3> values;
-        for (unsigned int i = 0; i < node.n_dofs; ++i)
-          values[i] = v.begin()[node.position[i]];
-        values = truncation.projector[node.node] * values;
-        for (unsigned int i = 0; i < node.n_dofs; ++i)
-          v.begin()[node.position[i]] = values[i];
+        const unsigned int *const position =
+          &owned_positions[friction_face.first_dof[n]];
+        const unsigned int n_dofs = friction_face.n_node_dofs(n);
+        Tensor<1, 3>       values;
+        for (unsigned int i = 0; i < n_dofs; ++i)
+          values[i] = v.begin()[position[i]];
+        values = truncation.projector[n] * values;
+        for (unsigned int i = 0; i < n_dofs; ++i)
+          v.begin()[position[i]] = values[i];
       }
   }
 
@@ -96,10 +83,15 @@ namespace Viscoplastic
                                const DistributedVector &x,
                                DistributedVector       &y) const
   {
-    for (const OwnedNode &node : owned_nodes)
-      for (unsigned int i = 0; i < node.n_dofs; ++i)
-        for (unsigned int j = 0; j < node.n_dofs; ++j)
-          y.begin()[node.position[i]] +=
-            truncation.spring[node.node][i][j] * x.begin()[node.position[j]];
+    for (unsigned int n = 0; n < friction_face.n_nodes(); ++n)
+      {
+        const unsigned int *const position =
+          &owned_positions[friction_face.first_dof[n]];
+        const unsigned int n_dofs = friction_face.n_node_dofs(n);
+        for (unsigned int i = 0; i < n_dofs; ++i)
+          for (unsigned int j = 0; j < n_dofs; ++j)
+            y.begin()[position[i]] +=
+              truncation.spring[n][i][j] * x.begin()[position[j]];
+      }
   }
 } // namespace Viscoplastic

@@ -2,13 +2,15 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_cg.h>
 
+#include <viscoplastic_contact/contact/sparse_face_matrix.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
 
 #include <Epetra_CrsMatrix.h>
+#include <Epetra_Import.h>
+#include <Epetra_IntVector.h>
 
 #include <cmath>
 #include <limits>
-#include <map>
 #include <sstream>
 #include <utility>
 
@@ -82,7 +84,7 @@ namespace Viscoplastic
     for (std::size_t i = 0; i < excluded.size(); ++i)
       if (excluded[i])
         excluded_entries.push_back(i);
-    if (face.n_dofs() > 0)
+    if (restriction.n_global_dofs() > 0)
       make_face_matrix();
   }
 
@@ -99,7 +101,7 @@ namespace Viscoplastic
       return false;
     truncation  = FaceTruncation();
     has_springs = false;
-    if (face.n_dofs() > 0)
+    if (restriction.n_global_dofs() > 0)
       make_face_matrix();
     return true;
   }
@@ -109,32 +111,39 @@ namespace Viscoplastic
   void
   KrylovSolver::make_face_matrix()
   {
-    // Rows of owned face entries, gathered on all ranks: the face is small.
-    std::map<types::global_dof_index, unsigned int> face_index;
+    // Which columns are entries of the face, on whatever rank.
+    const Epetra_CrsMatrix &K    = matrix.trilinos_matrix();
+    constexpr int           none = -1;
+    Epetra_IntVector        number(K.DomainMap());
+    number.PutValue(none);
     for (unsigned int k = 0; k < face.n_dofs(); ++k)
-      face_index[restriction.dofs()[k]] = k;
+      number[restriction.positions()[k]] =
+        restriction.global_numbers().nth_index_in_set(k);
+    Epetra_IntVector number_of_column(K.ColMap());
+    if (K.Importer() != nullptr)
+      number_of_column.Import(number, *K.Importer(), Insert);
+    else
+      number_of_column = number;
+
     // Not by the iterators of the matrix, each of which fills a vector of the
     // size of the whole matrix.
-    const Epetra_CrsMatrix              &K = matrix.trilinos_matrix();
     std::vector<SparseFaceMatrix::Entry> entries;
-    for (const auto &entry : restriction.owned_entries())
+    for (unsigned int k = 0; k < face.n_dofs(); ++k)
       {
         int     length, *indices;
         double *values;
-        K.ExtractMyRowView(static_cast<int>(entry.i), length, values, indices);
+        K.ExtractMyRowView(restriction.positions()[k], length, values, indices);
         for (int e = 0; e < length; ++e)
-          {
-            const auto column = face_index.find(
-              static_cast<types::global_dof_index>(K.GCID(indices[e])));
-            if (column != face_index.end())
-              entries.push_back({entry.k, column->second, values[e]});
-          }
+          if (number_of_column[indices[e]] != none)
+            entries.push_back({k,
+                               static_cast<types::global_dof_index>(
+                                 number_of_column[indices[e]]),
+                               values[e]});
       }
-    std::vector<SparseFaceMatrix::Entry> all;
-    for (const auto &part : Utilities::MPI::all_gather(communicator, entries))
-      all.insert(all.end(), part.begin(), part.end());
     sparse_face_matrix =
-      std::make_unique<SparseFaceMatrix>(face, std::move(all));
+      std::make_unique<SparseFaceMatrix>(face,
+                                         restriction.global_numbers(),
+                                         std::move(entries));
   }
 
 
@@ -160,7 +169,7 @@ namespace Viscoplastic
   {
     preconditioner->restore(state);
     truncation  = state ? state->built_for : FaceTruncation();
-    has_springs = truncation.has_springs();
+    has_springs = truncation.has_springs(face);
   }
 
 
@@ -248,7 +257,7 @@ namespace Viscoplastic
   void
   KrylovSolver::move_face(const Vector<double> &change)
   {
-    if (change.linfty_norm() == 0.)
+    if (!face.any(change.size() > 0 && change.linfty_norm() > 0.))
       return;
     w = 0.;
     restriction.set(change, w);
@@ -263,7 +272,7 @@ namespace Viscoplastic
                                const bool            may_rebuild)
   {
     truncation  = truncation_;
-    has_springs = truncation.has_springs();
+    has_springs = truncation.has_springs(face);
     preconditioner->set_truncation(truncation, may_rebuild);
   }
 

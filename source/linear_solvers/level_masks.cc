@@ -55,15 +55,14 @@ namespace Viscoplastic
                               const FaceRestriction   &restriction)
     : excluded(excluded)
     , hierarchy(hierarchy)
+    , restriction(restriction)
   {
     const FrictionFace &face = restriction.face();
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
         const unsigned int first = face.first_dof[n];
         const Node         node  = restriction.dofs()[first] / dim;
-        if (node < hierarchy.begin || node >= hierarchy.end)
-          continue;
-        FaceNode result;
+        FaceNode           result;
         result.node   = node;
         result.index  = n;
         result.n_dofs = face.n_node_dofs(n);
@@ -172,6 +171,7 @@ namespace Viscoplastic
   std::vector<typename LevelMasks<dim>::Treatment>
   LevelMasks<dim>::coarsen(const std::vector<Treatment> &treatments,
                            const FaceTruncation         &truncation,
+                           const bool                    has_springs,
                            const unsigned int            l) const
   {
     const Level           &level = levels[l], &below = levels[l - 1];
@@ -207,7 +207,7 @@ namespace Viscoplastic
       }
 
     // Springs are lumped, column by column.
-    if (truncation.has_springs())
+    if (has_springs)
       for (unsigned int j = 0; j < dim; ++j)
         {
           for (unsigned int f = 0; f < level.face.size(); ++f)
@@ -256,12 +256,16 @@ namespace Viscoplastic
                        const FaceTruncation *truncation,
                        const double          unit)
   {
+    const bool is_masked =
+      truncation != nullptr && restriction.n_global_dofs() > 0;
+    const bool has_springs =
+      is_masked && truncation->has_springs(restriction.face());
     std::vector<Treatment> here = treatments(truncation, unit);
     for (unsigned int l = levels.size(); l-- > 0;)
       {
         levels[l].on_face[masking] = make_entries(here, levels[l]);
-        if (l > 0 && truncation != nullptr && !truncation->projector.empty())
-          here = coarsen(here, *truncation, l);
+        if (l > 0 && is_masked)
+          here = coarsen(here, *truncation, has_springs, l);
         else if (l > 0)
           {
             Treatment free;

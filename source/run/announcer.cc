@@ -37,7 +37,7 @@ namespace Viscoplastic
     out << "Mesh: " << dof_handler.get_triangulation().n_global_active_cells()
         << " cells, " << dof_handler.n_dofs() << " degrees of freedom";
     if (discretization.face)
-      out << ", " << discretization.face->layout().points.size()
+      out << ", " << discretization.face->n_global_points()
           << " friction points";
     out << (discretization.mean_dilatation ? ", mean dilatation\n" : "\n");
   }

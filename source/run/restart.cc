@@ -30,6 +30,7 @@ namespace Viscoplastic
 
 
 
+    /// All but the truncation, which has values at nodes.
     template <typename Archive>
     void
     exchange_preconditioner(Archive                            &archive,
@@ -41,9 +42,8 @@ namespace Viscoplastic
         return;
       if (!preconditioner)
         preconditioner.emplace();
-      archive & preconditioner->built_for.projector &
-        preconditioner->built_for.spring & preconditioner->best_rate &
-        preconditioner->lost_iterations & preconditioner->is_fresh;
+      archive & preconditioner->best_rate & preconditioner->lost_iterations &
+        preconditioner->is_fresh;
     }
 
 
@@ -83,7 +83,6 @@ namespace Viscoplastic
     // What record() and estimate() make anew in each step is not here.
     State<dim> &state = accepted.state;
     archive &state.n &state.t &state.k &accepted.is_solution;
-    state.friction.exchange(archive);
     control.exchange(archive);
     if (error_estimator)
       accepted.errors.exchange(archive);
@@ -112,10 +111,13 @@ namespace Viscoplastic
 
     std::map<std::string, std::string> files;
     files[mesh_file(rank)] = pack_mesh(triangulation);
+    auto preconditioner    = time_stepper->method().preconditioner_state();
     files[fields_file(rank)] =
-      pack_fields(discretization->stress_space, state, indicators);
-    // Collective, as all of it.
-    auto preconditioner = time_stepper->method().preconditioner_state();
+      pack_fields(discretization->stress_space,
+                  discretization->face.get(),
+                  state,
+                  preconditioner ? &preconditioner->built_for : nullptr,
+                  indicators);
     if (rank == 0)
       {
         const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
@@ -242,17 +244,14 @@ namespace Viscoplastic
       const bool complete =
         unpack_fields(packed,
                       d.stress_space,
+                      d.face.get(),
                       state,
+                      preconditioner ? &preconditioner->built_for : nullptr,
                       accepted.space_estimate.squared_indicators);
       return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
     };
-    const unsigned int n_points = d.face ? d.face->layout().points.size() : 0;
     AssertThrow(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
                  unpack(0, checkpoint.n_ranks)) &&
-                  state.friction.bound.size() == n_points &&
-                  state.friction.slip.size() == n_points &&
-                  state.friction.multiplier.size() == n_points &&
-                  state.friction.sticks.size() == n_points &&
                   archive.is_at_end(),
                 ExcMessage(name + "' does not fit the scene."));
     time_stepper->method().restore(accepted, preconditioner);

@@ -408,7 +408,8 @@ namespace Viscoplastic
                                                (slip * slip_changes[p]) / norm :
                                                (s < 0.5 ? rest : -rest));
         }
-      return slope + s * curvature + friction +
+      return slope + s * curvature +
+             Utilities::MPI::sum(friction, d.space.communicator) +
              virtual_work(d.stress_space, z_there, ghosted_change);
     };
 

@@ -90,11 +90,14 @@ namespace Viscoplastic
           std::fill(sticks.begin() + face.first_dof[node],
                     sticks.begin() + face.first_dof[node + 1],
                     friction.sticks[face.first_point[node]]);
-        for (const auto &[k, i] : d.face->restriction().owned_entries())
+        for (unsigned int k = 0; k < face.n_dofs(); ++k)
           if (sticks[k])
-            u.begin()[i] =
-              old_u.begin()[i] +
-              (foundation_step.size() > 0 ? foundation_step[k] : 0.);
+            {
+              const unsigned int i = d.face->restriction().positions()[k];
+              u.begin()[i] =
+                old_u.begin()[i] +
+                (foundation_step.size() > 0 ? foundation_step[k] : 0.);
+            }
       }
     space.set_prescribed(problem.time_step.t, u);
     return u;
@@ -146,10 +149,11 @@ namespace Viscoplastic
             add(data.right_side.begin()[i] / root);
           }
       }
-    if (data.foundation_step.size() > 0)
-      for (const auto &[k, i] :
-           discretization.face_restriction().owned_entries())
+    for (unsigned int k = 0; k < data.foundation_step.size(); ++k)
+      {
+        const unsigned int i = discretization.face_restriction().positions()[k];
         add(std::sqrt(diagonal.begin()[i]) * data.foundation_step[k]);
+      }
     return Utilities::MPI::max(size, space.communicator);
   }
 

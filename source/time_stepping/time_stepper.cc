@@ -99,7 +99,8 @@ namespace Viscoplastic
             const StepErrors  errors = assess(accepted, rate, step);
             const bool        has_event =
               control.is_on && discretization.face &&
-              has_contact_event(state.friction,
+              has_contact_event(discretization.face->layout(),
+                                state.friction,
                                 step.end.state.friction,
                                 control.is_kink(time_step.t_old));
             if (control.accepts(time_step, errors, has_event))

@@ -567,7 +567,7 @@ class Damaged(RestartCase):
     def test_other_format(self):
         def damage(step):
             file = step / "manifest.txt"
-            file.write_text(file.read_text().replace("checkpoint 2", "checkpoint 1"))
+            file.write_text(file.read_text().replace("checkpoint 3", "checkpoint 2"))
 
         self.falls_back(damage)
 
@@ -869,7 +869,7 @@ class Begin(RestartCase):
 class Foreign(RestartCase):
     """Among checkpoints there may be what the program has not written."""
 
-    MANIFEST = "viscoplastic_contact checkpoint 2\n"
+    MANIFEST = "viscoplastic_contact checkpoint 3\n"
     LIST = "viscoplastic_contact list of files 1\n"
 
     def add(self, job, files):

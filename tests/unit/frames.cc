@@ -497,7 +497,7 @@ namespace
       double result = 0.;
       for (const double x : v)
         result += x;
-      return result;
+      return Utilities::MPI::sum(result, MPI_COMM_WORLD);
     };
     EXPECT_NEAR(sum(face.weights()), area, 1e-12);
     EXPECT_NEAR(sum(face.bounds(1.)), integral, 1e-12);
@@ -512,8 +512,9 @@ namespace
           body->space->owned.is_element(dof))
         vertices.insert(dof);
     });
+    EXPECT_EQ(vertices.size(), face.layout().points.size());
     EXPECT_EQ(Utilities::MPI::sum(vertices.size(), MPI_COMM_WORLD),
-              face.layout().points.size());
+              face.n_global_points());
     EXPECT_EQ(face.layout().n_dofs(), face.layout().points.size() * (dim - 1));
   }
 
@@ -570,6 +571,9 @@ namespace
             ++n_edge;
           }
       }
+    total  = Utilities::MPI::sum(total, MPI_COMM_WORLD);
+    edge   = Utilities::MPI::sum(edge, MPI_COMM_WORLD);
+    n_edge = Utilities::MPI::sum(n_edge, MPI_COMM_WORLD);
     // Sides of length 1 in four cells; lost at the corner is 1/8 a side, and in
     // 3D what the edge's end at the symmetry plane has, 1/8 of that.
     if (dim == 2)
@@ -621,6 +625,7 @@ namespace
                       1e-13);
             sum += force;
           }
+        sum = Utilities::MPI::sum(sum, MPI_COMM_WORLD);
         EXPECT_LT((sum - face.resultant(state)).norm(), 1e-12);
 
         const auto back = face.multipliers(face.density(state));

@@ -35,21 +35,16 @@ namespace
     const FaceRestriction &restriction = scenario.face->restriction();
     const FrictionFace    &face        = restriction.face();
     const Point<dim>       vertex = scenario.triangulation.begin(0)->vertex(0);
-    // Face vectors are the same on all ranks.
-    std::vector<double> distance(face.n_nodes(), 0.);
+    FaceTruncation         truncation;
+    truncation.spring.resize(face.n_nodes());
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
-        const auto dof = restriction.dofs()[face.first_dof[n]];
-        if (scenario.space->owned.is_element(dof))
-          distance[n] = position.at(dof).distance(vertex);
+        const auto   dof = restriction.dofs()[face.first_dof[n]];
+        const double r   = position.at(dof).distance(vertex);
+        truncation.projector.emplace_back(
+          r <= radius ? Tensor<2, 3>() :
+                        Tensor<2, 3>(unit_symmetric_tensor<3>()));
       }
-    Utilities::MPI::sum(distance, MPI_COMM_WORLD, distance);
-    FaceTruncation truncation;
-    truncation.spring.resize(face.n_nodes());
-    for (const double r : distance)
-      truncation.projector.emplace_back(
-        r <= radius ? Tensor<2, 3>() :
-                      Tensor<2, 3>(unit_symmetric_tensor<3>()));
     return truncation;
   }
 

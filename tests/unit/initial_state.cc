@@ -377,6 +377,8 @@ namespace
             on_face[face.first_dof[p] + i] * on_face[face.first_dof[p] + i];
         left += 0.25 * m * 0.25 * m;
       }
+    excess = Utilities::MPI::sum(excess, MPI_COMM_WORLD);
+    left   = Utilities::MPI::sum(left, MPI_COMM_WORLD);
     const double size =
       std::sqrt(internal.l2_norm() * internal.l2_norm() + left);
     EXPECT_NEAR(found, std::sqrt(excess) / size, 1e-12);

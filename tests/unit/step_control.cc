@@ -302,8 +302,9 @@ namespace
 
   TEST(ContactEvent, BeginCoverEndTurn)
   {
+    const FrictionFace face;
     const auto event = [&](const std::string &from, const std::string &to) {
-      return has_contact_event(points(from), points(to), false);
+      return has_contact_event(face, points(from), points(to), false);
     };
     EXPECT_TRUE(event("...", "..>"));
     EXPECT_TRUE(event(".>>", ">>>"));
@@ -316,16 +317,17 @@ namespace
     EXPECT_FALSE(event(">>>", ".>>"));
     EXPECT_FALSE(event(">>>", ">>>"));
     // Behind a kink of the data, an end and a turn are no news.
-    EXPECT_FALSE(has_contact_event(points("..>"), points("..."), true));
-    EXPECT_FALSE(has_contact_event(points("..>"), points("..<"), true));
-    EXPECT_TRUE(has_contact_event(points("..."), points("..<"), true));
+    EXPECT_FALSE(has_contact_event(face, points("..>"), points("..."), true));
+    EXPECT_FALSE(has_contact_event(face, points("..>"), points("..<"), true));
+    EXPECT_TRUE(has_contact_event(face, points("..."), points("..<"), true));
     // Points without friction slip always, glued ones never.
     const std::vector<double> bounds{0., 1., infinity};
     EXPECT_FALSE(
-      has_contact_event(points(">.."), points(">..", bounds), false));
-    EXPECT_TRUE(has_contact_event(points(">.."), points(">>.", bounds), false));
+      has_contact_event(face, points(">.."), points(">..", bounds), false));
     EXPECT_TRUE(
-      has_contact_event(points(".>>"), points("..>", {1., 1., 0.}), false));
-    EXPECT_FALSE(has_contact_event(points(""), points(""), false));
+      has_contact_event(face, points(">.."), points(">>.", bounds), false));
+    EXPECT_TRUE(has_contact_event(
+      face, points(".>>"), points("..>", {1., 1., 0.}), false));
+    EXPECT_FALSE(has_contact_event(face, points(""), points(""), false));
   }
 } // namespace

@@ -167,7 +167,7 @@ namespace
             for (const bool sticks : step.end.state.friction.sticks)
               any_slips |= !sticks;
           }
-        EXPECT_TRUE(any_slips);
+        EXPECT_TRUE(by_hand.discretization->face->layout().any(any_slips));
         // Error estimates are a matter of the judgement that runs add.
         by_hand.accepted.errors           = run.accepted.errors;
         by_hand.accepted.state.time_error = run.accepted.state.time_error;

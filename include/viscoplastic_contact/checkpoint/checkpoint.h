@@ -5,6 +5,7 @@
 #include <deal.II/lac/vector.h>
 
 #include <viscoplastic_contact/base/binary_archive.h>
+#include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/discretization/state.h>
 
 #include <cstdint>
@@ -39,13 +40,16 @@ namespace Viscoplastic
 
   /**
    * What is attached to the cells of this rank and to their vertices:
-   * displacements, fields at samples, and @p squared_estimate of active cells
-   * (empty without an estimator).
+   * displacements, fields at samples, friction on @p face (null without
+   * friction), a truncation of it (null if there is none), and
+   * @p squared_estimate of active cells (empty without an estimator).
    */
   template <int dim>
   std::string
   pack_fields(const StressSpace<dim> &stress_space,
+              const ContactFace<dim> *face,
               const State<dim>       &state,
+              const FaceTruncation   *truncation,
               const Vector<double>   &squared_estimate);
 
   /// What pack_mesh() and pack_fields() have returned on some ranks, or all of
@@ -60,16 +64,18 @@ namespace Viscoplastic
   };
 
   /**
-   * The inverse, on the same mesh. Sets u, velocity, initial_u and the fields
-   * at samples of @p state. Returns whether that was all that this rank needs.
-   * Throws ExcMessage for bytes that make no sense. Not collective but for the
-   * exchange of ghost values at its end.
+   * The inverse, on the same mesh. Sets u, velocity, initial_u, friction and
+   * the fields at samples of @p state. Returns whether that was all that this
+   * rank needs. Throws ExcMessage for bytes that make no sense. Not collective
+   * but for the exchange of ghost values at its end.
    */
   template <int dim>
   bool
   unpack_fields(const PackedFields     &packed,
                 const StressSpace<dim> &stress_space,
+                const ContactFace<dim> *face,
                 State<dim>             &state,
+                FaceTruncation         *truncation,
                 Vector<double>         &squared_estimate);
 
   /**

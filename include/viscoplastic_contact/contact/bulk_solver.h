@@ -35,7 +35,8 @@ namespace Viscoplastic
    * distributed vectors, and another method for linear systems (a multigrid
    * with masks on all levels) is a new derived class and nothing else.
    *
-   * All calls are collective; results are the same on all ranks.
+   * All calls are collective. Face vectors are of the nodes of this rank, all
+   * other results the same on all ranks.
    */
   class BulkSolver
   {

@@ -15,10 +15,11 @@ namespace Viscoplastic
    * not count.
    *
    * @p from_kink: slip may end in this step without being an event, since its
-   * beginning is a known kink of the data.
+   * beginning is a known kink of the data. Collective.
    */
   bool
-  has_contact_event(const FrictionState &old_state,
+  has_contact_event(const FrictionFace  &face,
+                    const FrictionState &old_state,
                     const FrictionState &state,
                     const bool           from_kink);
 } // namespace Viscoplastic

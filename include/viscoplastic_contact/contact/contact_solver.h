@@ -59,8 +59,8 @@ namespace Viscoplastic
      * the sets and multipliers to start from, which become those of the
      * solution; @p tolerance: the relative error at which to stop.
      *
-     * Throws ExcMessage when the iteration is exhausted or a value is not
-     * finite: there is no unconverged result.
+     * Collective. Throws ExcMessage when the iteration is exhausted or a value
+     * is not finite: there is no unconverged result.
      */
     ContactReport
     solve(BulkSolver         &bulk,

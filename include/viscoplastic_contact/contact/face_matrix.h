@@ -10,22 +10,55 @@ namespace Viscoplastic
   /**
    * The symmetric positive definite matrix by which the face reacts to changes
    * of single nodes: what nonlinear Gauss-Seidel sweeps over Gamma_3 need.
+   *
+   * A sweep goes through the nodes stage by stage. Nodes of one stage that
+   * belong to different ranks do not couple, so that all ranks together do what
+   * one would do alone, node after node.
    */
   class FaceMatrix
   {
   public:
+    /// All nodes in one stage.
+    explicit FaceMatrix(const FrictionFace &face);
     virtual ~FaceMatrix() = default;
+
+    /// The nodes of this rank in each stage, in the order of a sweep; as many
+    /// stages on all ranks.
+    const std::vector<std::vector<unsigned int>> &
+    stages() const
+    {
+      return nodes_of_stage;
+    }
 
     /// Diagonal block of a node, padded by the identity.
     virtual Tensor<2, 3>
     diagonal_block(const unsigned int node) const = 0;
 
-    /// r := r - F (change at node).
+    /// r := r - F (change at node), on this rank.
     virtual void
     subtract(const unsigned int  node,
              const Tensor<1, 3> &change,
              Vector<double>     &r) const = 0;
+
+    /// At the end of a stage: r := r - F (changes that other ranks have made in
+    /// it); @p change: those of this rank. Collective.
+    virtual void
+    subtract_changes_elsewhere(const unsigned int /*stage*/,
+                               const Vector<double> & /*change*/,
+                               Vector<double> & /*r*/) const
+    {}
+
+  protected:
+    const FrictionFace                    &face;
+    std::vector<std::vector<unsigned int>> nodes_of_stage;
   };
+
+
+  /// Fill the diagonal of a node's block behind its entries, the leading n x n:
+  /// by 1, unless units of huge or tiny stresses make that too large or too
+  /// small a stiffness.
+  void
+  pad_block(Tensor<2, 3> &block, const unsigned int n);
 
 
   /// A dense one: the Schur complement of the bulk.
@@ -49,43 +82,7 @@ namespace Viscoplastic
     }
 
   private:
-    const FrictionFace &face;
-    FullMatrix<double>  values;
+    FullMatrix<double> values;
   };
 
-
-  /// A sparse one in compressed rows: couplings of face unknowns at fixed bulk.
-  class SparseFaceMatrix : public FaceMatrix
-  {
-  public:
-    /// (row, column, value), in any order, each pair once.
-    struct Entry
-    {
-      unsigned int row, column;
-      double       value;
-
-      template <class Archive>
-      void
-      serialize(Archive &archive, const unsigned int)
-      {
-        archive &row &column &value;
-      }
-    };
-
-    SparseFaceMatrix(const FrictionFace &face, std::vector<Entry> entries);
-
-    Tensor<2, 3>
-    diagonal_block(const unsigned int node) const override;
-
-    void
-    subtract(const unsigned int  node,
-             const Tensor<1, 3> &change,
-             Vector<double>     &r) const override;
-
-  private:
-    const FrictionFace       &face;
-    std::vector<std::size_t>  row_begin;
-    std::vector<unsigned int> columns;
-    std::vector<double>       values;
-  };
 } // namespace Viscoplastic

@@ -14,7 +14,8 @@ namespace Viscoplastic
 
   /**
    * The friction points of Gamma_3 without finite elements: which unknowns of
-   * the face they see, and how. The same on all ranks.
+   * the face they see, and how. Each rank has the nodes that it owns, so that
+   * the part of a rank is small where there are many of them.
    *
    * A face vector holds, node by node, the displacement components that some
    * friction point at the node sees (1 to 3). Blocks of a node are padded to
@@ -36,6 +37,8 @@ namespace Viscoplastic
     /// The points node by node, and each node's first one, and the end.
     std::vector<Point>        points;
     std::vector<unsigned int> first_point{0};
+    /// The ranks that share the face.
+    MPI_Comm communicator = MPI_COMM_SELF;
 
     unsigned int
     n_nodes() const
@@ -79,6 +82,24 @@ namespace Viscoplastic
       for (unsigned int i = 0; i < n_node_dofs(node); ++i)
         x[first_dof[node] + i] = values[i];
     }
+
+    /// y := y + factor x for face vectors. (Vector's own operations refuse
+    /// empty ones, which are ordinary here.)
+    void
+    add(const double factor, const Vector<double> &x, Vector<double> &y) const;
+
+    /// A sum over all ranks of what each adds to it. Collective, as the
+    /// next ones.
+    double
+    sum(const double part) const;
+
+    /// Whether something holds on some rank.
+    bool
+    any(const bool here) const;
+
+    /// The scalar product of two face vectors.
+    double
+    dot(const Vector<double> &x, const Vector<double> &y) const;
   };
 
 
@@ -121,14 +142,6 @@ namespace Viscoplastic
     {
       return bound.size();
     }
-
-    /// Write to, or read from, an archive.
-    template <typename Archive>
-    void
-    exchange(Archive &archive)
-    {
-      archive &bound &slip &multiplier &sticks;
-    }
   };
 
 
@@ -141,14 +154,12 @@ namespace Viscoplastic
   {
     std::vector<Tensor<2, 3>> projector, spring;
 
+    /// Whether another one blocks the same. Collective, as the next.
     bool
-    operator==(const FaceTruncation &other) const
-    {
-      return projector == other.projector;
-    }
+    blocks_as(const FaceTruncation &other, const FrictionFace &face) const;
 
     bool
-    has_springs() const;
+    has_springs(const FrictionFace &face) const;
 
     /// x := projector x, node by node.
     void

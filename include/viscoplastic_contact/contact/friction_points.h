@@ -59,7 +59,7 @@ namespace Viscoplastic
   struct Certificate
   {
     Vector<double> force;
-    /// sum of rho |s| - lambda . s.
+    /// sum of rho |s| - lambda . s over all ranks.
     double                                             defect = 0.;
     std::vector<std::pair<unsigned int, Tensor<1, 2>>> replaced;
   };
@@ -70,7 +70,7 @@ namespace Viscoplastic
    * than its slip is worth. There the clipped residual is the better
    * multiplier, at the price of a small defect of complementarity. A miss of
    * more than 1e-5 of the bound is not rounding, unless the slip is as small as
-   * @p rounding, an error in the energy norm, makes it.
+   * @p rounding, an error in the energy norm, makes it. Collective.
    */
   Certificate
   certify(const FrictionFace              &face,

@@ -145,6 +145,13 @@ namespace Viscoplastic
       return frames[index];
     }
 
+    /// That of a node of `relevant`, by its first degree of freedom.
+    const NodalFrame<dim> &
+    frame_at(const types::global_dof_index first_dof) const
+    {
+      return frames[frame_of_node[relevant.index_within_set(first_dof) / dim]];
+    }
+
     /// Call @p act (first degree of freedom, directions of the frame) for each
     /// node of `relevant` whose frame is rotated.
     template <typename Function>

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/base/partitioner.h>
+
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
+#include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -12,8 +16,8 @@ namespace Viscoplastic
   /**
    * Gamma_3 on the mesh: makes the friction points of a FrictionFace from the
    * nodes with friction, and their bounds rho_c(t) = int rho(x,t) phi_c, with
-   * phi_c the basis functions that hanging nodes leave. All ranks hold the
-   * whole face, in an order that does not depend on the partition.
+   * phi_c the basis functions that hanging nodes leave. Each rank has the
+   * points of the nodes that it owns, in the order of their positions.
    */
   template <int dim>
   class ContactFace
@@ -40,6 +44,10 @@ namespace Viscoplastic
     std::set<types::boundary_id>
     held_boundaries() const;
 
+    /// The number of points on all ranks.
+    types::global_dof_index
+    n_global_points() const;
+
     /// rho_c of each point. Throws ExcMessage for negative bounds. Collective.
     std::vector<double>
     bounds(const double t) const;
@@ -57,11 +65,17 @@ namespace Viscoplastic
       return nodes[node].position;
     }
 
+    types::global_dof_index
+    first_dof(const unsigned int node) const
+    {
+      return nodes[node].first_dof;
+    }
+
     /// Cartesian force of a multiplier (lambda; the body feels its negative).
     Tensor<1, dim>
     cartesian(const unsigned int point, const Tensor<1, 2> &multiplier) const;
 
-    /// sum_c lambda_c.
+    /// sum_c lambda_c. Collective.
     Tensor<1, dim>
     resultant(const FrictionState &state) const;
 
@@ -75,12 +89,12 @@ namespace Viscoplastic
     foundation_step(const double t_old, const double t) const;
 
     /// The slip that a change of the displacement (in frames, owned entries)
-    /// means at each point, relative to a step of the foundation. Collective.
+    /// means at each point, relative to a step of the foundation.
     std::vector<Tensor<1, 2>>
     slips(const DistributedVector &change,
           const Vector<double>    &foundation_step) const;
 
-    /// The slips that a change means, given as a face vector on all ranks.
+    /// The slips that a change means, given as a face vector.
     std::vector<Tensor<1, 2>>
     slips(const Vector<double> &change) const;
 
@@ -93,7 +107,7 @@ namespace Viscoplastic
 
     /// The inverse where a node has one point, for a face on a new mesh; at
     /// corners, where the density is that of all points, zero.
-    /// @p ghosted_density is Cartesian. Collective.
+    /// @p ghosted_density is Cartesian.
     std::vector<Tensor<1, 2>>
     multipliers(const DistributedVector &ghosted_density) const;
 
@@ -118,7 +132,8 @@ namespace Viscoplastic
       const BoundaryCondition<dim> *condition;
     };
 
-    /// value is added to the point for each unit of rho at the sample.
+    /// value is added to the point for each unit of rho at the sample. Points
+    /// of other ranks come behind those of this one, see `numbers`.
     struct Share
     {
       unsigned int sample, point;
@@ -129,6 +144,11 @@ namespace Viscoplastic
     make_nodes();
     void
     make_shares();
+
+    /// Sums of the shares of each point, each times factor(sample). Collective.
+    template <typename Factor>
+    std::vector<double>
+    sum_shares(const Factor &factor) const;
 
     /// The bounds at time t by point and boundary id, in the order of
     /// boundary_ids. Collective.
@@ -142,8 +162,11 @@ namespace Viscoplastic
     std::vector<std::vector<types::boundary_id>> boundary_ids;
     std::vector<Sample>                          samples;
     std::vector<Share>                           shares;
-    std::vector<double>                          point_weights;
-    bool                                         bounds_vary;
-    mutable std::vector<double>                  constant_bounds;
+    /// The points of this rank, and of others that get shares here; none where
+    /// no rank has points.
+    std::shared_ptr<const Utilities::MPI::Partitioner> numbers;
+    std::vector<double>                                point_weights;
+    bool                                               bounds_vary;
+    mutable std::optional<std::vector<double>>         constant_bounds;
   };
 } // namespace Viscoplastic

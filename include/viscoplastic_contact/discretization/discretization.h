@@ -42,7 +42,7 @@ namespace Viscoplastic
     const ContactFace<dim> *
     slipping_face() const
     {
-      return face && face->layout().n_dofs() > 0 ? face.get() : nullptr;
+      return face_restriction().n_global_dofs() > 0 ? face.get() : nullptr;
     }
 
     /// The restriction to the friction points; to none without friction.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deal.II/base/index_set.h>
-#include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/contact/friction_face.h>
@@ -13,8 +12,8 @@ namespace Viscoplastic
 {
   /**
    * The restriction R of distributed vectors to the friction face, and its
-   * transpose. A face vector is the same on all ranks; each entry of it is one
-   * global degree of freedom, owned by one rank.
+   * transpose. Each entry of a face vector is a degree of freedom that this
+   * rank owns, so that nothing but the constructor communicates.
    */
   class FaceRestriction
   {
@@ -23,11 +22,10 @@ namespace Viscoplastic
     FaceRestriction() = default;
 
     /// @p dofs: the global degree of freedom of each entry of a face vector;
-    /// @p owned: those of this rank.
+    /// @p owned: all of this rank. Collective.
     FaceRestriction(FrictionFace                         face,
                     std::vector<types::global_dof_index> dofs,
-                    const IndexSet                      &owned,
-                    const MPI_Comm                       communicator);
+                    const IndexSet                      &owned);
 
     const FrictionFace &
     face() const
@@ -35,27 +33,36 @@ namespace Viscoplastic
       return friction_face;
     }
 
+    /// The entries of face vectors on all ranks.
+    types::global_dof_index
+    n_global_dofs() const
+    {
+      return numbers.size();
+    }
+
+    /// The numbers of this rank's entries among those of all ranks: a range.
+    const IndexSet &
+    global_numbers() const
+    {
+      return numbers;
+    }
+
+    /// The global degree of freedom of each entry.
     const std::vector<types::global_dof_index> &
     dofs() const
     {
       return global_dofs;
     }
 
-    /// An entry k of face vectors that this rank owns, and the position i of
-    /// its degree of freedom among those that this rank owns.
-    struct OwnedEntry
+    /// The position of each entry's degree of freedom among those that this
+    /// rank owns.
+    const std::vector<unsigned int> &
+    positions() const
     {
-      unsigned int k, i;
-    };
-
-    const std::vector<OwnedEntry> &
-    owned_entries() const
-    {
-      return owned;
+      return owned_positions;
     }
 
-    /// R v. One rank contributes each entry, so the sum over ranks is exact.
-    /// Collective.
+    /// R v.
     Vector<double>
     gather(const DistributedVector &v) const;
 
@@ -81,17 +88,9 @@ namespace Viscoplastic
                 DistributedVector       &y) const;
 
   private:
-    /// A node whose unknowns this rank owns, and where they are.
-    struct OwnedNode
-    {
-      unsigned int                node, n_dofs;
-      std::array<unsigned int, 3> position;
-    };
-
     FrictionFace                         friction_face;
     std::vector<types::global_dof_index> global_dofs;
-    MPI_Comm                             communicator = MPI_COMM_SELF;
-    std::vector<OwnedEntry>              owned;
-    std::vector<OwnedNode>               owned_nodes;
+    std::vector<unsigned int>            owned_positions;
+    IndexSet                             numbers;
   };
 } // namespace Viscoplastic

@@ -11,6 +11,8 @@
 
 namespace Viscoplastic
 {
+  class SparseFaceMatrix;
+
   /// Preconditioned conjugate gradients on the truncated space, on any number
   /// of ranks.
   class KrylovSolver : public BulkSolver

@@ -140,6 +140,7 @@ namespace Viscoplastic
     std::vector<Treatment>
     coarsen(const std::vector<Treatment> &fine,
             const FaceTruncation         &truncation,
+            const bool                    has_springs,
             const unsigned int            level) const;
 
     /// ... and the masks.
@@ -149,6 +150,7 @@ namespace Viscoplastic
 
     const std::vector<bool> &excluded;
     const NodeHierarchy     &hierarchy;
+    const FaceRestriction   &restriction;
 
     std::vector<FaceNode>          face_nodes;
     std::vector<Level>             levels;

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/index_set.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <viscoplastic_contact/contact/face_matrix.h>
+
+namespace Viscoplastic
+{
+  /**
+   * A face matrix in compressed rows: couplings of face unknowns at fixed bulk.
+   *
+   * The first stage of its sweeps are the nodes that couple with none of
+   * another rank. The others follow rank by rank, where ranks that do not
+   * couple with each other take the same stage.
+   */
+  class SparseFaceMatrix : public FaceMatrix
+  {
+  public:
+    /// A coupling with a column of any rank: @p row is an entry of face
+    /// vectors, @p column is counted over all ranks.
+    struct Entry
+    {
+      unsigned int            row;
+      types::global_dof_index column;
+      double                  value;
+    };
+
+    /// @p entries in any order, each pair once; @p numbers: those of this
+    /// rank's face entries over all ranks, a range. Collective.
+    SparseFaceMatrix(const FrictionFace &face,
+                     const IndexSet     &numbers,
+                     std::vector<Entry>  entries);
+
+    Tensor<2, 3>
+    diagonal_block(const unsigned int node) const override;
+
+    void
+    subtract(const unsigned int  node,
+             const Tensor<1, 3> &change,
+             Vector<double>     &r) const override;
+
+    void
+    subtract_changes_elsewhere(const unsigned int    stage,
+                               const Vector<double> &change,
+                               Vector<double>       &r) const override;
+
+  private:
+    /// Order the nodes in stages.
+    void
+    make_stages();
+
+    /// A coupling with an entry that another rank owns; @p column: its number
+    /// among the entries of `changes`.
+    struct Coupling
+    {
+      unsigned int row, column;
+      double       value;
+    };
+
+    std::vector<std::size_t>  row_begin;
+    std::vector<unsigned int> columns;
+    std::vector<double>       values;
+    std::vector<Coupling>     elsewhere;
+    /// Of this rank, and of the entries of others that couple with them.
+    mutable LinearAlgebra::distributed::Vector<double> changes;
+  };
+} // namespace Viscoplastic

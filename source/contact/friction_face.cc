@@ -72,6 +72,26 @@ namespace Viscoplastic
 
 
   bool
+  FaceTruncation::is_same_as(const FaceTruncation &other,
+                             const FrictionFace   &face) const
+  {
+    return !face.any(projector != other.projector || spring != other.spring);
+  }
+
+
+
+  void
+  FaceTruncation::check_belongs_to(const FrictionFace &face) const
+  {
+    AssertThrow(!face.any(projector.size() != face.n_nodes() ||
+                          spring.size() != face.n_nodes()),
+                ExcMessage("The state of the preconditioner belongs to another "
+                           "contact face."));
+  }
+
+
+
+  bool
   FaceTruncation::has_springs(const FrictionFace &face) const
   {
     bool here = false;

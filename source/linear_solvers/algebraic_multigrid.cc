@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-#include <deal.II/lac/trilinos_precondition.h>
-
 #include <viscoplastic_contact/linear_solvers/algebraic_multigrid.h>
 
 #include <Epetra_Import.h>
 #include <Epetra_Vector.h>
-#include <Teuchos_ParameterList.hpp>
-#include <ml_MultiLevelPreconditioner.h>
-#include <ml_utils.h>
 
 #include <cmath>
 #include <utility>
@@ -73,8 +67,10 @@ namespace Viscoplastic
     else
       keep_column = keep;
 
-    masked_matrix.copy_from(matrix);
-    const Epetra_CrsMatrix &M = masked_matrix.trilinos_matrix();
+    amg.reset(); // before there is another one: memory
+    auto masked_matrix = std::make_unique<DistributedMatrix>();
+    masked_matrix->copy_from(matrix);
+    const Epetra_CrsMatrix &M = masked_matrix->trilinos_matrix();
     for (int i = 0; i < M.NumMyRows(); ++i)
       {
         int     length, *indices;
@@ -95,56 +91,24 @@ namespace Viscoplastic
               {
                 const unsigned int first = face.first_dof[n];
                 if (truncation.spring[n][i][j] != 0.)
-                  masked_matrix.add(dofs[first + i],
-                                    dofs[first + j],
-                                    truncation.spring[n][i][j]);
+                  masked_matrix->add(dofs[first + i],
+                                     dofs[first + j],
+                                     truncation.spring[n][i][j]);
               }
-        masked_matrix.compress(VectorOperation::add);
+        masked_matrix->compress(VectorOperation::add);
       }
 
-    // ML shifts the diagonal of the coarsest matrix by 1e-12, whatever the unit
-    // of stress is. A power of two changes no digit.
-    double largest = 0.;
-    for (const auto row : masked_matrix.locally_owned_range_indices())
-      largest = std::max(largest, masked_matrix.diag_element(row));
-    largest = Utilities::MPI::max(largest, matrix.get_mpi_communicator());
-    unit    = largest > 1e-6 && largest < 1e18 ?
-                1. :
-                std::ldexp(1., std::ilogb(largest));
-    if (unit != 1.)
-      masked_matrix /= unit;
-
-    // A contiguous copy of the rigid body modes, which ML refers to.
-    const std::size_t n = excluded.size();
-    near_null_space.resize(
-      std::max<std::size_t>(1, n * rigid_body_modes.size())); // never null
+    const std::size_t   n = excluded.size();
+    std::vector<double> near_null_space(n * rigid_body_modes.size());
     for (unsigned int m = 0; m < rigid_body_modes.size(); ++m)
       for (std::size_t i = 0; i < n; ++i)
         near_null_space[m * n + i] = rigid_body_modes[m].begin()[i] * keep[i];
 
-    Teuchos::ParameterList parameters;
-    ML_Epetra::SetDefaults("SA", parameters);
-    parameters.set("ML output", 0);
-    parameters.set("PDE equations", static_cast<int>(dim));
-    parameters.set("aggregation: type", "Uncoupled");
-    parameters.set("aggregation: threshold", 0.);
-    parameters.set("smoother: type", "Chebyshev");
-    parameters.set("smoother: sweeps", 2);
-    parameters.set("smoother: Chebyshev alpha", 20.);
-    parameters.set("coarse: type", "Amesos-KLU");
-    parameters.set("coarse: max size", 2000);
-    parameters.set("null space: type", "pre-computed");
-    parameters.set("null space: dimension",
-                   static_cast<int>(rigid_body_modes.size()));
-    parameters.set("null space: vectors", near_null_space.data());
-    // The vectors from which ML estimates eigenvalues are random: always the
-    // same ones, or a set-up would depend on how many there were before.
-    ML_set_random_seed(1 + static_cast<int>(Utilities::MPI::this_mpi_process(
-                             matrix.get_mpi_communicator())));
-    amg = std::make_unique<TrilinosWrappers::PreconditionAMG>();
-    amg->initialize(masked_matrix, parameters);
-    built_for       = truncation;
-    is_fresh        = true;
+    amg       = std::make_unique<SmoothedAggregation>(std::move(masked_matrix),
+                                                std::move(near_null_space),
+                                                dim);
+    built_for = truncation;
+    is_fresh  = true;
     lost_iterations = 0.;
   }
 
@@ -213,8 +177,6 @@ namespace Viscoplastic
                                         const DistributedVector &x) const
   {
     amg->vmult(y, x);
-    if (unit != 1.)
-      y /= unit;
   }
 
 
@@ -257,14 +219,10 @@ namespace Viscoplastic
         return;
       }
     const FaceTruncation &wanted = state->built_for;
-    AssertThrow(!face.any(wanted.projector.size() != face.n_nodes() ||
-                          wanted.spring.size() != face.n_nodes()),
-                ExcMessage("The state of the preconditioner belongs to another "
-                           "contact face."));
+    wanted.check_belongs_to(face);
     truncation  = wanted;
     has_springs = truncation.has_springs(face);
-    if (!amg || face.any(built_for.projector != wanted.projector ||
-                         built_for.spring != wanted.spring))
+    if (!amg || !built_for.is_same_as(wanted, face))
       build();
     best_rate       = state->best_rate;
     lost_iterations = state->lost_iterations;

@@ -10,6 +10,30 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    template <int dim>
+    std::unique_ptr<Preconditioner>
+    make_geometric(const BulkSystem &system, const SolverDemand &demand)
+    {
+      typename GeometricMultigrid<dim>::Options options;
+      // Sharing rows pays after about four solves.
+      if (demand.n_solves < 4)
+        options.largest_shared_part = 0.;
+      std::vector<DistributedVector> rigid_body_modes;
+      if (!has_small_first_mesh(demand))
+        rigid_body_modes = system.rigid_body_modes();
+      return std::make_unique<GeometricMultigrid<dim>>(system.matrix,
+                                                       system.excluded,
+                                                       system.hierarchy(),
+                                                       rigid_body_modes,
+                                                       system.face,
+                                                       options);
+    }
+  } // namespace
+
+
+
   std::unique_ptr<BulkSolver>
   make_bulk_solver(const BulkSystem &system, SolverDemand demand)
   {
@@ -19,8 +43,6 @@ namespace Viscoplastic
       Utilities::MPI::n_mpi_processes(matrix.get_mpi_communicator());
     demand.n_dofs      = matrix.m();
     demand.n_face_dofs = system.face.n_global_dofs();
-    // Sharing rows pays after about four solves.
-    const double shared_part = demand.n_solves < 4 ? 0. : 0.25;
     std::unique_ptr<Preconditioner> multigrid;
     switch (choose_bulk_solver(demand))
       {
@@ -30,20 +52,8 @@ namespace Viscoplastic
                                                system.face,
                                                system.dim);
         case BulkSolverKind::geometric_multigrid:
-          if (system.dim == 2)
-            multigrid =
-              std::make_unique<GeometricMultigrid<2>>(matrix,
-                                                      system.excluded,
-                                                      system.hierarchy(),
-                                                      system.face,
-                                                      shared_part);
-          else
-            multigrid =
-              std::make_unique<GeometricMultigrid<3>>(matrix,
-                                                      system.excluded,
-                                                      system.hierarchy(),
-                                                      system.face,
-                                                      shared_part);
+          multigrid = system.dim == 2 ? make_geometric<2>(system, demand) :
+                                        make_geometric<3>(system, demand);
           break;
         case BulkSolverKind::algebraic_multigrid:
           multigrid =

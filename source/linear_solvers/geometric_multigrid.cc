@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/linear_solvers/coarse_problem.h>
+#include <viscoplastic_contact/linear_solvers/algebraic_coarse_solver.h>
+#include <viscoplastic_contact/linear_solvers/direct_coarse_solver.h>
 #include <viscoplastic_contact/linear_solvers/geometric_multigrid.h>
 #include <viscoplastic_contact/linear_solvers/multigrid_level.h>
 
@@ -41,19 +42,21 @@ namespace Viscoplastic
 
   template <int dim>
   GeometricMultigrid<dim>::GeometricMultigrid(
-    const DistributedMatrix &matrix,
-    const std::vector<bool> &excluded,
-    NodeHierarchy            hierarchy_,
-    const FaceRestriction   &restriction,
-    const double             largest_shared_part,
-    const unsigned int       coarse_size)
+    const DistributedMatrix              &matrix,
+    const std::vector<bool>              &excluded,
+    NodeHierarchy                         hierarchy_,
+    const std::vector<DistributedVector> &rigid_body_modes,
+    const FaceRestriction                &restriction,
+    const Options                        &options)
     : matrix(matrix)
     , excluded(excluded)
     , hierarchy(std::move(hierarchy_))
     , communicator(matrix.get_mpi_communicator())
+    , face(restriction.face())
     , begins(1, 0)
     , masks(excluded, hierarchy, restriction)
-    , largest_shared_part(largest_shared_part)
+    , has_direct_coarse_solver(rigid_body_modes.empty())
+    , largest_shared_part(options.largest_shared_part)
   {
     for (const Node n_owned :
          Utilities::MPI::all_gather(communicator,
@@ -68,7 +71,7 @@ namespace Viscoplastic
     Utilities::MPI::sum(n_new, communicator, n_new);
     Node n_unknowns = n_new[0];
     while (first_mesh + 1 < hierarchy.n_levels &&
-           n_unknowns + n_new[first_mesh + 1] <= coarse_size)
+           n_unknowns + n_new[first_mesh + 1] <= options.coarse_size)
       n_unknowns += n_new[++first_mesh];
 
     for (unsigned int mesh = first_mesh; mesh < hierarchy.n_levels; ++mesh)
@@ -85,6 +88,7 @@ namespace Viscoplastic
         if (frame != hierarchy.frames.end())
           rotated_nodes.emplace_back(i, leading_block<dim>(frame->second));
       }
+    coarse_modes = on_first_level(rigid_body_modes);
     fill();
   }
 
@@ -99,7 +103,9 @@ namespace Viscoplastic
   std::string
   GeometricMultigrid<dim>::name() const
   {
-    return "geometric multigrid";
+    return has_direct_coarse_solver ?
+             "geometric multigrid" :
+             "geometric multigrid (over ML on the first mesh)";
   }
 
 
@@ -204,24 +210,21 @@ namespace Viscoplastic
       levels[l]->space->set_interpolation(levels[l]->interpolation,
                                           *levels[l - 1]->space);
 
-    const Level                                    &first = *levels[0];
-    std::vector<typename CoarseProblem<dim>::Entry> entries;
-    for (unsigned int i = 0; i < rows.n_rows(); ++i)
-      for (std::size_t e = rows.begin[i]; e < rows.begin[i + 1]; ++e)
-        entries.push_back({first.space->global_number(i),
-                           first.space->global_number(
-                             first.space->local_number(rows.columns[e])),
-                           rows.values[e]});
-    coarse = std::make_unique<CoarseProblem<dim>>(entries,
-                                                  first.space->x.size() / dim,
-                                                  communicator);
-    for (auto &coarse_factor : coarse_factors)
-      coarse_factor.factor.reset();
     std::vector<MultigridLevel<dim> *> spaces;
     for (const auto &level : levels)
       spaces.push_back(level->space.get());
     masks.set_levels(spaces);
-    set_masks(LevelMasks<dim>::untruncated, nullptr);
+    if (has_direct_coarse_solver)
+      coarse = std::make_unique<DirectCoarseSolver<dim>>(rows,
+                                                         *spaces[0],
+                                                         communicator);
+    else
+      coarse = std::make_unique<AlgebraicCoarseSolver<dim>>(rows,
+                                                            *spaces[0],
+                                                            coarse_modes,
+                                                            communicator);
+    built_for.reset();
+    set_masks(LevelMasks<dim>::untruncated, nullptr, true);
   }
 
 
@@ -255,13 +258,36 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
+  std::vector<double>
+  GeometricMultigrid<dim>::on_first_level(
+    const std::vector<DistributedVector> &modes) const
+  {
+    std::vector<double> result;
+    for (const DistributedVector &mode : modes)
+      for (const Node node : levels[0]->nodes)
+        {
+          const double *const value =
+            mode.begin() + (node - hierarchy.begin) * dim;
+          result.insert(result.end(), value, value + dim);
+          const auto frame = hierarchy.frames.find(node);
+          if (frame != hierarchy.frames.end())
+            multiply(leading_block<dim>(frame->second), &*result.end() - dim);
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
   GeometricMultigrid<dim>::set_masks(
     const typename LevelMasks<dim>::Masking masking,
-    const FaceTruncation                   *truncation)
+    const FaceTruncation                   *truncation,
+    const bool                              may_rebuild)
   {
-    coarse->factorize(masks.set(masking, truncation, unit),
-                      coarse_factors[masking]);
+    return coarse->set_masks(masking,
+                             masks.set(masking, truncation, unit),
+                             may_rebuild);
   }
 
 
@@ -269,9 +295,11 @@ namespace Viscoplastic
   template <int dim>
   void
   GeometricMultigrid<dim>::set_truncation(const FaceTruncation &truncation,
-                                          const bool /*may_rebuild*/)
+                                          const bool            may_rebuild)
   {
-    set_masks(LevelMasks<dim>::truncated, &truncation);
+    if (set_masks(LevelMasks<dim>::truncated, &truncation, may_rebuild) &&
+        !has_direct_coarse_solver)
+      built_for = truncation;
   }
 
 
@@ -283,28 +311,24 @@ namespace Viscoplastic
     const Level &level = *levels[l];
     auto        &x = level.space->x, &b = level.space->b, &r = level.space->r;
     if (l == 0)
+      masks.project(l, b);
+    if (l == 0 && coarse->is_exact())
       {
-        masks.project(l, b);
-        Vector<double> sum(coarse->n_unknowns());
-        for (unsigned int i = 0; i < level.nodes.size(); ++i)
-          for (unsigned int d = 0; d < dim; ++d)
-            sum[level.space->global_number(i) * dim + d] =
-              b.begin()[i * dim + d];
-        Utilities::MPI::sum(sum, communicator, sum);
-        coarse_factors[masks.in_use()].factor->solve(sum);
-        for (unsigned int i = 0; i < level.nodes.size(); ++i)
-          for (unsigned int d = 0; d < dim; ++d)
-            x.begin()[i * dim + d] =
-              sum[level.space->global_number(i) * dim + d];
+        coarse->solve(masks.in_use(), x, b);
         masks.project(l, x);
         return;
       }
     level.space->smooth_forward_from_zero(x, b);
     level.space->residual(r, x, b);
     masks.project(l, r);
-    level.space->restrict_to_coarse(levels[l - 1]->space->b, r);
-    cycle(l - 1);
-    level.space->interpolate(r, levels[l - 1]->space->x);
+    if (l == 0)
+      coarse->solve(masks.in_use(), r, r);
+    else
+      {
+        level.space->restrict_to_coarse(levels[l - 1]->space->b, r);
+        cycle(l - 1);
+        level.space->interpolate(r, levels[l - 1]->space->x);
+      }
     masks.project(l, r);
     x.add(1.f, r);
     level.space->smooth_backward(x, b);
@@ -402,6 +426,40 @@ namespace Viscoplastic
   {
     masks.use(LevelMasks<dim>::untruncated);
     vmult_in_frames(y, x);
+  }
+
+
+
+  template <int dim>
+  std::optional<PreconditionerState>
+  GeometricMultigrid<dim>::state() const
+  {
+    if (!built_for)
+      return {};
+    return PreconditionerState{*built_for, 0., 0., false};
+  }
+
+
+
+  template <int dim>
+  void
+  GeometricMultigrid<dim>::restore(
+    const std::optional<PreconditionerState> &state)
+  {
+    if (has_direct_coarse_solver)
+      return;
+    if (!state)
+      {
+        coarse->forget(LevelMasks<dim>::truncated);
+        built_for.reset();
+        return;
+      }
+    const FaceTruncation &wanted = state->built_for;
+    wanted.check_belongs_to(face);
+    if (built_for && built_for->is_same_as(wanted, face))
+      return;
+    coarse->forget(LevelMasks<dim>::truncated);
+    set_truncation(wanted, true);
   }
 
 

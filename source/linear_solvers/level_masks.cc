@@ -251,7 +251,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::vector<typename CoarseProblem<dim>::Mask>
+  std::vector<typename LevelMasks<dim>::Mask>
   LevelMasks<dim>::set(const Masking         masking,
                        const FaceTruncation *truncation,
                        const double          unit)
@@ -276,8 +276,8 @@ namespace Viscoplastic
     if (used == masking)
       used.reset();
 
-    const Level                                   &first = levels[0];
-    std::vector<typename CoarseProblem<dim>::Mask> result;
+    const Level      &first = levels[0];
+    std::vector<Mask> result;
     for (const Entry &entry : first.fixed)
       result.push_back(
         {first.space->global_number(entry.node), entry.free, Tensor<2, dim>()});

@@ -60,19 +60,13 @@ namespace Viscoplastic
 
 
 
-    /// Whether the mesh is refined from a small one. That one is solved on
-    /// directly, whenever its stick set changes: it must be little against a
-    /// cycle on the present one.
+    /// Whether geometric multigrid has meshes to work on.
     bool
-    has_small_first_mesh(const SolverDemand &demand)
+    has_levels(const SolverDemand &demand)
     {
-      using Number       = std::uint64_t;
-      const Number share = demand.n_dofs / 20;
-      return demand.n_first_dofs > 0 &&
-             demand.n_first_dofs <=
-               (demand.dim == 2 ?
-                  std::max(Number(2000), std::min(share, Number(20000))) :
-                  std::max(Number(600), std::min(share, Number(6000))));
+      return has_small_first_mesh(demand) ||
+             (demand.n_first_dofs > 0 &&
+              demand.n_first_dofs <= demand.n_dofs / 3);
     }
 
 
@@ -87,10 +81,9 @@ namespace Viscoplastic
       if (demand.n_face_dofs > 5000 || n_dofs >= (dim == 2 ? 2000000 : 200000))
         return false;
       // An exact solution, where it costs next to nothing.
-      const bool has_levels = has_small_first_mesh(demand);
-      if (n_dofs < (demand.n_solves < 4 && has_levels ? 2000 : 20000))
+      if (n_dofs < (demand.n_solves < 4 && has_levels(demand) ? 2000 : 20000))
         return true;
-      if (has_levels)
+      if (has_levels(demand))
         {
           const auto total = [&](const BulkSolverKind kind) {
             const SolverCost cost = expected_cost(kind, demand);
@@ -117,6 +110,21 @@ namespace Viscoplastic
 
 
 
+  bool
+  has_small_first_mesh(const SolverDemand &demand)
+  {
+    // It is solved on directly whenever its stick set changes.
+    using Number       = std::uint64_t;
+    const Number share = demand.n_dofs / 20;
+    return demand.n_first_dofs > 0 &&
+           demand.n_first_dofs <=
+             (demand.dim == 2 ?
+                std::max(Number(2000), std::min(share, Number(20000))) :
+                std::max(Number(600), std::min(share, Number(6000))));
+  }
+
+
+
   BulkSolverKind
   choose_bulk_solver(const SolverDemand &demand)
   {
@@ -130,8 +138,7 @@ namespace Viscoplastic
         (choice == LinearSolver::automatic && demand.n_ranks == 1 &&
          prefer_direct(demand)))
       return BulkSolverKind::direct;
-    return choice != LinearSolver::algebraic_multigrid &&
-               has_small_first_mesh(demand) ?
+    return choice != LinearSolver::algebraic_multigrid && has_levels(demand) ?
              BulkSolverKind::geometric_multigrid :
              BulkSolverKind::algebraic_multigrid;
   }
@@ -149,12 +156,16 @@ namespace Viscoplastic
     if (kind == BulkSolverKind::direct)
       return {set_up + c.at(c.factorization, n),
               least_step + c.at(c.direct_step, n)};
+    // Cycles of algebraic multigrid on the first mesh.
+    constexpr double large_first_mesh = 1.6;
+    const double     factor = kind == BulkSolverKind::algebraic_multigrid ?
+                                c.algebraic :
+                              has_small_first_mesh(demand) ? 1. :
+                                                             large_first_mesh;
     return {set_up,
             least_step +
-              c.at(c.multigrid_step, n) *
-                growth_by_incompressibility(demand.max_poissons_ratio) *
-                (kind == BulkSolverKind::algebraic_multigrid ? c.algebraic :
-                                                               1.)};
+              c.at(c.multigrid_step, n) * factor *
+                growth_by_incompressibility(demand.max_poissons_ratio)};
   }
 
 

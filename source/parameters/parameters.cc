@@ -333,7 +333,7 @@ namespace Viscoplastic
       "`direct': sparse Cholesky (CHOLMOD) with the contact face condensed, "
       "on one MPI rank; `multigrid': conjugate gradients with multigrid on "
       "the meshes that refinement has gone through, or with `algebraic "
-      "multigrid' (ML) where the first of them is large, on any number; "
+      "multigrid' (ML) where it has hardly refined any, on any number; "
       "`automatic' chooses.");
     prm.add_parameter(
       "Contact tolerance",

@@ -97,17 +97,23 @@ namespace Viscoplastic::Testing
                                              dim));
     }
 
-    /// All meshes are levels, however small they are.
+    /// All meshes are levels, however small they are. The first one may be
+    /// left to smoothed aggregation.
     std::unique_ptr<BulkSolver>
-    geometric() const
+    geometric(const bool has_algebraic_coarse_solver = false) const
     {
+      typename GeometricMultigrid<dim>::Options options;
+      options.coarse_size = 0;
+      std::vector<DistributedVector> rigid_body_modes;
+      if (has_algebraic_coarse_solver)
+        rigid_body_modes = this->space->rigid_body_modes();
       return krylov(std::make_unique<GeometricMultigrid<dim>>(
         matrix,
         this->space->excluded(),
         make_node_hierarchy(*this->space),
+        rigid_body_modes,
         this->face->restriction(),
-        /* largest_shared_part = */ 0.25,
-        /* coarse_size = */ 0));
+        options));
     }
 
     /// The solvers that run on the present number of ranks.
@@ -116,6 +122,7 @@ namespace Viscoplastic::Testing
     {
       std::vector<std::unique_ptr<BulkSolver>> result;
       result.push_back(geometric());
+      result.push_back(geometric(true));
       result.push_back(algebraic());
       if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
         result.push_back(direct());

@@ -519,14 +519,14 @@ namespace
         solutions.push_back(u);
         states.push_back(state);
       }
-    if (solutions.size() == 2)
+    for (unsigned int s = 1; s < solutions.size(); ++s)
       {
-        const double size = solutions[1].l2_norm();
-        solutions[0] -= solutions[1];
-        EXPECT_LT(solutions[0].l2_norm(), 1e-6 * size);
-        EXPECT_EQ(states[0].sticks, states[1].sticks);
+        SCOPED_TRACE(s);
+        solutions[s] -= solutions[0];
+        EXPECT_LT(solutions[s].l2_norm(), 1e-6 * solutions[0].l2_norm());
+        EXPECT_EQ(states[s].sticks, states[0].sticks);
         for (unsigned int p = 0; p < face.points.size(); ++p)
-          EXPECT_LT((states[0].multiplier[p] - states[1].multiplier[p]).norm(),
+          EXPECT_LT((states[s].multiplier[p] - states[0].multiplier[p]).norm(),
                     1e-6);
       }
   }

@@ -137,6 +137,67 @@ namespace
 
 
 
+  TYPED_TEST(NestedMeshes, AlgebraicCoarseSolverFollowsTheStickSet)
+  {
+    // In 2D a first mesh on which smoothed aggregation does not just factorize.
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(dim == 2 ? 23 : 3, 1);
+    const unsigned int      m          = scenario.face->layout().n_dofs();
+    const auto              correction = [&](BulkSolver   &solver,
+                                const double  radius,
+                                const double  tolerance,
+                                unsigned int &iterations) {
+      Vector<double>    force(m), w(m);
+      DistributedVector u(scenario.start);
+      solver.begin(scenario.load, u);
+      solver.set_truncation(sticking_within(radius, scenario));
+      iterations = solver.correct(force, tolerance, w);
+      return w;
+    };
+    const auto is_built_for = [&](const BulkSolver &solver,
+                                  const double      radius) {
+      return solver.preconditioner_state()->built_for.is_same_as(
+        sticking_within(radius, scenario), scenario.face->layout());
+    };
+    const auto direct    = scenario.geometric(),
+               algebraic = scenario.geometric(true);
+    unsigned int n_direct, n_algebraic;
+    EXPECT_FALSE(direct->preconditioner_state());
+    EXPECT_FALSE(algebraic->preconditioner_state());
+    // What it was built for last.
+    double           built_for = -1.;
+    constexpr double few_nodes = dim == 2 ? 0.06 : 0.2;
+    for (const double radius : {-1., few_nodes, 0.9, 10., few_nodes})
+      {
+        SCOPED_TRACE(radius);
+        Vector<double> exact = correction(*direct, radius, 1e-8, n_direct);
+        Vector<double> w = correction(*algebraic, radius, 1e-8, n_algebraic);
+        EXPECT_LE(n_algebraic, (3 * n_direct) / 2 + 3);
+        const FrictionFace &face = scenario.face->layout();
+        face.add(-1., exact, w);
+        EXPECT_LE(std::sqrt(face.dot(w, w)),
+                  1e-6 * std::sqrt(face.dot(exact, exact)));
+        // Few nodes more are no reason for a set-up.
+        if (built_for != -1. || radius != few_nodes)
+          built_for = radius;
+        EXPECT_TRUE(is_built_for(*algebraic, built_for));
+      }
+
+    // Another solver in the same state does the same; one whose state is
+    // forgotten begins anew.
+    const auto           state = algebraic->preconditioner_state();
+    const Vector<double> w     = correction(*algebraic, -1., 1e-8, n_algebraic);
+    const auto           other = scenario.geometric(true);
+    other->restore(state);
+    EXPECT_TRUE(correction(*other, -1., 1e-8, n_algebraic) == w);
+    other->restore({});
+    EXPECT_FALSE(other->preconditioner_state());
+    EXPECT_FALSE(correction(*other, -1., 1e-8, n_algebraic) == w);
+    EXPECT_TRUE(is_built_for(*other, -1.));
+  }
+
+
+
   TYPED_TEST(NestedMeshes, RenewedSetUpIsANewOne)
   {
     constexpr int        dim = TypeParam::value;
@@ -174,11 +235,14 @@ namespace
     constexpr int     dim = TypeParam::value;
     BulkScenario<dim> scenario(1, dim == 2 ? 4 : 3, true);
     const auto        make = [&scenario](const double largest_shared_part) {
+      typename GeometricMultigrid<dim>::Options options;
+      options.largest_shared_part = largest_shared_part;
       return GeometricMultigrid<dim>(scenario.matrix,
                                      scenario.space->excluded(),
                                      make_node_hierarchy(*scenario.space),
+                                     {},
                                      scenario.face->restriction(),
-                                     largest_shared_part);
+                                     options);
     };
     GeometricMultigrid<dim> multigrid = make(1.);
     DistributedVector       x(scenario.start), y(x), expected(x);

@@ -79,6 +79,27 @@ namespace
 
 
 
+  TEST(SolverChoice, LargeFirstMeshesHaveLevelsIfTheyAreRefined)
+  {
+    for (const unsigned int dim : {2, 3})
+      {
+        SolverDemand large = demand(dim, 300000, 2, 100000);
+        EXPECT_FALSE(has_small_first_mesh(large));
+        EXPECT_EQ(choose_bulk_solver(large), Kind::geometric_multigrid);
+        EXPECT_GT(expected_cost(Kind::geometric_multigrid, large).step,
+                  expected_cost(Kind::geometric_multigrid,
+                                demand(dim, 300000, 2, 500))
+                    .step);
+        large.choice = LinearSolver::algebraic_multigrid;
+        EXPECT_EQ(choose_bulk_solver(large), Kind::algebraic_multigrid);
+        large.choice       = LinearSolver::multigrid;
+        large.n_first_dofs = 100001;
+        EXPECT_EQ(choose_bulk_solver(large), Kind::algebraic_multigrid);
+      }
+  }
+
+
+
   TEST(SolverChoice, CostsAreThoseOfTheBenchmark)
   {
     // Seconds a step of benchmarks/step_cost.py at 5e5 and 1.1e5 unknowns.

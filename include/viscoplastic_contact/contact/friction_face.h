@@ -159,7 +159,14 @@ namespace Viscoplastic
     blocks_as(const FaceTruncation &other, const FrictionFace &face) const;
 
     bool
+    is_same_as(const FaceTruncation &other, const FrictionFace &face) const;
+
+    bool
     has_springs(const FrictionFace &face) const;
+
+    /// Throw ExcMessage if it is that of another face.
+    void
+    check_belongs_to(const FrictionFace &face) const;
 
     /// x := projector x, node by node.
     void

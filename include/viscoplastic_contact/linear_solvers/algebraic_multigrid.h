@@ -4,14 +4,10 @@
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 #include <viscoplastic_contact/linear_solvers/preconditioner.h>
+#include <viscoplastic_contact/linear_solvers/smoothed_aggregation.h>
 
 #include <memory>
 #include <vector>
-
-namespace dealii::TrilinosWrappers
-{
-  class PreconditionAMG;
-}
 
 namespace Viscoplastic
 {
@@ -91,12 +87,7 @@ namespace Viscoplastic
     Vector<double>            damping;
     mutable DistributedVector damped;
 
-    std::unique_ptr<TrilinosWrappers::PreconditionAMG> amg;
-    /// Its matrix is in this unit; see build().
-    double              unit = 1.;
-    std::vector<double> near_null_space;
-    /// The preconditioner's matrix, which ML refers to.
-    DistributedMatrix masked_matrix;
+    std::unique_ptr<SmoothedAggregation> amg;
     /// The truncation for which it was built.
     FaceTruncation built_for;
     /// Iterations a decade right after a set-up, the best so far; iterations

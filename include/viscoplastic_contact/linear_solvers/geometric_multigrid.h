@@ -2,14 +2,14 @@
 #pragma once
 
 #include <viscoplastic_contact/base/linear_algebra.h>
-#include <viscoplastic_contact/linear_solvers/coarse_problem.h>
+#include <viscoplastic_contact/linear_solvers/coarse_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 #include <viscoplastic_contact/linear_solvers/level_masks.h>
 #include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
 #include <viscoplastic_contact/linear_solvers/preconditioner.h>
 
-#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace Viscoplastic
@@ -17,7 +17,8 @@ namespace Viscoplastic
   /**
    * A multigrid cycle on the nested meshes from which the mesh has come: one
    * sweep of Gauss-Seidel by nodes before and after the correction by the mesh
-   * below, a direct solver on the first mesh.
+   * below. On the first mesh there is a direct solver or, where it is large,
+   * one cycle of smoothed aggregation between two sweeps.
    *
    * The matrices of coarser meshes are those of the same bilinear form on their
    * spaces (Galerkin products), whatever the material. They know nothing of the
@@ -29,20 +30,28 @@ namespace Viscoplastic
   class GeometricMultigrid : public Preconditioner
   {
   public:
+    struct Options
+    {
+      /// Where more than this part of the blocks of the matrix differ, or on a
+      /// processor that does not multiply four doubles at a time, products with
+      /// it take as long as in the format that it has, and are left to it.
+      double largest_shared_part = 0.25;
+      /// The first level is the finest mesh with at most so many unknowns, or
+      /// the first mesh.
+      unsigned int coarse_size = 100;
+    };
+
     /**
-     * @p excluded: owned degrees of freedom that are no unknowns. The first
-     * level is the finest mesh with at most @p coarse_size unknowns, or the
-     * first mesh. Where more than @p largest_shared_part of the blocks of the
-     * matrix differ, or on a processor that does not multiply four doubles at
-     * a time, products with it take as long as in the format that it has, and
-     * are left to it. Collective.
+     * @p excluded: owned degrees of freedom that are no unknowns;
+     * @p rigid_body_modes: on owned entries, zero where excluded, if the first
+     * level is too large for a direct solver; none otherwise. Collective.
      */
-    GeometricMultigrid(const DistributedMatrix &matrix,
-                       const std::vector<bool> &excluded,
-                       NodeHierarchy            hierarchy,
-                       const FaceRestriction   &restriction,
-                       const double             largest_shared_part,
-                       const unsigned int       coarse_size = 100);
+    GeometricMultigrid(const DistributedMatrix              &matrix,
+                       const std::vector<bool>              &excluded,
+                       NodeHierarchy                         hierarchy,
+                       const std::vector<DistributedVector> &rigid_body_modes,
+                       const FaceRestriction                &restriction,
+                       const Options                        &options);
     ~GeometricMultigrid() override;
 
     std::string
@@ -66,6 +75,13 @@ namespace Viscoplastic
     vmult_matrix(DistributedVector       &y,
                  const DistributedVector &x) const override;
 
+    /// What smoothed aggregation was built for.
+    std::optional<PreconditionerState>
+    state() const override;
+
+    void
+    restore(const std::optional<PreconditionerState> &state) override;
+
   private:
     struct Level;
     struct Operator;
@@ -83,10 +99,16 @@ namespace Viscoplastic
     void
     share_matrix(const BlockRows<dim> &matrix_rows);
 
-    /// Make masks and the factor that goes with them.
-    void
+    /// The rigid body modes on the first level, one after the other.
+    std::vector<double>
+    on_first_level(const std::vector<DistributedVector> &modes) const;
+
+    /// Make masks and what goes with them on the first level. Returns whether
+    /// that was set up anew.
+    bool
     set_masks(const typename LevelMasks<dim>::Masking masking,
-              const FaceTruncation                   *truncation);
+              const FaceTruncation                   *truncation,
+              const bool                              may_rebuild);
 
     void
     cycle(const unsigned int level) const;
@@ -98,6 +120,7 @@ namespace Viscoplastic
     const std::vector<bool> &excluded;
     const NodeHierarchy      hierarchy;
     const MPI_Comm           communicator;
+    const FrictionFace      &face;
 
     /// The first node of each rank, and the end.
     std::vector<NodeHierarchy::Node> begins;
@@ -106,10 +129,13 @@ namespace Viscoplastic
     /// Nodes of the last level whose frames are rotated, and their directions.
     std::vector<std::pair<unsigned int, Tensor<2, dim>>> rotated_nodes;
     std::vector<std::unique_ptr<Level>>                  levels;
-    std::unique_ptr<CoarseProblem<dim>>                  coarse;
-    std::array<typename CoarseProblem<dim>::Factor, 2>   coarse_factors;
     LevelMasks<dim>                                      masks;
-    const double                                         largest_shared_part;
+    const bool                         has_direct_coarse_solver;
+    std::vector<double>                coarse_modes;
+    std::unique_ptr<CoarseSolver<dim>> coarse;
+    /// The truncation for which smoothed aggregation was built.
+    std::optional<FaceTruncation> built_for;
+    const double                  largest_shared_part;
     /// The matrix in double precision, where its rows share values; none after
     /// a renewal.
     std::unique_ptr<Operator> shared_matrix;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/linear_solvers/coarse_problem.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 #include <viscoplastic_contact/linear_solvers/multigrid_level.h>
 
@@ -11,6 +10,28 @@
 
 namespace Viscoplastic
 {
+  template <int dim>
+  Tensor<2, dim>
+  identity()
+  {
+    Tensor<2, dim> result;
+    for (unsigned int i = 0; i < dim; ++i)
+      result[i][i] = 1.;
+    return result;
+  }
+
+
+  /// A on the range of a projector, and a multiple of the identity, of the size
+  /// of A, on its kernel.
+  template <int dim>
+  Tensor<2, dim>
+  on_range(const Tensor<2, dim> &A, const Tensor<2, dim> &projector)
+  {
+    const double size = trace(A) > 0. ? trace(A) / dim : 1.;
+    return projector * A * projector + size * (identity<dim>() - projector);
+  }
+
+
   /**
    * What the levels of a multigrid cycle know of excluded degrees of freedom
    * and of a truncation on the face: at the nodes concerned a projector onto
@@ -35,6 +56,28 @@ namespace Viscoplastic
       truncated
     };
 
+    /// On the first level, where nodes are numbered over all ranks: the
+    /// projector onto what is free at a node, and springs there.
+    struct Mask
+    {
+      Node           node;
+      Tensor<2, dim> free, spring;
+
+      bool
+      operator==(const Mask &other) const
+      {
+        return node == other.node && free == other.free &&
+               spring == other.spring;
+      }
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int)
+      {
+        archive &node &free &spring;
+      }
+    };
+
     /// @p excluded: owned degrees of freedom that are no unknowns.
     LevelMasks(const std::vector<bool> &excluded,
                const NodeHierarchy     &hierarchy,
@@ -49,7 +92,7 @@ namespace Viscoplastic
     /// the excluded degrees of freedom alone. @p unit: the stiffness in which
     /// levels are measured. Returns what they are on the first level.
     /// Collective.
-    std::vector<typename CoarseProblem<dim>::Mask>
+    std::vector<Mask>
     set(const Masking         masking,
         const FaceTruncation *truncation,
         const double          unit);

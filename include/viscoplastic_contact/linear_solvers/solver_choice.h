@@ -41,6 +41,12 @@ namespace Viscoplastic
   };
 
 
+  /// Whether the mesh is refined from a small one, on which a direct solver
+  /// costs little against a multigrid cycle on the present one.
+  bool
+  has_small_first_mesh(const SolverDemand &demand);
+
+
   /// The solver for a demand. Throws ExcMessage for a choice that cannot be
   /// had.
   BulkSolverKind

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/base/linear_algebra.h>
+
+#include <memory>
+#include <vector>
+
+namespace dealii::TrilinosWrappers
+{
+  class PreconditionAMG;
+}
+
+namespace Viscoplastic
+{
+  /**
+   * A cycle of smoothed aggregation (ML) for a symmetric positive definite
+   * matrix of elasticity: Chebyshev smoothers, a direct solver on the last
+   * level. The same matrix gives the same cycle, however many there were
+   * before.
+   */
+  class SmoothedAggregation
+  {
+  public:
+    /**
+     * @p near_null_space: what hardly has energy, rigid body modes, one after
+     * the other on owned entries, zero where the matrix has a row of its own;
+     * @p dim degrees of freedom a node. Collective.
+     */
+    SmoothedAggregation(std::unique_ptr<DistributedMatrix> matrix,
+                        std::vector<double>                near_null_space,
+                        const unsigned int                 dim);
+    ~SmoothedAggregation();
+
+    /// y := M^{-1} x.
+    void
+    vmult(DistributedVector &y, const DistributedVector &x) const;
+
+  private:
+    // What ML refers to.
+    std::unique_ptr<DistributedMatrix> matrix;
+    std::vector<double>                near_null_space;
+    /// The matrix is divided by this.
+    double                                             unit = 1.;
+    std::unique_ptr<TrilinosWrappers::PreconditionAMG> amg;
+  };
+} // namespace Viscoplastic

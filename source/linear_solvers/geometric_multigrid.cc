@@ -245,9 +245,8 @@ namespace Viscoplastic
     if (!has_four_doubles() || !is_shared(level.matrix_rows()))
       return;
     auto result = std::make_unique<Operator>();
-    result->rows.set_values(matrix_rows, [&level](const Node node) {
-      return level.local_number(node);
-    });
+    result->rows.set_values(matrix_rows,
+                            level.local_numbers(matrix_rows.columns));
     if (!is_shared(result->rows))
       return;
     result->x.reinit(level.x.get_partitioner());

@@ -114,11 +114,29 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<unsigned int>
+  MultigridLevel<dim>::local_numbers(const std::vector<Node> &asked) const
+  {
+    // A table, instead of a search for each.
+    std::vector<unsigned int> number_of_owned(end - begin);
+    for (unsigned int i = 0; i < n_owned; ++i)
+      number_of_owned[nodes[i] - begin] = i;
+    std::vector<unsigned int> result;
+    result.reserve(asked.size());
+    for (const Node node : asked)
+      result.push_back(node >= begin && node < end ?
+                         number_of_owned[node - begin] :
+                         local_number(node));
+    return result;
+  }
+
+
+
+  template <int dim>
   void
   MultigridLevel<dim>::set_values(const BlockRows<dim> &matrix)
   {
-    rows.set_values(matrix,
-                    [this](const Node node) { return local_number(node); });
+    rows.set_values(matrix, local_numbers(matrix.columns));
   }
 
 
@@ -130,13 +148,14 @@ namespace Viscoplastic
   {
     parent_begin.assign(interpolation.begin.begin(),
                         interpolation.begin.begin() + n_owned + 1);
-    parents.clear();
     weights.clear();
+    std::vector<Node> nodes_of_parents;
     for (std::size_t e = 0; e < parent_begin.back(); ++e)
       {
-        parents.push_back(coarser.local_number(interpolation.parents[e].node));
+        nodes_of_parents.push_back(interpolation.parents[e].node);
         weights.push_back(interpolation.parents[e].weight);
       }
+    parents = coarser.local_numbers(nodes_of_parents);
   }
 
 

@@ -93,17 +93,18 @@ namespace Viscoplastic
 
 
 
-    /// To multiples of a power of two.
+    /// To multiples of a power of two that is at least 2^-51 of the entries.
     template <int dim>
     NodeBlock<dim>
     rounded(const NodeBlock<dim> &block, const int exponent)
     {
-      const double   unit = std::ldexp(1., exponent);
+      // Near this number, numbers are that far apart. (std::nearbyint takes a
+      // call for each entry where it is not known that the processor rounds.)
+      const double   large = std::ldexp(3., exponent + 51);
       NodeBlock<dim> result;
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
-          result[i][j] =
-            unit * std::nearbyint(block[i][j] / unit) + 0.; // no -0
+          result[i][j] = (block[i][j] + large) - large;
       return result;
     }
   } // namespace
@@ -113,9 +114,10 @@ namespace Viscoplastic
   template <int dim, typename Number>
   void
   SharedRows<dim, Number>::set_values(
-    const BlockRows<dim>                          &matrix,
-    const std::function<unsigned int(const Node)> &local_number)
+    const BlockRows<dim>            &matrix,
+    const std::vector<unsigned int> &local_columns)
   {
+    AssertDimension(local_columns.size(), matrix.columns.size());
     rows.clear();
     columns.clear();
     values.clear();
@@ -123,73 +125,88 @@ namespace Viscoplastic
     rows.reserve(matrix.n_rows());
     row_sums.reserve(matrix.n_rows());
     columns.reserve(matrix.columns.size());
-    struct Entry
+    struct Neighbor
     {
       bool         is_upper;
       std::size_t  key;
       unsigned int column;
-      Block        block;
+      unsigned int block;
     };
-    std::vector<Entry> row;
+    std::vector<Neighbor> neighbors;
+    std::vector<Block>    blocks;
+    std::vector<double>   sizes;
     // Rows so far by what their values come to.
     std::unordered_multimap<std::size_t, unsigned int> known;
     for (unsigned int i = 0; i < matrix.n_rows(); ++i)
       {
-        double largest = 0.;
-        for (std::size_t e = matrix.begin[i]; e < matrix.begin[i + 1]; ++e)
-          largest = std::max(largest, largest_entry<dim>(matrix.values[e]));
-        NodeBlock<dim> sum;
-        row.clear();
-        for (std::size_t e = matrix.begin[i]; e < matrix.begin[i + 1]; ++e)
+        const std::size_t begin   = matrix.begin[i];
+        const std::size_t end     = matrix.begin[i + 1];
+        double            largest = 0.;
+        sizes.clear();
+        for (std::size_t e = begin; e < end; ++e)
           {
-            const unsigned int column = local_number(matrix.columns[e]);
+            sizes.push_back(largest_entry<dim>(matrix.values[e]));
+            largest = std::max(largest, sizes.back());
+          }
+        const int least_exponent =
+          largest > 0. ? std::ilogb(largest) - digits_of_row : 0;
+        NodeBlock<dim> sum;
+        neighbors.clear();
+        blocks.clear();
+        for (std::size_t e = begin; e < end; ++e)
+          {
+            const unsigned int column = local_columns[e];
             sum += matrix.values[e];
             if (column == i)
               continue;
-            const double size  = largest_entry<dim>(matrix.values[e]);
-            const Block  block = packed<dim, Number>(
-              size > 0. ?
-                 rounded<dim>(matrix.values[e],
-                             std::max(std::ilogb(size) -
-                                        digits_of_block<Number>,
-                                      std::ilogb(largest) - digits_of_row)) :
-                 NodeBlock<dim>());
-            row.push_back({column > i, key(block), column, block});
+            const double size = sizes[e - begin];
+            blocks.push_back(packed<dim, Number>(
+              size > 0. ? rounded<dim>(matrix.values[e],
+                                       std::max(std::ilogb(size) -
+                                                  digits_of_block<Number>,
+                                                least_exponent)) :
+                          NodeBlock<dim>()));
+            neighbors.push_back({column > i,
+                                 key(blocks.back()),
+                                 column,
+                                 static_cast<unsigned int>(blocks.size() - 1)});
           }
         // Neighbors in an order that does not depend on their numbers.
-        std::sort(row.begin(), row.end(), [](const Entry &a, const Entry &b) {
-          return std::tie(a.is_upper, a.key, a.column) <
-                 std::tie(b.is_upper, b.key, b.column);
-        });
-        Row result{columns.size(), values.size(), 0, 0};
-        result.n            = row.size();
-        std::size_t row_key = row.size();
-        for (const Entry &entry : row)
+        std::sort(neighbors.begin(),
+                  neighbors.end(),
+                  [](const Neighbor &a, const Neighbor &b) {
+                    return std::tie(a.is_upper, a.key, a.column) <
+                           std::tie(b.is_upper, b.key, b.column);
+                  });
+        Row row{columns.size(), values.size(), 0, 0};
+        row.n               = neighbors.size();
+        std::size_t row_key = row.n;
+        for (const Neighbor &neighbor : neighbors)
           {
-            columns.push_back(entry.column);
-            result.n_lower += entry.is_upper ? 0 : 1;
-            boost::hash_combine(row_key, entry.key);
+            columns.push_back(neighbor.column);
+            row.n_lower += neighbor.is_upper ? 0 : 1;
+            boost::hash_combine(row_key, neighbor.key);
           }
         const auto [first, last] = known.equal_range(row_key);
         const auto same = std::find_if(first, last, [&](const auto &other) {
           const Row &candidate = rows[other.second];
-          return candidate.n == result.n &&
-                 std::equal(row.begin(),
-                            row.end(),
+          return candidate.n == row.n &&
+                 std::equal(neighbors.begin(),
+                            neighbors.end(),
                             values.begin() + candidate.values,
-                            [](const Entry &entry, const auto &block) {
-                              return are_equal(entry.block, block);
+                            [&](const Neighbor &neighbor, const auto &block) {
+                              return are_equal(blocks[neighbor.block], block);
                             });
         });
         if (same != last)
-          result.values = rows[same->second].values;
+          row.values = rows[same->second].values;
         else
           {
             known.emplace(row_key, i);
-            for (const Entry &entry : row)
-              values.push_back(entry.block);
+            for (const Neighbor &neighbor : neighbors)
+              values.push_back(blocks[neighbor.block]);
           }
-        rows.push_back(result);
+        rows.push_back(row);
         row_sums.push_back(packed<dim, Number>(sum));
       }
     values.shrink_to_fit();

@@ -53,9 +53,7 @@ namespace
     shared() const
     {
       SharedRows<dim, Number> rows;
-      rows.set_values(matrix, [](const NodeHierarchy::Node node) {
-        return static_cast<unsigned int>(node);
-      });
+      rows.set_values(matrix, {matrix.columns.begin(), matrix.columns.end()});
       return rows;
     }
 

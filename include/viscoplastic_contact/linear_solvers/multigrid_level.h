@@ -44,6 +44,9 @@ namespace Viscoplastic
     unsigned int
     local_number(const NodeHierarchy::Node node) const;
 
+    std::vector<unsigned int>
+    local_numbers(const std::vector<NodeHierarchy::Node> &nodes) const;
+
     /// Consecutive over all ranks, by local number.
     types::global_dof_index
     global_number(const unsigned int node) const

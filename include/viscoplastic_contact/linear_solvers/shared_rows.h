@@ -25,11 +25,10 @@ namespace Viscoplastic
   public:
     using Block = PackedBlock<dim, Number>;
 
-    /// @p local_number: of a node that is a column of @p matrix.
+    /// @p local_columns: the local numbers of the columns of @p matrix.
     void
-    set_values(const BlockRows<dim> &matrix,
-               const std::function<unsigned int(const NodeHierarchy::Node)>
-                 &local_number);
+    set_values(const BlockRows<dim>            &matrix,
+               const std::vector<unsigned int> &local_columns);
 
     /// The number of blocks of the matrix, and of those that differ.
     std::size_t

@@ -59,9 +59,10 @@ namespace
   measure(const std::string &file)
   {
     const Parameters                          parameters(file);
-    const Scene<dim>                          scene(parameters);
+    Scene<dim>                                scene(parameters);
     parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
     make_mesh(parameters.geometry, triangulation);
+    scene.inspect(triangulation);
     const FESystem<dim> fe(FE_Q<dim>(1), dim);
     DoFHandler<dim>     dof_handler(triangulation);
 

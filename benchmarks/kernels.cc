@@ -6,8 +6,8 @@
 //     kernels DIMENSION scene.prm
 //
 // prints the degrees of freedom and, of each part, its name, seconds (median of
-// nine; of three for what is made once a mesh) and megabytes that it moves at
-// least, 0 where that means little.
+// nine; of three for what is made once a mesh), the bytes that it moves at
+// least, and the bytes that it keeps; 0 where that means little.
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
@@ -19,6 +19,8 @@
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/linear_solvers/geometric_multigrid.h>
 #include <viscoplastic_contact/mesh/mesh.h>
+
+#include <malloc.h>
 
 #include <algorithm>
 #include <functional>
@@ -46,10 +48,41 @@ namespace
 
 
 
-  void
-  print(const std::string &name, const double seconds, const double bytes = 0.)
+  /// What is allocated.
+  double
+  bytes_in_use()
   {
-    std::cout << name << ' ' << seconds << ' ' << 1e-6 * bytes << std::endl;
+    const auto stats = mallinfo2();
+    return stats.uordblks + stats.hblkhd;
+  }
+
+
+
+  void
+  print(const std::string &name,
+        const double       seconds,
+        const double       moved = 0.,
+        const double       kept  = 0.)
+  {
+    std::cout << name << ' ' << seconds << ' ' << moved << ' ' << kept
+              << std::endl;
+  }
+
+
+
+  /// What is made once a mesh.
+  void
+  measure_set_up(
+    const std::string           &name,
+    const std::function<void()> &make,
+    const std::function<void()> &forget = [] {})
+  {
+    const double before  = bytes_in_use();
+    const double seconds = median_seconds(3, [&] {
+      forget();
+      make();
+    });
+    print(name, seconds, 0., bytes_in_use() - before);
   }
 
 
@@ -61,32 +94,34 @@ namespace
     const Parameters                          parameters(file);
     Scene<dim>                                scene(parameters);
     parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
+    const double                              before = bytes_in_use();
     make_mesh(parameters.geometry, triangulation);
     scene.inspect(triangulation);
     const FESystem<dim> fe(FE_Q<dim>(1), dim);
     DoFHandler<dim>     dof_handler(triangulation);
+    print("mesh", 0., 0., bytes_in_use() - before);
 
-    print("numbers",
-          median_seconds(3, [&] { distribute_nodes(fe, dof_handler); }));
+    measure_set_up("numbers", [&] { distribute_nodes(fe, dof_handler); });
     std::unique_ptr<Discretization<dim>> discretization;
-    print("spaces", median_seconds(3, [&] {
-            discretization =
-              std::make_unique<Discretization<dim>>(dof_handler, scene);
-          }));
+    measure_set_up("spaces", [&] {
+      discretization =
+        std::make_unique<Discretization<dim>>(dof_handler, scene);
+    });
     const Discretization<dim> &d = *discretization;
-    print("matrix",
-          median_seconds(3, [&] { discretization->assemble_matrix(); }));
+    measure_set_up("matrix", [&] { discretization->assemble_matrix(); });
     std::unique_ptr<GeometricMultigrid<dim>> multigrid;
-    print("multigrid", median_seconds(3, [&] {
-            multigrid.reset();
-            multigrid = std::make_unique<GeometricMultigrid<dim>>(
-              d.matrix,
-              d.space.excluded(),
-              make_node_hierarchy(d.space),
-              std::vector<DistributedVector>(),
-              d.face_restriction(),
-              typename GeometricMultigrid<dim>::Options());
-          }));
+    measure_set_up(
+      "multigrid",
+      [&] {
+        multigrid = std::make_unique<GeometricMultigrid<dim>>(
+          d.matrix,
+          d.space.excluded(),
+          make_node_hierarchy(d.space),
+          std::vector<DistributedVector>(),
+          d.face_restriction(),
+          typename GeometricMultigrid<dim>::Options());
+      },
+      [&] { multigrid.reset(); });
 
     const double      n = dof_handler.n_dofs();
     DistributedVector x = d.space.owned_vector(), y(x);
@@ -100,7 +135,7 @@ namespace
             median_seconds(9, [&] { multigrid->vmult_matrix(y, x); }));
     print("cycle",
           median_seconds(9, [&] { multigrid->vmult_untruncated(y, x); }));
-    std::cout << "dofs " << n << " 0" << std::endl;
+    print("dofs", n);
   }
 } // namespace
 

@@ -110,14 +110,8 @@ namespace Viscoplastic
     if (samples.empty())
       return model;
     for (const CostSample &s : samples)
-      {
-        const auto n_first =
-          std::max(model.demand.n_first_dofs, s.demand.n_first_dofs);
-        if (s.demand.n_dofs >= model.demand.n_dofs)
-          model.demand = s.demand;
-        // Coarse runs may have nothing coarser.
-        model.demand.n_first_dofs = n_first;
-      }
+      if (s.demand.n_dofs >= model.demand.n_dofs)
+        model.demand = s.demand;
 
     struct Samples
     {

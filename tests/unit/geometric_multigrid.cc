@@ -183,8 +183,12 @@ namespace
         EXPECT_TRUE(is_built_for(*algebraic, built_for));
       }
 
-    // Another solver in the same state does the same; one whose state is
-    // forgotten begins anew.
+    // Nor is a truncation that is only tried. Another solver in the same state
+    // does the same, whatever it has done before; one whose state is forgotten
+    // begins anew.
+    algebraic->set_truncation(sticking_within(10., scenario),
+                              /* may_rebuild = */ false);
+    EXPECT_TRUE(is_built_for(*algebraic, built_for));
     const auto           state = algebraic->preconditioner_state();
     const Vector<double> w     = correction(*algebraic, -1., 1e-8, n_algebraic);
     const auto           other = scenario.geometric(true);
@@ -194,6 +198,8 @@ namespace
     EXPECT_FALSE(other->preconditioner_state());
     EXPECT_FALSE(correction(*other, -1., 1e-8, n_algebraic) == w);
     EXPECT_TRUE(is_built_for(*other, -1.));
+    other->restore(state);
+    EXPECT_TRUE(correction(*other, -1., 1e-8, n_algebraic) == w);
   }
 
 

@@ -331,6 +331,11 @@ namespace
     ASSERT_EQ(choose_bulk_solver(before.demand_at(1e6, 2.)), kind);
     ASSERT_EQ(choose_bulk_solver(before.demand_at(1e6, 1e3)),
               BulkSolverKind::direct);
+    // however often: each new mesh has a solver of its own.
+    ASSERT_EQ(choose_bulk_solver(before.demand_at(1e6, 1e3, 500.)), kind);
+    EXPECT_NEAR(before.seconds(1e4, 1e3, 50.) - before.seconds(1e4, 1e3, 1.),
+                49. * before.solvers.at(BulkSolverKind::direct).set_up(1e4, 1.),
+                1e-9);
     const SolverDemand large = before.demand_at(1e6, 2.);
     const auto        &known = before.solvers.at(BulkSolverKind::direct);
     const SolverCost   there = expected_cost(BulkSolverKind::direct,
@@ -356,6 +361,11 @@ namespace
     // Prices look at far finer meshes than anybody has.
     for (const CostModel &model : {before, after})
       EXPECT_NEAR(model.seconds(1e13, 2.) / model.seconds(1e12, 2.), 10., 2.5);
+    // Meshes that nobody has refined yet would be refined from the finest one.
+    for (CostSample &sample : samples)
+      sample.demand.n_first_dofs = 0;
+    EXPECT_EQ(fit_cost(samples).demand_at(3e5, 2.).n_first_dofs, 0u);
+    EXPECT_EQ(fit_cost(samples).demand_at(1e6, 2.).n_first_dofs, 250000u);
     // A face has one dimension less than its body.
     samples.back().demand.n_face_dofs = 300;
     EXPECT_EQ(fit_cost(samples).demand_at(1e6, 2.).n_face_dofs, 600u);

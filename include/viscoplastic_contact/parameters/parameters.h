@@ -178,7 +178,7 @@ namespace Viscoplastic
     unsigned int       every_n_steps       = 1;
     double             refinement_fraction = 0.3;
     double             coarsening_fraction = 0.05;
-    double             smallest_share      = 0.02;
+    double             smallest_share      = 0.1;
     unsigned int       minimal_level       = 0;
     unsigned int       maximal_level       = 6;
     unsigned int       cell_budget         = 100000;

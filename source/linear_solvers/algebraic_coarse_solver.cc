@@ -52,7 +52,16 @@ namespace Viscoplastic
         if (numbers[0] <= outdated_part * numbers[1])
           return false;
       }
-    build(masks, cycle);
+    const Cycle &other = cycles[masking == LevelMasks<dim>::truncated ?
+                                  LevelMasks<dim>::untruncated :
+                                  LevelMasks<dim>::truncated];
+    const bool   has_other =
+      other.aggregation != nullptr &&
+      Utilities::MPI::min(masks == other.built_for ? 1 : 0, communicator) == 1;
+    if (has_other)
+      cycle = other;
+    else
+      build(masks, cycle);
     return true;
   }
 
@@ -137,7 +146,7 @@ namespace Viscoplastic
     for (std::size_t k = 0; k < near_null_space.size(); k += dim)
       multiply(free[(k / dim) % n_owned], near_null_space.data() + k);
     cycle.aggregation =
-      std::make_unique<SmoothedAggregation>(std::move(matrix),
+      std::make_shared<SmoothedAggregation>(std::move(matrix),
                                             std::move(near_null_space),
                                             dim);
   }

@@ -17,7 +17,7 @@ namespace Viscoplastic
    * It is built for the masks of its first use and kept while they change,
    * until a tenth of them lets other directions free. Meanwhile its corrections
    * are cut to what is free, and the sweeps around it know the present masks
-   * and springs.
+   * and springs. Cycles with the same masks, as without friction, share one.
    */
   template <int dim>
   class AlgebraicCoarseSolver : public CoarseSolver<dim>
@@ -58,7 +58,7 @@ namespace Viscoplastic
     struct Cycle
     {
       std::vector<Mask>                    built_for;
-      std::unique_ptr<SmoothedAggregation> aggregation;
+      std::shared_ptr<SmoothedAggregation> aggregation;
     };
 
     void

@@ -40,6 +40,23 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// About how many steps a mesh stays. Runs to a tolerance keep those that
+    /// cost most for some steps of two solves each.
+    template <int dim>
+    unsigned int
+    expected_steps(const Scene<dim> &scene)
+    {
+      const Parameters &p = scene.parameters;
+      return !scene.is_adaptive()            ? scene.schedule.n_steps() :
+             p.error_control.has_tolerance() ? 8 :
+                                               p.refinement.every_n_steps;
+    }
+  } // namespace
+
+
+
   template <int dim>
   Discretization<dim>::Discretization(const DoFHandler<dim> &dof_handler,
                                       const Scene<dim>      &scene)
@@ -59,8 +76,7 @@ namespace Viscoplastic
                 nullptr)
     , face(scene.has_friction() ? std::make_unique<ContactFace<dim>>(space) :
                                   nullptr)
-    , n_solves(scene.is_adaptive() ? scene.parameters.refinement.every_n_steps :
-                                     scene.schedule.n_steps())
+    , n_solves(expected_steps(scene))
   {}
 
 

@@ -211,10 +211,14 @@ namespace Viscoplastic
   template <int dim>
   double
   initial_data_error(const StressSpace<dim> &stress_space,
-                     const State<dim>       &state)
+                     const State<dim>       &state,
+                     Vector<double>         *squared_by_cell)
   {
     const AdmissibleSpace<dim> &space = stress_space.space;
     const Scene<dim>           &scene = space.scene;
+    if (squared_by_cell != nullptr)
+      squared_by_cell->reinit(
+        space.dof_handler.get_triangulation().n_active_cells());
     if (!scene.initial_displacement && !scene.initial_stress)
       return 0.;
     std::vector<double>                sums(2, 0.);
@@ -226,6 +230,7 @@ namespace Viscoplastic
       SymmetricTensor<2, 3> sigma =
         stiffness.stress(stress_space.mean(c, strain.data()));
       sigma += stress_space.mean(c, &state.z[c * stress_space.n_samples]);
+      const double before = sums[0] + sums[1];
       for (const unsigned int q : values.quadrature_point_indices())
         {
           SymmetricTensor<2, 3> error;
@@ -245,6 +250,9 @@ namespace Viscoplastic
             error += initial_stress(scene, values.quadrature_point(q));
           sums[1] += (stiffness.strain(error) * error) * values.JxW(q);
         }
+      if (squared_by_cell != nullptr)
+        (*squared_by_cell)[cell->active_cell_index()] =
+          sums[0] + sums[1] - before;
       ++c;
     });
     Utilities::MPI::sum(sums, space.communicator, sums);
@@ -298,9 +306,13 @@ namespace Viscoplastic
   template State<3>
   make_initial_state<3>(const StressSpace<3> &, const bool);
   template double
-  initial_data_error<2>(const StressSpace<2> &, const State<2> &);
+  initial_data_error<2>(const StressSpace<2> &,
+                        const State<2> &,
+                        Vector<double> *);
   template double
-  initial_data_error<3>(const StressSpace<3> &, const State<3> &);
+  initial_data_error<3>(const StressSpace<3> &,
+                        const State<3> &,
+                        Vector<double> *);
   template double
   compatibility_violation<2>(const AdmissibleSpace<2> &,
                              const Load<2> &,

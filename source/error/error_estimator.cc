@@ -72,16 +72,19 @@ namespace Viscoplastic
 
 
   template <int dim>
-  void
+  Vector<double>
   ErrorEstimator<dim>::begin(const StressSpace<dim> &stress_space,
                              EvaluatedState<dim>    &initial) const
   {
-    State<dim> &state      = initial.state;
-    initial.errors.initial = initial_data_error(stress_space, state);
+    State<dim>    &state = initial.state;
+    Vector<double> squared_by_cell;
+    initial.errors.initial =
+      initial_data_error(stress_space, state, &squared_by_cell);
     if (n_sample_fields(scene) > 1)
       state.time_error.assign(state.z.size(), SymmetricTensor<2, 3>());
     if (n_sample_fields(scene) > 2)
       state.rate_slope.assign(state.z.size(), SymmetricTensor<2, 3>());
+    return squared_by_cell;
   }
 
 

@@ -193,6 +193,43 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  mark_cells_to_tolerance(
+    parallel::distributed::Triangulation<dim> &triangulation,
+    const Vector<double>                      &squared_estimate,
+    const RefinementParameters                &parameters,
+    const double                               ratio,
+    const bool                                 may_coarsen)
+  {
+    // The squared estimate of cells of twice the size is four times as large.
+    const double aim = 0.85, coarsen_below = 0.6, square = ratio * ratio;
+    RefinementParameters chosen(parameters);
+    chosen.refinement_fraction = 0.;
+    chosen.coarsening_fraction = 0.;
+    if (ratio > 1.)
+      {
+        chosen.refinement_fraction =
+          std::min(0.6, (1. - aim * aim / square) / 0.75);
+        if (may_coarsen)
+          chosen.coarsening_fraction = 0.05 / (3. * square);
+        // Not for coarser cells alone.
+        chosen.smallest_share = 1e-6;
+      }
+    else if (ratio < coarsen_below && may_coarsen)
+      {
+        chosen.coarsening_fraction =
+          ratio > 0. ? std::min(0.5, (aim * aim - square) / (6. * square)) :
+                       0.5;
+        chosen.smallest_share = 1.;
+      }
+    else
+      return false;
+    return mark_cells(triangulation, squared_estimate, chosen);
+  }
+
+
+
+  template <int dim>
   StateTransfer<dim>::StateTransfer(
     parallel::distributed::Triangulation<dim> &triangulation,
     const StressSpace<dim>                    &old_stress_space,
@@ -452,6 +489,18 @@ namespace Viscoplastic
   mark_cells<3>(parallel::distributed::Triangulation<3> &,
                 const Vector<double> &,
                 const RefinementParameters &);
+  template bool
+  mark_cells_to_tolerance<2>(parallel::distributed::Triangulation<2> &,
+                             const Vector<double> &,
+                             const RefinementParameters &,
+                             const double,
+                             const bool);
+  template bool
+  mark_cells_to_tolerance<3>(parallel::distributed::Triangulation<3> &,
+                             const Vector<double> &,
+                             const RefinementParameters &,
+                             const double,
+                             const bool);
   template class StateTransfer<2>;
   template class StateTransfer<3>;
   template FrictionState

@@ -387,6 +387,39 @@ namespace Viscoplastic
 
 
 
+  void
+  Parameters::resolve_automatic_choices()
+  {
+    const bool has_tolerance = error_control.has_tolerance();
+    if (time.scheme == TimeScheme::automatic)
+      {
+        time.scheme =
+          has_tolerance ? TimeScheme::heun : TimeScheme::forward_euler;
+        if (has_tolerance)
+          time.stiffness_policy = StiffnessPolicy::backward_euler;
+      }
+    if (step_control.resolve_events == EventResolution::automatic)
+      step_control.resolve_events =
+        has_tolerance ? EventResolution::off : EventResolution::on;
+    if (refinement.strategy == RefinementStrategy::automatic)
+      refinement.strategy =
+        has_tolerance ? RefinementStrategy::residual : RefinementStrategy::none;
+    if (!has_tolerance)
+      return;
+    AssertThrow(error_control.error_estimator,
+                ExcMessage("'Error control/Tolerance' needs an estimate of the "
+                           "error; set 'Error control/Error bar' = true."));
+    AssertThrow(!step_control.is_on(),
+                ExcMessage("'Error control/Tolerance' chooses the steps, too; "
+                           "set 'Step control/Tolerance' = 0."));
+    AssertThrow(refinement.strategy != RefinementStrategy::kelly,
+                ExcMessage("'Error control/Tolerance' refines by the estimate "
+                           "of the error; set 'Mesh refinement/Strategy' = "
+                           "residual, or none for a fixed mesh."));
+  }
+
+
+
   Parameters::Parameters(const std::vector<std::string> &files,
                          const std::vector<std::string> &overrides)
     : file(files.empty() ? "" : files[0])
@@ -410,6 +443,7 @@ namespace Viscoplastic
       check_material(lines);
     if (!geometry.file.empty())
       locate_mesh_file(lines);
+    resolve_automatic_choices();
     refinement.check();
     std::ostringstream message;
     message << "'Solver/Contact tolerance' = " << solver.contact_tolerance

@@ -254,7 +254,10 @@ namespace Viscoplastic
     add_choice(prm,
                "Scheme",
                scheme,
-               "How z' = G is integrated. `forward Euler': G at the "
+               "How z' = G is integrated. `automatic': as the paper does, by "
+               "forward Euler; in runs to `Error control/Tolerance' by Heun's "
+               "method, and beyond its stability limit by backward Euler. "
+               "`forward Euler': G at the "
                "beginning of the step, the scheme of the paper, first "
                "order, stable for steps up to 2/r with the relaxation "
                "rate r. `backward Euler': G at the end of the step, "
@@ -293,12 +296,15 @@ namespace Viscoplastic
                       "the ends of phases and the multiples of `Output/Fields "
                       "interval': where loads have kinks or jumps. Unit: "
                       "time.");
-    prm.add_parameter("Resolve events",
-                      resolve_events,
-                      "Whether steps in which slip begins somewhere, comes to "
-                      "cover all of the face, ends everywhere or turns back "
-                      "are divided until they are as short as `Event "
-                      "tolerance' says.");
+    add_choice(prm,
+               "Resolve events",
+               resolve_events,
+               "Whether steps in which slip begins somewhere, comes to cover "
+               "all of the face, ends everywhere or turns back are divided "
+               "until they are as short as `Event tolerance' says. "
+               "`automatic': they are, but for runs to `Error control/"
+               "Tolerance', whose steps need not be shorter than their errors "
+               "ask for.");
     prm.add_parameter("Event tolerance",
                       event_tolerance,
                       "How exactly the times of such events are found, "
@@ -354,6 +360,15 @@ namespace Viscoplastic
   void
   ErrorControlParameters::declare(ParameterHandler &prm)
   {
+    prm.add_parameter("Tolerance",
+                      tolerance,
+                      "How large the error of the run may become: in the "
+                      "energy norm, by the error bar, relative to the largest "
+                      "norm of the solution. The run then chooses meshes and "
+                      "steps so that they cost least; `Time/Phases' gives the "
+                      "first step of each phase, `Geometry' the first mesh. "
+                      "0: meshes and steps are those of the other entries.",
+                      Patterns::Double(0., 1.));
     prm.add_parameter("Error bar",
                       error_estimator,
                       "Estimate the error of every step in the energy norm: "
@@ -428,7 +443,10 @@ namespace Viscoplastic
                strategy,
                "`none' keeps the mesh; `residual' refines by the "
                "residual estimator of the friction inequality, `kelly' "
-               "by jumps of the displacement gradient.");
+               "by jumps of the displacement gradient. `automatic': "
+               "`residual' in runs to `Error control/Tolerance', which "
+               "choose by themselves when and how much to refine, `none' in "
+               "others.");
     prm.add_parameter("Every n steps",
                       every_n_steps,
                       "Steps between changes of the mesh.",

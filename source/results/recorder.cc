@@ -51,16 +51,20 @@ namespace Viscoplastic
   Recorder<dim>::Recorder(const Scene<dim>  &scene,
                           const StepControl &control,
                           Console           &console,
-                          TimerOutput       &timer)
+                          TimerOutput       &timer,
+                          const ErrorBudget *budget)
     : scene(scene)
     , control(control)
     , console(console)
     , timer(timer)
+    , budget(budget)
     , has_error_estimate(scene.parameters.error_control.error_estimator)
     , progress(console, scene.schedule.n_steps())
   {
     if (has_error_estimate)
       run.errors.emplace();
+    if (budget != nullptr)
+      run.tolerance = budget->tolerance;
   }
 
 
@@ -338,9 +342,10 @@ namespace Viscoplastic
       }
     if (scene.is_adaptive() && !has_error_estimate)
       present.error_estimate = quantities.refinement_estimate;
-    if (has_error_estimate && step.end.errors.energy_norm > 0.)
-      present.relative_error =
-        step.end.errors.total() / step.end.errors.energy_norm;
+    const double size = budget ? budget->size(run.errors->largest_energy_norm) :
+                                 step.end.errors.energy_norm;
+    if (has_error_estimate && size > 0.)
+      present.relative_error = step.end.errors.total() / size;
     if (control.may_reject())
       {
         present.expected_steps =
@@ -402,6 +407,39 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::string
+  Recorder<dim>::remark_on_tolerance() const
+  {
+    const ErrorEstimate &errors = run.errors->largest;
+    const double         size   = run.errors->largest_energy_norm;
+    const auto n_cells = discretization->space.dof_handler.get_triangulation()
+                           .n_global_active_cells();
+    const RefinementParameters &refinement = scene.parameters.refinement;
+    std::ostringstream          text;
+    text << std::setprecision(3)
+         << "Warning: 'Error control/Tolerance' = " << budget->tolerance
+         << " has not been kept: at t = " << run.errors->t
+         << " the error is estimated as " << run.errors->relative()
+         << " of the solution, of it " << errors.space / size
+         << " by the mesh, " << errors.time / size << " by the time steps and "
+         << errors.initial / size << " by the initial data; ";
+    if (errors.time > 0.5 * errors.total())
+      text << "steps of the smallest size are too long, so that the data jump "
+              "or 'Step control/Smallest step' is too large.";
+    else if (!scene.is_adaptive())
+      text << "the mesh is fixed by 'Mesh refinement/Strategy'.";
+    else if (n_cells > 0.8 * refinement.cell_budget)
+      text << "it takes more cells than 'Mesh refinement/Cell budget' = "
+           << refinement.cell_budget << '.';
+    else
+      text << "it takes cells beyond 'Mesh refinement/Maximal level' = "
+           << refinement.maximal_level << '.';
+    return text.str();
+  }
+
+
+
+  template <int dim>
   std::vector<std::string>
   Recorder<dim>::remarks(const State<dim> &state) const
   {
@@ -435,6 +473,9 @@ namespace Viscoplastic
              << " % of the face in bilateral contact, which does not open.";
         result.push_back(text.str());
       }
+
+    if (budget && run.errors->relative() > budget->tolerance)
+      result.push_back(remark_on_tolerance());
 
     // What meshes do is no physics.
     if (std::abs(balance.adaptation_energy()) > 0.1 * balance.scale())

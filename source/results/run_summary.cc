@@ -87,9 +87,10 @@ namespace Viscoplastic
                                      coarser ? &*(coarser->*member) : nullptr));
       };
       out << "At t = " << number(run.t)
-          << (coarser ? " (+- what twice the mesh width and the time steps "
-                        "change):\n" :
-                        ":\n");
+          << (!coarser      ? ":\n" :
+              run.tolerance ? " (+- what twice the tolerance changes):\n" :
+                              " (+- what twice the mesh width and the time "
+                              "steps change):\n");
       if (run.friction_force)
         print_row(out,
                   "friction force",
@@ -230,6 +231,9 @@ namespace Viscoplastic
       if (largest.initial > 0.)
         part("initial data", largest.initial);
       part("sum", largest.total());
+      if (run.tolerance && run.errors->relative() <= *run.tolerance)
+        out << "The tolerance of " << 100. * *run.tolerance
+            << " % has been kept.\n";
     }
   } // namespace
 

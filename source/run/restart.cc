@@ -84,6 +84,8 @@ namespace Viscoplastic
     State<dim> &state = accepted.state;
     archive &state.n &state.t &state.k &accepted.is_solution;
     control.exchange(archive);
+    if (budget)
+      archive & budget->expected_size;
     if (error_estimator)
       accepted.errors.exchange(archive);
     recorder.exchange(archive);

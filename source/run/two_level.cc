@@ -2,6 +2,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/parameters/phases.h>
 #include <viscoplastic_contact/run/two_level.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
@@ -14,22 +15,29 @@ namespace Viscoplastic
   std::vector<std::string>
   coarser_scene(const Parameters &parameters)
   {
+    const std::string only_one = "Error control/Two-level comparison=false";
+    const double      tolerance_of_run = parameters.error_control.tolerance;
+    const auto        assign_tolerance = [](const std::string &section,
+                                     const double       tolerance) {
+      std::ostringstream assignment;
+      assignment << section << "/Tolerance=" << std::setprecision(17)
+                 << tolerance;
+      return assignment.str();
+    };
+    if (tolerance_of_run > 0.)
+      return {only_one,
+              assign_tolerance("Error control",
+                               std::min(1., 2. * tolerance_of_run))};
+
     const unsigned int refinements = parameters.geometry.global_refinements;
     AssertThrow(refinements > 0,
                 ExcMessage("'Error control/Two-level comparison' needs a mesh "
                            "of twice the width, but 'Geometry/Global "
                            "refinements' is 0; take one refinement more and "
                            "half the subdivisions."));
-    std::string phases;
-    for (const std::string &phase :
-         Utilities::split_string_list(parameters.time.phases, ','))
-      {
-        const auto parts = Utilities::split_string_list(phase, ':');
-        AssertDimension(parts.size(), 2); // the schedule has been read
-        const int n_steps = Utilities::string_to_int(parts[1]);
-        phases += (phases.empty() ? "" : ", ") + parts[0] + ": " +
-                  std::to_string(std::max(1, n_steps / 2));
-      }
+    std::vector<StepsUntil> phases = read_phases(parameters.time.phases);
+    for (StepsUntil &phase : phases)
+      phase.n_steps = std::max(1u, phase.n_steps / 2);
     const auto assign = [](const std::string &entry, const unsigned int value) {
       return entry + "=" + std::to_string(value);
     };
@@ -40,18 +48,16 @@ namespace Viscoplastic
     // Steps by their error: twice as long with twice the error per time, or
     // four times in the second order.
     const double factor = parameters.time.scheme == TimeScheme::heun ? 4. : 2.;
-    std::ostringstream tolerance;
-    tolerance << std::setprecision(17)
-              << factor * parameters.step_control.tolerance;
     return {
-      "Error control/Two-level comparison=false",
-      "Step control/Tolerance=" + tolerance.str(),
+      only_one,
+      assign_tolerance("Step control",
+                       factor * parameters.step_control.tolerance),
       // Nobody reads it unless it chooses the steps, and without it the
       // iterations go on to a fixed tolerance.
       parameters.step_control.is_on() ? "Error control/Error bar=true" :
                                         "Error control/Error bar=false",
       assign("Geometry/Global refinements", refinements - 1),
-      "Time/Phases=" + phases,
+      "Time/Phases=" + write_phases(phases),
       assign("Mesh refinement/Minimal level", less(refinement.minimal_level)),
       assign("Mesh refinement/Maximal level", less(refinement.maximal_level)),
       assign("Mesh refinement/Cell budget",

@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/run/pilot_run.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <algorithm>
@@ -32,17 +33,24 @@ namespace Viscoplastic
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
     , directories(parameters, console, communicator)
+    , budget(
+        parameters.error_control.has_tolerance() ?
+          std::make_optional<ErrorBudget>(parameters.error_control.tolerance,
+                                          dim,
+                                          order_of(parameters.time.scheme)) :
+          std::nullopt)
     , control(parameters.step_control,
               parameters.time.stiffness_policy,
               scene.schedule,
-              parameters.time.scheme == TimeScheme::heun ? 2 : 1,
-              parameters.output.fields_interval)
+              order_of(parameters.time.scheme),
+              parameters.output.fields_interval,
+              budget ? budget->time_tolerance() : 0.)
     , error_estimator(parameters.error_control.error_estimator ?
                         std::make_unique<ErrorEstimator<dim>>(scene) :
                         nullptr)
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
     , known_solution(scene, timer)
-    , recorder(scene, control, console, timer)
+    , recorder(scene, control, console, timer, budget ? &*budget : nullptr)
   {}
 
 
@@ -86,6 +94,12 @@ namespace Viscoplastic
         if (adaptation_is_due())
           adapt_mesh();
         AcceptedStep<dim> step = time_stepper->next(accepted);
+        if (refine_for(step))
+          {
+            control.undo();
+            continue;
+          }
+        n_refinements = 0;
         announcer.announce_solver(time_stepper->method().solver_name());
         recorder.record(accepted,
                         step,
@@ -112,9 +126,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::run_without_files()
   {
     make_mesh();
-    set_up();
-    set_initial_state();
-    check_steps();
+    begin_state();
     record_initial_state();
     make_steps(nullptr);
     recorder.check_sizes(/* at_end = */ true);
@@ -125,13 +137,35 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::begin()
+  ViscoplasticContact<dim>::begin_state()
   {
+    std::string failure;
+    if (budget)
+      {
+        TimerOutput::Scope phase(timer, "pilot run");
+        budget->expect_size(energy_norm_of_pilot_run<dim>(parameters, failure));
+        control.expect_size(budget->expected_size);
+      }
     set_up();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(discretization->space);
     set_initial_state();
     check_steps();
+    // A scene that is wrong has been refused by now.
+    if (!failure.empty())
+      console.remark("Note: the run on the first mesh that tells how large the "
+                     "solution becomes has failed, so that errors will be "
+                     "relative to what it has been so far: " +
+                     failure);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::begin()
+  {
+    begin_state();
     directories.begin();
     output.emplace(scene, communicator);
     directories.begin_checkpoints();
@@ -203,24 +237,49 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::set_initial_state()
   {
-    const Discretization<dim> &d = *discretization;
-    const bool equilibrate       = parameters.initial_state.equilibrate;
-    accepted.state = make_initial_state(d.stress_space, equilibrate);
-    if (error_estimator)
-      error_estimator->begin(d.stress_space, accepted);
-    if (equilibrate)
-      initial_report = time_stepper->equilibrate(accepted);
-    else
+    const bool equilibrate = parameters.initial_state.equilibrate;
+    bool       is_refined  = false;
+    do
       {
-        const Load<dim> load = d.loads.assemble(0.);
-        check_compatibility(load);
-        accepted.forces =
-          evaluate_forces(d.stress_space, d.matrix, load, accepted.state);
+        const Discretization<dim> &d = *discretization;
+        accepted.state = make_initial_state(d.stress_space, equilibrate);
+        if (error_estimator)
+          {
+            const Vector<double> squared_by_cell =
+              error_estimator->begin(d.stress_space, accepted);
+            if (budget)
+              {
+                is_refined = refine_first_mesh(accepted.errors.initial,
+                                               budget->initial(),
+                                               squared_by_cell);
+                if (is_refined)
+                  continue;
+              }
+          }
+        if (equilibrate)
+          initial_report = time_stepper->equilibrate(accepted);
+        else
+          {
+            const Load<dim> load = d.loads.assemble(0.);
+            check_compatibility(load);
+            accepted.forces =
+              evaluate_forces(d.stress_space, d.matrix, load, accepted.state);
+          }
+        if (scene.is_adaptive() || equilibrate)
+          time_stepper->estimate(accepted);
+        if (!error_estimator || !equilibrate)
+          break;
+        ErrorEstimate &errors = accepted.errors;
+        error_estimator->assess_equilibrium(initial_report, accepted);
+        is_refined =
+          budget &&
+          refine_first_mesh(errors.space,
+                            budget->space(errors,
+                                          budget->size(errors.energy_norm),
+                                          scene.has_viscosity()),
+                            accepted.space_estimate.squared_indicators);
       }
-    if (scene.is_adaptive() || equilibrate)
-      time_stepper->estimate(accepted);
-    if (error_estimator && equilibrate)
-      error_estimator->assess_equilibrium(initial_report, accepted);
+    while (is_refined);
   }
 
 
@@ -255,9 +314,23 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::adapt_mesh()
   {
     TimerOutput::Scope    phase(timer, "adaptation");
-    State<dim>           &state = accepted.state;
+    const ErrorEstimate  &errors = accepted.errors;
     const Vector<double> &squared_indicators =
       accepted.space_estimate.squared_indicators;
+    if (budget)
+      {
+        const double size =
+          budget->size(recorder.summary().errors->largest_energy_norm);
+        if (size > 0. &&
+            mark_cells_to_tolerance(
+              triangulation,
+              squared_indicators,
+              parameters.refinement,
+              errors.space / budget->space(errors, size, scene.has_viscosity()),
+              /* may_coarsen = */ true))
+          change_mesh();
+        return;
+      }
     // What rounding and iterations leave of an estimate, as in uniform states,
     // says nothing about the mesh, and differs between numbers of ranks.
     if (parameters.refinement.strategy == RefinementStrategy::residual &&
@@ -265,9 +338,65 @@ namespace Viscoplastic
           10. * std::max(1e-10, time_stepper->tolerance(accepted)) *
             std::sqrt(2. * std::max(0., accepted.forces.strain_energy)))
       return;
-    if (!mark_cells(triangulation, squared_indicators, parameters.refinement))
-      return;
+    if (mark_cells(triangulation, squared_indicators, parameters.refinement))
+      change_mesh();
+  }
 
+
+
+  template <int dim>
+  bool
+  ViscoplasticContact<dim>::refine_for(const AcceptedStep<dim> &step)
+  {
+    if (!budget || !scene.is_adaptive())
+      return false;
+    TimerOutput::Scope   phase(timer, "adaptation");
+    const ErrorEstimate &errors = step.end.errors;
+    const double         size =
+      budget->size(std::max(recorder.summary().errors->largest_energy_norm,
+                            errors.energy_norm));
+    const double allowed = budget->space(errors, size, scene.has_viscosity());
+    if (size == 0. || errors.space <= allowed ||
+        !mark_cells_to_tolerance(triangulation,
+                                 step.end.space_estimate.squared_indicators,
+                                 parameters.refinement,
+                                 errors.space / allowed,
+                                 /* may_coarsen = */ n_refinements == 0))
+      return false;
+    change_mesh();
+    ++n_refinements;
+    return true;
+  }
+
+
+
+  template <int dim>
+  bool
+  ViscoplasticContact<dim>::refine_first_mesh(
+    const double          estimate,
+    const double          allowed,
+    const Vector<double> &squared_indicators)
+  {
+    TimerOutput::Scope phase(timer, "adaptation");
+    if (!scene.is_adaptive() || allowed == 0. || estimate <= allowed ||
+        !mark_cells_to_tolerance(triangulation,
+                                 squared_indicators,
+                                 parameters.refinement,
+                                 estimate / allowed,
+                                 /* may_coarsen = */ false))
+      return false;
+    triangulation.execute_coarsening_and_refinement();
+    set_up();
+    return true;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::change_mesh()
+  {
+    State<dim>       &state = accepted.state;
     DistributedVector density;
     if (discretization->face)
       density = discretization->face->density(state.friction);

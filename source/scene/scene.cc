@@ -417,7 +417,12 @@ namespace Viscoplastic
         }));
     if (initial_displacement || initial_stress)
       result.push_back("initial displacement or stress");
-    if (is_adaptive())
+    std::ostringstream tolerance;
+    tolerance << "meshes and steps for an error of "
+              << 100. * parameters.error_control.tolerance << " %";
+    if (parameters.error_control.has_tolerance())
+      result.push_back(tolerance.str());
+    else if (is_adaptive())
       result.push_back("adaptive mesh (" +
                        name_of(parameters.refinement.strategy) + " estimator)");
     return result;

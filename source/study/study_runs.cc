@@ -195,6 +195,9 @@ namespace Viscoplastic
                 ExcMessage("A study compares runs with the steps of "
                            "'Time/Phases'; set 'Step control/Tolerance' = 0 "
                            "for it."));
+    AssertThrow(!scene.error_control.has_tolerance(),
+                ExcMessage("A study compares runs with given meshes and steps; "
+                           "set 'Error control/Tolerance' = 0 for it."));
     int ierr = MPI_Comm_dup(communicator, &agreement);
     AssertThrowMPI(ierr);
     if (scene.dimension == 2)

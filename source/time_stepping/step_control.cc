@@ -36,6 +36,9 @@ namespace Viscoplastic
     constexpr double least_change = 1.2;
     /// A ratio of nearly zero says nothing.
     constexpr double least_ratio = 1e-4;
+    /// How far contributions of steps may be trusted to go on to cancel, and
+    /// what is left of a budget that has been exceeded.
+    constexpr double least_cancellation = 0.1, least_rest = 0.05;
     /// More steps than that up to a time of the phases are a stiff scene, not a
     /// short step.
     constexpr double most_divisions = 1e7;
@@ -82,21 +85,23 @@ namespace Viscoplastic
                            const StiffnessPolicy        stiffness_policy,
                            const TimeSchedule          &schedule,
                            const unsigned int           order,
-                           const double                 output_interval)
-    : is_on(parameters.is_on())
+                           const double                 output_interval,
+                           const double                 tolerance_of_run)
+    : is_on(parameters.is_on() || tolerance_of_run > 0.)
     , subdivides(stiffness_policy == StiffnessPolicy::subdivide)
     , passes_limit(stiffness_policy == StiffnessPolicy::backward_euler)
     , parameters(parameters)
     , schedule(schedule)
     , order(order)
     , output_interval(is_on ? output_interval : 0.)
+    , tolerance_of_run(tolerance_of_run)
     , landing_times(read_times(parameters.landing_times, schedule.end_time()))
   {
     AssertThrow(is_on || landing_times.empty(),
                 ExcMessage("'Step control/Landing times' are given, but the "
                            "steps are those of 'Time/Phases'; give 'Step "
-                           "control/Tolerance', or put the times into the "
-                           "phases."));
+                           "control/Tolerance' or 'Error control/Tolerance', "
+                           "or put the times into the phases."));
     std::ostringstream message;
     message << "'Step control/Smallest step' = " << parameters.smallest_step
             << " is larger than 'Step control/Largest step' = "
@@ -171,8 +176,8 @@ namespace Viscoplastic
     const double target   = next_target(t);
     const double distance = target - t;
     double       k        = distance;
-    if (wanted > 0.)
-      k = wanted;
+    if (present.wanted > 0.)
+      k = present.wanted;
     else if (is_on)
       k = std::min(schedule.phase_at(t).step_size(), largest(t));
     if (needs_limit())
@@ -203,6 +208,30 @@ namespace Viscoplastic
 
 
 
+  double
+  StepControl::allowed_error(const TimeStep   &step,
+                             const StepErrors &errors,
+                             const double      size) const
+  {
+    const double T = schedule.end_time();
+    if (tolerance_of_run == 0.)
+      return parameters.tolerance * std::max(size * step.k / T, errors.change);
+    const double all = tolerance_of_run * size;
+    // The less is left, the less contributions are trusted to cancel.
+    double cancellation = 1.;
+    if (present.unsigned_sum > 0. && all > 0.)
+      cancellation =
+        std::clamp(errors.before / std::min(present.unsigned_sum, all),
+                   least_cancellation,
+                   1.);
+    const double share = std::max(step.k / (T - step.t_old),
+                                  size > 0. ? errors.change / size : 0.);
+    return std::max(all - errors.before, least_rest * all) *
+           std::min(1., share / cancellation);
+  }
+
+
+
   bool
   StepControl::accepts(const TimeStep   &step,
                        const StepErrors &errors,
@@ -211,13 +240,11 @@ namespace Viscoplastic
     if (!is_on)
       {
         // After a failed step, try that of the phase again.
-        wanted = 0.;
+        present.wanted = 0.;
         return true;
       }
-    const double new_size = std::max(size, errors.size);
-    const double allowed =
-      parameters.tolerance *
-      std::max(new_size * step.k / schedule.end_time(), errors.change);
+    const double new_size = std::max(present.size, errors.size);
+    const double allowed  = allowed_error(step, errors, new_size);
     const double ratio =
       errors.indicator > 0. ? errors.indicator / allowed : 0.;
     const double least = smallest(step.t_old) * (1. + 1e-9);
@@ -228,57 +255,61 @@ namespace Viscoplastic
     if (!(ratio <= 1.) && step.k > least)
       {
         ++n.rejected;
-        was_rejected = true;
-        wanted =
+        present.was_rejected = true;
+        present.wanted =
           std::max(smallest(step.t_old),
                    step.k *
                      std::clamp(std::pow(aim / ratio, 1. / order), 0.1, 0.9));
         return false;
       }
-    if (has_event && parameters.resolve_events && step.k > event_gap)
+    if (has_event && parameters.resolve_events != EventResolution::off &&
+        step.k > event_gap)
       {
         ++n.events;
-        was_rejected = true;
-        event_before = step.t;
-        wanted       = std::max(0.5 * event_gap, 0.5 * step.k);
+        present.was_rejected = true;
+        present.event_before = step.t;
+        present.wanted       = std::max(0.5 * event_gap, 0.5 * step.k);
         return false;
       }
 
     if (ratio > 1.)
       ++n.unresolved;
-    size          = new_size;
+    before       = present;
+    present.size = new_size;
+    present.unsigned_sum += errors.indicator;
     double factor = largest_growth;
     if (ratio > 0.)
       {
-        const double present = std::max(ratio, least_ratio);
-        const double best    = std::pow(aim / present, 1. / order);
-        factor               = std::pow(aim / present, 0.3 / order);
-        if (last_ratio > 0.)
-          factor *= std::pow(last_ratio / present, 0.4 / order);
+        const double measured = std::max(ratio, least_ratio);
+        const double best     = std::pow(aim / measured, 1. / order);
+        factor                = std::pow(aim / measured, 0.3 / order);
+        if (before.last_ratio > 0.)
+          factor *= std::pow(before.last_ratio / measured, 0.4 / order);
         if (best >= 1. && best < least_change)
           factor = 1.;
-        last_ratio = present;
+        present.last_ratio = measured;
       }
     // Up to the event, steps do not grow; behind it, they do quickly.
     if (has_event)
-      event_before = 0.;
-    const bool is_before = step.t < event_before;
+      present.event_before = 0.;
+    const bool is_before = step.t < present.event_before;
     factor               = std::clamp(factor,
                         least_growth,
-                        is_before || (was_rejected && !has_event) ? 1. :
+                        is_before || (before.was_rejected && !has_event) ? 1. :
                                       has_event ? growth_after_event :
                                                   largest_growth);
     // A step that a time has cut short does not tell the next one.
-    const double before = was_rejected ? 0. : wanted;
-    wanted = std::min(std::max(factor * step.k, factor >= 1. ? before : 0.),
-                      largest(step.t_old));
-    was_rejected = false;
+    const double uncut = before.was_rejected ? 0. : before.wanted;
+    present.wanted =
+      std::min(std::max(factor * step.k, factor >= 1. ? uncut : 0.),
+               largest(step.t_old));
+    present.was_rejected = false;
     if (schedule.phase_ending_at(step.t) > 0)
       {
         // Another phase, another load.
-        wanted       = 0.;
-        last_ratio   = 0.;
-        event_before = 0.;
+        present.wanted       = 0.;
+        present.last_ratio   = 0.;
+        present.event_before = 0.;
       }
     return true;
   }
@@ -294,8 +325,8 @@ namespace Viscoplastic
     if (shorter < smallest(step.t_old))
       return false;
     ++n.failed;
-    was_rejected = true;
-    wanted       = shorter;
+    present.was_rejected = true;
+    present.wanted       = shorter;
     return true;
   }
 

@@ -209,7 +209,10 @@ namespace Viscoplastic
     errors.change =
       std::max(state.k * std::sqrt(std::max(0., estimate.velocity_square)),
                estimate.irreversible_change);
-    errors.size = std::max(estimate.energy_norm, estimate.irreversible_norm);
+    errors.size   = scene.parameters.error_control.has_tolerance() ?
+                      estimate.energy_norm :
+                      std::max(estimate.energy_norm, estimate.irreversible_norm);
+    errors.before = accepted.errors.time;
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
       throw StepFailure(state.n, state.t, "the solution is not finite.");
     return errors;

@@ -402,6 +402,19 @@ class Refused(TestCase):
             self.assertIn("'Study/Levels' = 2 is too few", self.refuse(folder, "study"))
             self.assertFalse(folder.results.exists())
 
+    def test_tolerances(self):
+        for section, words in ("Step control", "Time/Phases"), (
+            "Error control",
+            "given meshes and steps",
+        ):
+            with Folder(
+                MANUFACTURED / "tresca_2d.prm",
+                **{section.replace(" ", "_") + "__Tolerance": 0.1},
+            ) as folder:
+                refusal = self.refuse(folder, "study")
+                self.assertIn(words, refusal)
+                self.assertIn(f"'{section}/Tolerance' = 0", refusal)
+
     def test_unknown_scheme(self):
         with Folder(
             MANUFACTURED / "tresca_2d.prm", Study__Time_schemes="forward Oiler"

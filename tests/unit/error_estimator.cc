@@ -7,6 +7,7 @@
 
 #include "body.h"
 #include "plain_estimator.h"
+#include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 
@@ -117,5 +118,42 @@ namespace
                                                       MPI_COMM_WORLD));
               }
           }
+  }
+
+
+  TEST(ErrorBudget, SharesAreWhatCostsLeast)
+  {
+    // Costs e_h^-d e_k^(-1/p) of all ways to divide the tolerance.
+    for (const unsigned int d : {2, 3})
+      for (const unsigned int p : {1, 2})
+        {
+          const ErrorBudget budget(0.1, d, p);
+          const auto        cost = [&](const double e_k) {
+            return std::pow(0.1 - e_k, -static_cast<double>(d)) *
+                   std::pow(e_k, -1. / p);
+          };
+          const double chosen = budget.time_tolerance();
+          EXPECT_LT(cost(chosen), cost(0.9 * chosen));
+          EXPECT_LT(cost(chosen), cost(1.1 * chosen));
+        }
+  }
+
+
+
+  TEST(ErrorBudget, TheMeshHasWhatIsLeft)
+  {
+    ErrorBudget budget(0.1, 2, 2); // of it 0.02 for time steps
+    budget.expect_size(2. / 0.95);
+    EXPECT_DOUBLE_EQ(budget.size(1.), 2.);
+    EXPECT_DOUBLE_EQ(budget.size(3.), 3.);
+    EXPECT_DOUBLE_EQ(budget.initial(), 0.05);
+    ErrorEstimate estimate;
+    EXPECT_DOUBLE_EQ(budget.space(estimate, 2., false), 0.2);
+    EXPECT_DOUBLE_EQ(budget.space(estimate, 2., true), 0.16);
+    estimate.time    = 0.05; // more than its share
+    estimate.initial = 0.02;
+    EXPECT_DOUBLE_EQ(budget.space(estimate, 2., true), 0.13);
+    estimate.initial = 1.; // there is no point in trying to make up for it
+    EXPECT_DOUBLE_EQ(budget.space(estimate, 2., true), 0.08);
   }
 } // namespace

@@ -118,6 +118,66 @@ namespace
 
 
 
+  TYPED_TEST(Marking, ForAToleranceAsManyAsItTakes)
+  {
+    constexpr int dim = TypeParam::value;
+    // An estimate of order h that is the larger, the nearer to a corner.
+    const auto estimate_on = [](const auto &triangulation) {
+      Vector<double> squared(triangulation.n_active_cells());
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          squared[cell->active_cell_index()] =
+            std::pow(cell->diameter(), 2.) * cell->measure() /
+            std::pow(cell->center().norm(), 1.5);
+      return squared;
+    };
+    const auto size_of = [](const Vector<double> &squared) {
+      return std::sqrt(Utilities::MPI::sum(squared.l1_norm(), MPI_COMM_WORLD));
+    };
+    Body<dim>            body(box_with<dim>("set Role = clamped\n"));
+    auto                &triangulation = body.triangulation;
+    RefinementParameters parameters;
+    triangulation.refine_global(1);
+    const double wanted   = 0.3 * size_of(estimate_on(triangulation));
+    unsigned int n_meshes = 0;
+    double       ratio    = 0.;
+    for (;; ++n_meshes)
+      {
+        const Vector<double> squared = estimate_on(triangulation);
+        ratio                        = size_of(squared) / wanted;
+        if (!mark_cells_to_tolerance(
+              triangulation, squared, parameters, ratio, n_meshes == 0))
+          break;
+        triangulation.execute_coarsening_and_refinement();
+        ASSERT_LT(n_meshes, 20u);
+      }
+    EXPECT_LE(ratio, 1.);
+    EXPECT_GT(ratio, 0.7);
+    EXPECT_GT(n_meshes, 2u);
+    // Within the limits it stays; far below, cells go until it is near again.
+    const auto     fine    = triangulation.n_global_active_cells();
+    Vector<double> squared = estimate_on(triangulation);
+    EXPECT_FALSE(
+      mark_cells_to_tolerance(triangulation, squared, parameters, 0.65, true));
+    EXPECT_FALSE(
+      mark_cells_to_tolerance(triangulation, squared, parameters, 0.3, false));
+    const double larger = 3. * wanted;
+    while (mark_cells_to_tolerance(
+      triangulation, squared, parameters, size_of(squared) / larger, true))
+      {
+        triangulation.execute_coarsening_and_refinement();
+        squared = estimate_on(triangulation);
+        EXPECT_LT(size_of(squared), larger);
+      }
+    EXPECT_LT(triangulation.n_global_active_cells(), 0.7 * fine);
+    // Where nothing can be refined, coarser cells alone are no help.
+    parameters.maximal_level = 0;
+    EXPECT_FALSE(
+      mark_cells_to_tolerance(triangulation, squared, parameters, 2., true));
+  }
+
+
+
   TYPED_TEST(Marking, RespectsTheBudget)
   {
     constexpr int        dim = TypeParam::value;

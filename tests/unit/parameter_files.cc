@@ -455,4 +455,29 @@ namespace
               "a list of 2 items separated by commas, each a whole number");
     EXPECT_NE(allowed_values(Patterns::FileName().description()), "");
   }
+
+
+  TEST(ParameterFiles, AutomaticChoicesDependOnTheTolerance)
+  {
+    const Parameters without(std::vector<std::string>{});
+    EXPECT_EQ(without.time.scheme, TimeScheme::forward_euler);
+    EXPECT_EQ(without.refinement.strategy, RefinementStrategy::none);
+    EXPECT_EQ(without.step_control.resolve_events, EventResolution::on);
+    const std::string tolerance = "Error control/Tolerance=0.01";
+    const Parameters  with({}, {tolerance});
+    EXPECT_EQ(with.time.scheme, TimeScheme::heun);
+    EXPECT_EQ(with.time.stiffness_policy, StiffnessPolicy::backward_euler);
+    EXPECT_EQ(with.refinement.strategy, RefinementStrategy::residual);
+    EXPECT_EQ(with.step_control.resolve_events, EventResolution::off);
+    // What the user says counts.
+    const Parameters chosen({},
+                            {tolerance,
+                             "Time/Scheme=forward Euler",
+                             "Mesh refinement/Strategy=none",
+                             "Step control/Resolve events=true"});
+    EXPECT_EQ(chosen.time.scheme, TimeScheme::forward_euler);
+    EXPECT_EQ(chosen.time.stiffness_policy, StiffnessPolicy::refuse);
+    EXPECT_EQ(chosen.refinement.strategy, RefinementStrategy::none);
+    EXPECT_EQ(chosen.step_control.resolve_events, EventResolution::on);
+  }
 } // namespace

@@ -71,6 +71,85 @@ namespace
 
 
 
+  /// A run whose steps may use @p tolerance of a solution of size 2, and whose
+  /// contributions d = k^2 to the error have the sign of @p sign: the largest
+  /// sum that they come to, and the number of steps.
+  std::pair<double, unsigned int>
+  run_to_tolerance(const double                                 tolerance,
+                   const std::function<double(const double t)> &sign)
+  {
+    const TimeSchedule          schedule("10: 10");
+    const StepControlParameters entries;
+    StepControl                 control(
+      entries, StiffnessPolicy::refuse, schedule, 1, 0., tolerance);
+    EXPECT_TRUE(control.is_on);
+    control.expect_size(2.);
+    double       sum = 0., largest = 0., t = 0.;
+    unsigned int n = 0;
+    for (unsigned int tries = 0; t < 10. && tries < 100000; ++tries)
+      {
+        const TimeStep   step = control.propose(n, t, infinity);
+        const double     d    = step.k * step.k;
+        const StepErrors errors{d, 0., 2., std::abs(sum)};
+        if (!control.accepts(step, errors, false))
+          continue;
+        sum += sign(step.t) * d;
+        largest = std::max(largest, std::abs(sum));
+        t       = step.t;
+        ++n;
+      }
+    EXPECT_EQ(t, 10.);
+    return {largest, n};
+  }
+
+
+
+  TEST(StepControl, ErrorsOfARunToAToleranceAddUpToLess)
+  {
+    // Equal steps would use it up in 10 * 10 / 0.2 = 500.
+    const auto same = run_to_tolerance(0.1, [](const double) { return 1.; });
+    EXPECT_LT(same.first, 0.2);
+    EXPECT_GT(same.first, 0.1);
+    EXPECT_NEAR(same.second, 500., 150.);
+    // Those that cancel may be larger.
+    const auto half =
+      run_to_tolerance(0.1, [](const double t) { return t < 5. ? 1. : -1.; });
+    EXPECT_LT(half.first, 1.05 * 0.2); // as far as the least rest allows
+    EXPECT_LT(half.second, 0.8 * same.second);
+    const auto often = run_to_tolerance(0.1, [](const double t) {
+      return std::sin(8. * t) > 0. ? 1. : -1.;
+    });
+    EXPECT_LT(often.first, 0.2);
+    EXPECT_LT(often.second, 0.5 * same.second);
+  }
+
+
+
+  TEST(StepControl, StepThatIsRepeatedIsTheSame)
+  {
+    const TimeSchedule          schedule("10: 10");
+    const StepControlParameters entries;
+    StepControl control(entries, StiffnessPolicy::refuse, schedule, 1, 0., 0.1);
+    control.expect_size(1.);
+    double t = 0.;
+    for (unsigned int n = 0; n < 20; ++n)
+      {
+        TimeStep         step = control.propose(n, t, infinity);
+        const StepErrors errors{0.1 * step.k * step.k, 0., 1., 1e-4 * n};
+        while (!control.accepts(step, errors, false))
+          step = control.propose(n, t, infinity);
+        const TimeStep next = control.propose(n + 1, step.t, infinity);
+        control.undo();
+        const TimeStep again = control.propose(n, t, infinity);
+        EXPECT_EQ(again.k, step.k);
+        EXPECT_TRUE(control.accepts(again, errors, false));
+        EXPECT_EQ(control.propose(n + 1, step.t, infinity).k, next.k);
+        t = step.t;
+      }
+  }
+
+
+
   TEST(StepControl, WithoutToleranceStepsAreThoseOfThePhases)
   {
     const TimeSchedule          schedule("1: 3, 1.7: 7, 4: 1");

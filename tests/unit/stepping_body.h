@@ -32,12 +32,11 @@ namespace Viscoplastic::Testing
       const Parameters &p = *this->parameters;
       if (p.error_control.error_estimator)
         error_estimator = std::make_unique<ErrorEstimator<dim>>(this->scene);
-      control =
-        std::make_unique<StepControl>(p.step_control,
-                                      p.time.stiffness_policy,
-                                      this->scene.schedule,
-                                      p.time.scheme == TimeScheme::heun ? 2 : 1,
-                                      0.);
+      control = std::make_unique<StepControl>(p.step_control,
+                                              p.time.stiffness_policy,
+                                              this->scene.schedule,
+                                              order_of(p.time.scheme),
+                                              0.);
       control->set_has_estimate(this->scene.has_viscosity());
       stepper        = std::make_unique<TimeStepper<dim>>(*discretization,
                                                    error_estimator.get(),

@@ -23,13 +23,15 @@ namespace Viscoplastic
   /**
    * |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
    * stresses, (int E^-1 s : s)^{1/2}, by quadrature; @p state as
-   * make_initial_state() gives it. Zero and free without initial data.
-   * Collective.
+   * make_initial_state() gives it. Zero and free without initial data. @p
+   * squared_by_cell gets the squares that active cells contribute, zero on
+   * cells of other ranks, unless it is null. Collective.
    */
   template <int dim>
   double
   initial_data_error(const StressSpace<dim> &stress_space,
-                     const State<dim>       &state);
+                     const State<dim>       &state,
+                     Vector<double>         *squared_by_cell = nullptr);
 
   /**
    * The violation of compatibility (2.12),

@@ -60,8 +60,9 @@ namespace Viscoplastic
     n_sample_fields(const Scene<dim> &scene);
 
     /// Set the fields of time errors and the estimate of a state that the
-    /// projections of the initial data have made. Collective.
-    void
+    /// projections of the initial data have made. Returns the squares that
+    /// active cells contribute to the error of the initial data. Collective.
+    Vector<double>
     begin(const StressSpace<dim> &stress_space,
           EvaluatedState<dim>    &initial) const;
 

@@ -39,6 +39,28 @@ namespace Viscoplastic
 
 
   /**
+   * The same for a mesh whose estimate is @p ratio times what it may be.
+   *
+   * Above 1, as many cells are refined as are expected to bring the estimate
+   * below 0.85 of what it may be, halved cells having a quarter of the squared
+   * estimate, but at most those with 0.6 of it: estimates of finer meshes know
+   * better which cells to refine next. Cells that matter least are coarsened
+   * with them if @p may_coarsen. Below 0.6, cells are coarsened up to that
+   * aim, if that removes a tenth of them. In between the mesh stays.
+   *
+   * Only levels and number of cells of @p parameters count. Collective.
+   */
+  template <int dim>
+  bool
+  mark_cells_to_tolerance(
+    parallel::distributed::Triangulation<dim> &triangulation,
+    const Vector<double>                      &squared_estimate,
+    const RefinementParameters                &parameters,
+    const double                               ratio,
+    const bool                                 may_coarsen);
+
+
+  /**
    * Carries a state over a change of the mesh and to the ranks that own the new
    * cells:
    *

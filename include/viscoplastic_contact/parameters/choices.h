@@ -53,17 +53,26 @@ namespace Viscoplastic
     return "scene|solution";
   }
 
+  /// `automatic' is replaced when parameters are read.
   enum class TimeScheme
   {
     forward_euler,
     backward_euler,
-    heun
+    heun,
+    automatic
   };
 
   inline const char *
   choices(TimeScheme)
   {
-    return "forward Euler|backward Euler|Heun";
+    return "forward Euler|backward Euler|Heun|automatic";
+  }
+
+  /// The order of a scheme in k.
+  inline unsigned int
+  order_of(const TimeScheme scheme)
+  {
+    return scheme == TimeScheme::heun ? 2 : 1;
   }
 
   /// What becomes of an explicit step beyond its stability limit.
@@ -80,6 +89,21 @@ namespace Viscoplastic
     return "refuse|subdivide|backward Euler";
   }
 
+  /// Whether steps are divided until they resolve events of slip.
+  /// `automatic' is replaced when parameters are read.
+  enum class EventResolution
+  {
+    on,
+    off,
+    automatic
+  };
+
+  inline const char *
+  choices(EventResolution)
+  {
+    return "true|false|automatic";
+  }
+
   enum class LinearSolver
   {
     automatic,
@@ -94,17 +118,19 @@ namespace Viscoplastic
     return "automatic|direct|multigrid|algebraic multigrid";
   }
 
+  /// `automatic' is replaced when parameters are read.
   enum class RefinementStrategy
   {
     none,
     residual,
-    kelly
+    kelly,
+    automatic
   };
 
   inline const char *
   choices(RefinementStrategy)
   {
-    return "none|residual|kelly";
+    return "none|residual|kelly|automatic";
   }
 
 

@@ -81,6 +81,11 @@ namespace Viscoplastic
     void
     check_material(const std::vector<ParameterLine> &lines) const;
 
+    /// Put what it stands for in the place of `automatic'. Throws ExcMessage if
+    /// entries contradict `Error control/Tolerance'.
+    void
+    resolve_automatic_choices();
+
     /// Make the name of the mesh file independent of the working directory.
     void
     locate_mesh_file(const std::vector<ParameterLine> &lines);

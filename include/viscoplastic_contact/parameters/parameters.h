@@ -102,7 +102,7 @@ namespace Viscoplastic
   struct TimeParameters
   {
     std::string     phases           = "1: 10";
-    TimeScheme      scheme           = TimeScheme::forward_euler;
+    TimeScheme      scheme           = TimeScheme::automatic;
     StiffnessPolicy stiffness_policy = StiffnessPolicy::refuse;
 
     void
@@ -113,11 +113,11 @@ namespace Viscoplastic
   struct StepControlParameters
   {
     /// 0: the steps of the phases.
-    double      tolerance = 0.;
-    std::string landing_times;
-    bool        resolve_events  = true;
-    double      event_tolerance = 1e-3;
-    double      largest_step = 0., smallest_step = 0.;
+    double          tolerance = 0.;
+    std::string     landing_times;
+    EventResolution resolve_events  = EventResolution::automatic;
+    double          event_tolerance = 1e-3;
+    double          largest_step = 0., smallest_step = 0.;
 
     bool
     is_on() const
@@ -149,9 +149,18 @@ namespace Viscoplastic
 
   struct ErrorControlParameters
   {
+    /// Of the run, relative; 0 where meshes and steps are given.
+    double tolerance            = 0.;
     bool   error_estimator      = true;
     double algebraic_fraction   = 0.05;
     bool   two_level_comparison = false;
+
+    /// Whether the run chooses meshes and steps to a tolerance.
+    bool
+    has_tolerance() const
+    {
+      return tolerance > 0.;
+    }
 
     void
     declare(ParameterHandler &prm);
@@ -174,13 +183,13 @@ namespace Viscoplastic
 
   struct RefinementParameters
   {
-    RefinementStrategy strategy            = RefinementStrategy::none;
+    RefinementStrategy strategy            = RefinementStrategy::automatic;
     unsigned int       every_n_steps       = 1;
     double             refinement_fraction = 0.3;
     double             coarsening_fraction = 0.05;
     double             smallest_share      = 0.1;
     unsigned int       minimal_level       = 0;
-    unsigned int       maximal_level       = 6;
+    unsigned int       maximal_level       = 15;
     unsigned int       cell_budget         = 100000;
 
     void

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/base/console.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/progress.h>
+#include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/results/energy_balance.h>
 #include <viscoplastic_contact/results/point_probe.h>
@@ -26,11 +27,13 @@ namespace Viscoplastic
   class Recorder
   {
   public:
-    /// All arguments stay in use. @p timer has the seconds by phase.
+    /// All arguments stay in use. @p timer has the seconds by phase, @p budget
+    /// is null unless the run has a tolerance.
     Recorder(const Scene<dim>  &scene,
              const StepControl &control,
              Console           &console,
-             TimerOutput       &timer);
+             TimerOutput       &timer,
+             const ErrorBudget *budget);
 
     /// The scene is on another mesh now. Collective.
     void
@@ -117,6 +120,10 @@ namespace Viscoplastic
     exchange(Archive &archive);
 
   private:
+    /// Why the tolerance of the run has been missed, and by how much.
+    std::string
+    remark_on_tolerance() const;
+
     /// Warn of what makes the numbers of a step doubtful, once each.
     void
     judge(const AcceptedStep<dim> &step, const StepQuantities<dim> &quantities);
@@ -160,6 +167,7 @@ namespace Viscoplastic
     const StepControl &control;
     Console           &console;
     TimerOutput       &timer;
+    const ErrorBudget *budget;
     const bool         has_error_estimate;
 
     const Discretization<dim>   *discretization = nullptr; // the present one

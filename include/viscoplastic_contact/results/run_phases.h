@@ -25,6 +25,11 @@ namespace Viscoplastic
   /// All phases, in the order in which they are printed and written. Tables
   /// and pictures take them from here, so that none can be forgotten in one.
   inline const std::vector<RunPhase> run_phases{
+    {"pilot run",
+     "tolerance: a run on the first mesh for the size of the solution",
+     false,
+     "seconds_set_up",
+     true},
     {"set-up",
      "spaces, matrix, factorisation or multigrid",
      false,

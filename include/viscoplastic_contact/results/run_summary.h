@@ -59,6 +59,8 @@ namespace Viscoplastic
     std::optional<double> error_estimate;
     /// The errors of a scene with error estimate.
     std::optional<ErrorSummary> errors;
+    /// Of a run that has one.
+    std::optional<double> tolerance;
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,
       tension_area;

@@ -8,6 +8,7 @@
 
 #include <viscoplastic_contact/base/console.h>
 #include <viscoplastic_contact/base/signals.h>
+#include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/error/known_solution.h>
 #include <viscoplastic_contact/results/output.h>
 #include <viscoplastic_contact/results/recorder.h>
@@ -79,6 +80,11 @@ namespace Viscoplastic
     }
 
   private:
+    /// The initial state on the first mesh, and what has to be known before the
+    /// first step.
+    void
+    begin_state();
+
     /// Begin from the start: everything up to the initial state.
     void
     begin();
@@ -98,7 +104,8 @@ namespace Viscoplastic
     {
       const unsigned int n = accepted.state.n;
       return scene.is_adaptive() && n > 0 &&
-             n % parameters.refinement.every_n_steps == 0;
+             (budget ? n_refinements == 0 :
+                       n % parameters.refinement.every_n_steps == 0);
     }
 
     /// All steps up to the end. @p signals is null in a run without files.
@@ -124,8 +131,28 @@ namespace Viscoplastic
     void
     check_compatibility(const Load<dim> &load);
 
+    /// Change the mesh, between two steps, if the estimate says so.
     void
     adapt_mesh();
+
+    /// Refine the mesh of the accepted state if the error of a step from it is
+    /// too large for the tolerance of the run. Returns whether it has been; the
+    /// step is to be repeated then.
+    bool
+    refine_for(const AcceptedStep<dim> &step);
+
+    /// Refine the first mesh if an estimate, of which cells contribute
+    /// @p squared_indicators, is larger than @p allowed. Returns whether it has
+    /// been; the initial state is to be made again then.
+    bool
+    refine_first_mesh(const double          estimate,
+                      const double          allowed,
+                      const Vector<double> &squared_indicators);
+
+    /// Change the mesh as its cells are marked, and bring the accepted state to
+    /// it.
+    void
+    change_mesh();
 
     // Checkpoints: source/run/restart.cc.
 
@@ -163,6 +190,7 @@ namespace Viscoplastic
     const FESystem<dim>                       fe; // of V_h
     DoFHandler<dim>                           dof_handler;
     RunDirectories                            directories;
+    std::optional<ErrorBudget>                budget; // of a tolerance
     StepControl                               control;
     std::unique_ptr<ErrorEstimator<dim>> error_estimator; // null if not wanted
 
@@ -171,7 +199,9 @@ namespace Viscoplastic
     std::unique_ptr<TimeStepper<dim>>    time_stepper;
 
     /// The last state that will do.
-    EvaluatedState<dim>        accepted;
+    EvaluatedState<dim> accepted;
+    /// How often the mesh has been refined for the step that is being made.
+    unsigned int               n_refinements = 0;
     ContactReport              initial_report;
     std::optional<Output<dim>> output; // absent without files
     TimerOutput                timer;  // wall time by phase

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/parameters/phases.h>
 #include <viscoplastic_contact/study/study_cost.h>
 
 #include <functional>
@@ -10,30 +11,6 @@
 
 namespace Viscoplastic
 {
-  /// One phase of `Time/Phases': its end as the scene gives it, and its steps.
-  struct StepsUntil
-  {
-    std::string  end;
-    unsigned int n_steps;
-  };
-
-  /// The phases of a text that TimeSchedule accepts.
-  std::vector<StepsUntil>
-  read_phases(const std::string &phases);
-
-  /// Every phase with @p factor times its steps, rounded up.
-  std::vector<StepsUntil>
-  scale_phases(std::vector<StepsUntil> phases, const double factor);
-
-  /// The phases as `Time/Phases' has them.
-  std::string
-  write_phases(const std::vector<StepsUntil> &phases);
-
-  /// The steps of all phases together.
-  unsigned int
-  n_steps(const std::vector<StepsUntil> &phases);
-
-
   /// What is known of the errors and costs of a scene, as functions of the mesh
   /// width h and the longest time step k.
   struct WorkPrecisionModel

@@ -36,6 +36,8 @@ namespace Viscoplastic
     double indicator = 0.;
     /// What the solution moves in the step, and its size: in the same norm.
     double change = 0., size = 0.;
+    /// What earlier steps have left of the error of the time integration.
+    double before = 0.;
   };
 
 
@@ -66,23 +68,44 @@ namespace Viscoplastic
    * ratios of the last two by a proportional-integral controller (Gustafsson;
    * Hairer and Wanner II, IV.2), whose exponents are those of the order p in
    * which that ratio depends on k.
+   *
+   * In a run to a tolerance, of which TOL is the part of the time steps, the
+   * signed sum of all contributions has to stay below TOL size. With D what it
+   * has come to, a step may use of the rest TOL size - D what it covers of the
+   * remaining time or of the change of the solution,
+   *
+   *     d <= (TOL size - D) min(1, max(k/(T - t), change/size)/c),
+   *
+   * with c <= 1 the ratio of the signed to the unsigned sum up to now, or D to
+   * TOL size if that is larger: where contributions cancel, each of them may be
+   * larger, but the less the nearer the sum is to its bound. A rest of 0.05 of
+   * the bound is always there, so that steps do not become ever smaller.
    */
   class StepControl
   {
   public:
-    /// @p order of the scheme. @p output_interval: 0 for none. Throws
-    /// ExcMessage.
+    /// @p order of the scheme. @p output_interval: 0 for none. @p
+    /// tolerance_of_run: the part of the time steps, 0 if the run has none.
+    /// Throws ExcMessage.
     StepControl(const StepControlParameters &parameters,
                 const StiffnessPolicy        stiffness_policy,
                 const TimeSchedule          &schedule,
                 const unsigned int           order,
-                const double                 output_interval);
+                const double                 output_interval,
+                const double                 tolerance_of_run = 0.);
 
     /// Whether the time error of steps is estimated, which needs viscosity.
     void
     set_has_estimate(const bool value)
     {
       has_estimate = value;
+    }
+
+    /// The energy norm that the solution is expected to reach.
+    void
+    expect_size(const double size)
+    {
+      present.size = size;
     }
 
     /// Whether a step may be tried more than once.
@@ -112,6 +135,13 @@ namespace Viscoplastic
             const StepErrors &errors,
             const bool        has_event);
 
+    /// The step that has just been accepted is to be repeated on another mesh.
+    void
+    undo()
+    {
+      present = before;
+    }
+
     /// A step has failed: whether propose() gives a shorter one.
     bool
     retries(const TimeStep &step, const bool for_stability);
@@ -137,7 +167,8 @@ namespace Viscoplastic
     void
     exchange(Archive &archive)
     {
-      archive &wanted &last_ratio &size &was_rejected &event_before;
+      archive &present.wanted &present.last_ratio &present.size &present
+        .was_rejected &present.event_before &present.unsigned_sum;
       archive &n.rejected &n.events &n.failed &n.unresolved;
     }
 
@@ -146,8 +177,32 @@ namespace Viscoplastic
     const bool passes_limit;
 
   private:
+    /// What it remembers of the steps.
+    struct Memory
+    {
+      /// The step size that is tried next; 0 for that of the phase.
+      double wanted = 0.;
+      /// Error over allowed error of the last accepted step; 0 for none.
+      double last_ratio = 0.;
+      /// The largest energy norm so far.
+      double size         = 0.;
+      bool   was_rejected = false;
+      /// The end of a step that was rejected for an event, which has not been
+      /// met yet.
+      double event_before = 0.;
+      /// Of the contributions of all steps to the time error.
+      double unsigned_sum = 0.;
+    };
+
     double
     next_target(const double t) const;
+
+    /// The contribution that a step may make to the time error; @p size as it
+    /// is with this step.
+    double
+    allowed_error(const TimeStep   &step,
+                  const StepErrors &errors,
+                  const double      size) const;
 
     double
     smallest(const double t) const;
@@ -158,20 +213,12 @@ namespace Viscoplastic
     const StepControlParameters &parameters;
     const TimeSchedule          &schedule;
     const unsigned int           order;
-    const double                 output_interval;
+    const double                 output_interval, tolerance_of_run;
     std::vector<double>          landing_times; // ascending
     bool                         has_estimate = true;
 
-    /// The step size that is tried next; 0 for that of the phase.
-    double wanted = 0.;
-    /// Error over allowed error of the last accepted step; 0 for none.
-    double last_ratio = 0.;
-    /// The largest energy norm so far.
-    double size         = 0.;
-    bool   was_rejected = false;
-    /// The end of a step that was rejected for an event, which has not been
-    /// met yet.
-    double     event_before = 0.;
+    /// Now, and before the last step was accepted.
+    Memory     present, before;
     StepCounts n;
   };
 } // namespace Viscoplastic

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/error/error_estimate.h>
+#include <viscoplastic_contact/parameters/parameters.h>
+
+#include <algorithm>
+
+namespace Viscoplastic
+{
+  /**
+   * How much of the tolerance of a run each cause of errors may use.
+   *
+   * A run costs about e_h^-d e_k^(-1/p) to have the error e_h of the mesh, of
+   * first order, in d dimensions, and e_k of time steps of order p. With their
+   * sum given it costs least where e_k : e_h = 1/p : d.
+   */
+  class ErrorBudget
+  {
+  public:
+    /// The largest share of the initial data, which one mesh has to resolve.
+    static constexpr double initial_share = 0.25;
+    /// What the mesh may use whatever the others have used.
+    static constexpr double least_space_share = 0.4;
+
+    /// Of a scene in @p dimension dimensions with a scheme of order @p order.
+    ErrorBudget(const double       tolerance,
+                const unsigned int dimension,
+                const unsigned int order);
+
+    /// What the solution is expected to reach, from what a coarse run has
+    /// found, which may be too large.
+    void
+    expect_size(const double of_coarse_run)
+    {
+      expected_size = 0.95 * of_coarse_run;
+    }
+
+    /// The largest energy norm of the run, as far as it can be expected; @p
+    /// so_far that of the steps up to now.
+    double
+    size(const double so_far) const
+    {
+      return std::max(expected_size, so_far);
+    }
+
+    /// What the initial data may use.
+    double
+    initial() const
+    {
+      return initial_share * tolerance * expected_size;
+    }
+
+    /// What the time steps of the run may use, relative to the solution. Where
+    /// nothing flows they have no error.
+    double
+    time_tolerance() const
+    {
+      return time_share * tolerance;
+    }
+
+    /// What the mesh may use in a state with this estimate; @p size is the
+    /// largest energy norm of the run.
+    double
+    space(const ErrorEstimate &estimate,
+          const double         size,
+          const bool           has_viscosity) const;
+
+    const double tolerance;
+    double       expected_size = 0.;
+
+  private:
+    const double time_share;
+  };
+
+} // namespace Viscoplastic

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/parameters/parameter_file.h>
+
+namespace Viscoplastic
+{
+  /**
+   * About how large the energy norm of the solution of a scene becomes: that of
+   * a run on its first mesh with at most eight steps for each phase. A run to a
+   * relative tolerance has to know it before its first step. Zero, and
+   * @p failure says why, if that run fails. Collective.
+   */
+  template <int dim>
+  double
+  energy_norm_of_pilot_run(const Parameters &parameters, std::string &failure);
+} // namespace Viscoplastic

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs to a tolerance, which choose meshes and steps by themselves."""
+
+from harness import TestCase, main, run
+from test_error_bar import manufactured
+from test_restart import EVERY_STEP, Job, without_wall_times
+
+COARSE_SLAB = {
+    "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+    "Time/Phases": "1: 4, 2: 4",
+    "Output/Fields every": 0,
+}
+
+
+def to(tolerance, **more):
+    return {"Error control/Tolerance": tolerance, **more}
+
+
+class Kept(TestCase):
+    """The error of known solutions is below the tolerance, but not by far."""
+
+    def check(self, name, tolerance, law=None, **more):
+        result = manufactured(name, law, **to(tolerance, **more))
+        size = result["exact_energy"].max()
+        error = result["error_energy"].max() / size
+        estimate = result["estimate_total"].max() / result["energy_norm"].max()
+        what = f"{name}, {law}, {tolerance}, estimated {estimate}"
+        self.assertLess(estimate, tolerance, what)
+        self.assertLess(error, tolerance, what)
+        self.assertGreater(error, tolerance / 4, what)
+        self.assertIn("has been kept", result.stdout)
+        return result
+
+    def test_plane(self):
+        for tolerance in 0.2, 0.05:
+            self.check("coulomb_2d", tolerance)
+            self.check("tresca_2d", tolerance)
+
+    def test_laws(self):
+        for law in "elastic", "norton", "perzyna_hardening", "zener":
+            self.check("tresca_2d", 0.1, law)
+
+    def test_first_order_in_time(self):
+        for scheme in "forward Euler", "backward Euler":
+            self.check("coulomb_2d", 0.1, **{"Time/Scheme": scheme})
+
+    def test_space(self):
+        result = self.check("coulomb_3d", 0.2)
+        # The data ask for a finer mesh than the scene's of 64 cells, not
+        # everywhere.
+        self.assertGreater(result["cells"][0], 100)
+        self.assertNotEqual(result["cells"][0], 512)
+
+    def test_history_at_quadrature_points(self):
+        self.check(
+            "tresca_2d", 0.1, **{"Material/Stress history": "quadrature points"}
+        )
+
+
+class Meshes(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.slab = run("slab", {**COARSE_SLAB, **to(0.04)})
+
+    def test_grow_with_the_solution_and_keep_the_estimate(self):
+        result = self.slab
+        size = result["energy_norm"].max()
+        # within the step, before it is accepted
+        self.assertLess(result["estimate_total"].max(), 0.04 * size)
+        self.assertGreater(result["estimate_total"].max(), 0.02 * size)
+        # A load that grows needs ever finer meshes, none at the beginning.
+        self.assertLess(result["cells"][1], 100)
+        self.assertGreater(result["cells"].max(), 1000)
+        self.assertIn("tolerance of 4 % has been kept", result.stdout)
+
+    def test_agree_with_a_fine_run(self):
+        """SLAB of doc/accuracy.md on 128 x 64 cells with 128 steps."""
+        self.assertClose(self.slab["friction_force_x"][-1], -0.009767504, 0.03)
+        peak = self.slab["t"].tolist().index(1.0)
+        self.assertClose(self.slab["friction_force_x"][peak], 0.128607, 0.01)
+        self.assertClose(self.slab["strain_energy"][peak], 0.0320548, 0.01)
+
+    def test_follow_a_solution_that_shrinks(self):
+        """A load that goes away takes the cells with it."""
+        result = run(
+            "slab",
+            {
+                **COARSE_SLAB,
+                "Boundary 0/Traction": "0.3*sin(3.14159265*t)^8; 0",
+                "Time/Phases": "1: 20",
+                "Material/Law": "elastic",
+                **to(0.1),
+            },
+        )
+        cells = result["cells"]
+        self.assertLess(cells[-1], cells.max() / 2)
+
+    def test_on_1_2_3_ranks(self):
+        for ranks in 2, 3:
+            several = run("slab", {**COARSE_SLAB, **to(0.04)}, ranks=ranks)
+            self.assertEqual(list(several["cells"]), list(self.slab["cells"]))
+            self.assertClose(several["t"], self.slab["t"], 1e-6)
+            self.assertClose(
+                several["estimate_total"], self.slab["estimate_total"], 1e-5
+            )
+
+
+class Restart(TestCase):
+    def check(self, name, scene, after, ranks=1):
+        with Job(name, {**scene, **EVERY_STEP}) as job:
+            reference = job.run(ranks=ranks)
+            rows = without_wall_times(reference.directory / "statistics.csv")
+            for n in after:
+                with Job(name, {**scene, **EVERY_STEP}, copy_of=job) as again:
+                    again.forget_after(n)
+                    result = again.run("--restart", ranks=ranks)
+                    self.assertEqual(
+                        without_wall_times(result.directory / "statistics.csv"),
+                        rows,
+                    )
+
+    def test_bit_by_bit(self):
+        self.check("slab", {**COARSE_SLAB, **to(0.06)}, (1, 4, 9))
+
+    def test_bit_by_bit_on_two_ranks(self):
+        self.check("slab", {**COARSE_SLAB, **to(0.06)}, (5,), ranks=2)
+
+
+class Missed(TestCase):
+    """A tolerance out of reach: the run ends with what it has, and says why."""
+
+    def check(self, pattern, **more):
+        result = run("slab", {**COARSE_SLAB, **to(0.03), **more})
+        self.assertEqual(result["t"][-1], 2.0)
+        self.assertNotIn("has been kept", result.stdout)
+        self.assertRegex(
+            result.stdout,
+            r"Warning: 'Error control/Tolerance' = 0.03 has not been kept: at t = "
+            r"\S+ the error is estimated as 0\.\d+ of the solution.*" + pattern,
+        )
+        return result
+
+    def test_for_cells(self):
+        result = self.check(
+            "'Mesh refinement/Cell budget' = 200", **{"Mesh refinement/Cell budget": 200}
+        )
+        self.assertLess(result["cells"].max(), 260)
+
+    def test_for_levels(self):
+        self.check(
+            "'Mesh refinement/Maximal level' = 2",
+            **{"Mesh refinement/Maximal level": 2},
+        )
+
+    def test_for_a_fixed_mesh(self):
+        result = self.check(
+            "fixed by 'Mesh refinement/Strategy'",
+            **{"Mesh refinement/Strategy": "none"},
+        )
+        self.assertEqual(set(result["cells"]), {32})
+
+    def test_for_steps(self):
+        self.check(
+            "'Step control/Smallest step'",
+            **{
+                "Step control/Smallest step": 0.25,
+                "Time/Scheme": "forward Euler",
+                "Time/Stiffness policy": "backward Euler",
+            },
+        )
+
+
+class Twice(TestCase):
+    def test_tolerance_beside_the_run(self):
+        result = run(
+            "slab",
+            {**COARSE_SLAB, **to(0.1), "Error control/Two-level comparison": "true"},
+        )
+        self.assertIn("+- what twice the tolerance changes", result.stdout)
+        self.assertTrue((result.directory / "uncertainty.csv").exists())
+
+
+class Refused(TestCase):
+    def refused(self, pattern, *options, **overrides):
+        result = run(
+            "slab", {**COARSE_SLAB, **to(0.1), **overrides}, check=False
+        )
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertRegex(result.stderr, pattern)
+
+    def test_contradictions(self):
+        self.refused(
+            r"'Error control/Tolerance' needs an estimate of the error; set 'Error "
+            r"control/Error bar' = true",
+            **{"Error control/Error bar": "false"},
+        )
+        self.refused(
+            r"'Error control/Tolerance' chooses the steps, too; set 'Step "
+            r"control/Tolerance' = 0",
+            **{"Step control/Tolerance": 0.01},
+        )
+        self.refused(
+            r"refines by the estimate of the error; set 'Mesh refinement/Strategy' = "
+            r"residual, or none",
+            **{"Mesh refinement/Strategy": "kelly"},
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -26,6 +26,7 @@ finer run, of the steps that end a phase of `Time/Phases`.
 - [How to read this page](#how-to-read-this-page)
 - [Orders of convergence](#orders-of-convergence)
 - [What an error costs](#what-an-error-costs)
+- [Runs to a tolerance](#runs-to-a-tolerance)
 - [What the tolerance of the solver is worth](#what-the-tolerance-of-the-solver-is-worth)
 - [Reference cases](#reference-cases)
 
@@ -111,6 +112,20 @@ the runs, as root mean square and at worst. The price list of all three:
 
 {prices}
 {diagrams}
+## Runs to a tolerance
+
+With `Error control/Tolerance` the run chooses meshes and steps by itself
+([method.md](method.md#runs-to-a-tolerance)). Manufactured solutions: the largest
+error in the energy norm of all steps, estimated and true, over the largest norm.
+
+{known_to_tolerance}
+The scenes of the pictures above, from their coarsest meshes. Beside each run is
+the cheapest one on a uniform mesh that is so accurate, from the price list:
+measured, or in italics predicted. Its error is the difference to a finer run, and
+that of the run to a tolerance is its estimate, which is mostly larger than its
+error; so the comparison favours uniform meshes.
+
+{to_tolerance}
 ## What the tolerance of the solver is worth
 
 By default the iterations of a step stop when the bound on their error is a
@@ -165,6 +180,8 @@ def render(parts):
             "manufactured",
             "low_regularity",
             "prices",
+            "known_to_tolerance",
+            "to_tolerance",
             "tolerance",
             "references",
             *plan.DIAGRAMS,

@@ -20,6 +20,8 @@ ABOUT = {
     "low_regularity": "orders where solutions are not smooth",
     **{name: title for name, (title, _) in plan.DIAGRAMS.items()},
     "prices": "what errors of some per cent cost on these scenes",
+    "known_to_tolerance": "true errors of runs to a tolerance",
+    "to_tolerance": "what runs to a tolerance cost, beside uniform meshes",
     "tolerance": "what coupling the solver's tolerance to the error saves",
     "references": "reference cases beside independent values",
 }
@@ -36,6 +38,10 @@ def make(name, runner, images):
         return references.section(runner) + stamp(runner)
     if name == "tolerance":
         return tolerance(runner)
+    if name == "known_to_tolerance":
+        return known_to_tolerance(runner)
+    if name == "to_tolerance":
+        return to_tolerance(runner)
     if name == "prices":
         return prices(runner)
     return diagram(name, runner, images)
@@ -207,6 +213,52 @@ def prices(runner):
     return tables.table(tables.price_header(plan.TOLERANCES), rows) + stamp(
         runner, about
     )
+
+
+def run_to(tolerance, name, files, runner, overrides=None):
+    return runner.run(
+        f"to_tolerance/{name}_{tolerance}",
+        files,
+        {
+            **(overrides or {}),
+            "Error control/Tolerance": tolerance,
+            "Mesh refinement/Cell budget": plan.CELL_BUDGET,
+            "Output/Fields every": "0",
+        },
+    )
+
+
+def known_to_tolerance(runner):
+    folder = SCENES / "manufactured"
+    rows = []
+    for scene, law, tolerances in plan.KNOWN_TO_TOLERANCE:
+        files = [folder / f"{scene}.prm", *([folder / f"{law}.prm"] if law else [])]
+        facts_of = facts(files[0], files[1] if law else None, "")
+        for eps in tolerances:
+            columns = run_to(eps, "_".join([scene, *([law] if law else [])]), files, runner)
+            rows.append(
+                tables.known_to_tolerance_row(
+                    facts_of["scene"], facts_of["law"], eps, columns
+                )
+            )
+    return tables.table(tables.KNOWN_TO_TOLERANCE_HEADER, rows) + stamp(runner)
+
+
+def to_tolerance(runner):
+    rows = []
+    for name, tolerances in plan.TO_TOLERANCE.items():
+        study = diagram_study(name, runner)
+        overrides = {
+            entry: value
+            for entry, value in plan.DIAGRAMS[name][1].items()
+            if not entry.startswith("Study/")
+        }
+        for eps in tolerances:
+            columns = run_to(eps, name, [SCENES / f"{name}.prm"], runner, overrides)
+            rows.append(
+                tables.to_tolerance_row(f"`{name}`", eps, columns, study, study.error())
+            )
+    return tables.table(tables.TO_TOLERANCE_HEADER, rows) + stamp(runner)
 
 
 def tolerance(runner):

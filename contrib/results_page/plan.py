@@ -135,6 +135,29 @@ LOW_REGULARITY = {
     ),
 }
 
+# Runs to a tolerance: of known solutions, (scene, law, tolerances), and of the
+# scenes of the diagrams, whose sizes and first steps they begin with.
+KNOWN_TO_TOLERANCE = (
+    ("tresca_2d", None, (0.2, 0.1, 0.05, 0.02)),
+    ("coulomb_2d", None, (0.2, 0.1, 0.05, 0.02)),
+    *(
+        ("coulomb_2d", f"law_{law}", (0.05,))
+        for law in ("elastic", "norton", "parsed", "perzyna_hardening", "zener")
+    ),
+    ("tresca_3d", None, (0.3, 0.2)),
+    ("coulomb_3d", None, (0.3, 0.2)),
+    *(
+        ("coulomb_3d", f"law_{law}", (0.2,))
+        for law in ("elastic", "norton", "perzyna_hardening", "zener")
+    ),
+)
+TO_TOLERANCE = {
+    "slab": (0.1, 0.03, 0.01),
+    "coulomb_pad_3d": (0.1, 0.05, 0.03),
+    "corner_singularity_2d": (0.1, 0.03, 0.01, 0.003),
+}
+CELL_BUDGET = "2000000"
+
 # Where the fixed tolerance is compared with the coupled one: the ladder of h
 # and k of the diagrams again.
 FIXED_TOLERANCE = "1e-10"

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from plotting.results import UserError
+from plotting.results import UserError, read_statistics
 from plotting.study import Study
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -62,6 +62,31 @@ class Program:
             [self.executable, "--version"], stdout=subprocess.PIPE, text=True
         )
         return process.stdout.strip().splitlines()[0] if process.stdout else ""
+
+    def run(self, name, files, overrides):
+        """The columns of statistics.csv of a run."""
+        results = self.directory / name
+        results.mkdir(parents=True, exist_ok=True)
+        print(f"Run in {results}", file=sys.stderr, flush=True)
+        process = subprocess.run(
+            [
+                self.executable,
+                *files,
+                *set_options({**overrides, "Output/Directory": results}),
+            ],
+            cwd=self.directory,
+            env=self.environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        if process.returncode != 0:
+            raise UserError(
+                f"the run in {results} ended with code {process.returncode}: "
+                f"{process.stderr.strip()}"
+            )
+        return read_statistics(results / "statistics.csv")
 
     def study(self, name, files, overrides):
         """The study of a scene, which may consist of several parameter files;

@@ -282,6 +282,78 @@ def fit_table(study, error):
     return table(FIT_HEADER, rows) if rows else ""
 
 
+KNOWN_TO_TOLERANCE_HEADER = (
+    "scene",
+    "law",
+    "tolerance",
+    "estimated",
+    "true error",
+    "of the tolerance",
+    "cells",
+    "steps",
+    "seconds",
+)
+
+
+def estimate_of(columns):
+    """The largest estimate of a run over the largest energy norm."""
+    return columns["estimate_total"].max() / columns["energy_norm"].max()
+
+
+def size_cells(columns):
+    """Cells, steps and seconds of a run."""
+    return (
+        number(columns["cells"].max(), 9),
+        number(columns["step"].max(), 9),
+        seconds(columns["wall_total"][-1]),
+    )
+
+
+def known_to_tolerance_row(scene, law, tolerance, columns):
+    """A run to a tolerance whose solution is known."""
+    error = columns["error_energy"].max() / columns["exact_energy"].max()
+    return [
+        scene,
+        law,
+        percent(tolerance),
+        percent(estimate_of(columns)),
+        percent(error),
+        number(error / tolerance, 2),
+        *size_cells(columns),
+    ]
+
+
+TO_TOLERANCE_HEADER = (
+    "scene",
+    "tolerance",
+    "estimated",
+    "cells",
+    "steps",
+    "seconds",
+    "the best uniform run",
+    "times as long",
+)
+
+
+def to_tolerance_row(scene, tolerance, columns, study, error):
+    """A run to a tolerance beside what a study says of uniform meshes."""
+    prices = [
+        price(study, variant, tolerance, error)
+        for variant in study.variants()
+        if variant[0] == "uniform"
+    ]
+    uniform = best_seconds(prices)
+    cheapest = [found for found in prices if found and found["seconds"] == uniform]
+    return [
+        scene,
+        percent(tolerance),
+        percent(estimate_of(columns)),
+        *size_cells(columns),
+        price_cell(cheapest[0] if cheapest else None, False),
+        number(uniform and uniform / columns["wall_total"][-1], 2),
+    ]
+
+
 REFERENCE_HEADER = (
     "case",
     "mesh and steps",

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/contact_event.h>
 
 #include <cmath>
@@ -32,5 +33,30 @@ namespace Viscoplastic
                covers = n_old < n_points && n_new == n_points && n_points > 0.,
                ends   = n_old > 0. && n_new == 0.;
     return face.any(turns_back) || begins || covers || (ends && !from_kink);
+  }
+
+
+
+  double
+  turning_work(const FrictionFace              &face,
+               const FrictionState             &old_state,
+               const FrictionState             &state,
+               const std::vector<Tensor<1, 2>> &slips)
+  {
+    AssertDimension(slips.size(), state.n_points());
+    double work = 0.;
+    for (unsigned int p = 0; p < state.n_points(); ++p)
+      {
+        const Tensor<1, 2> &old = old_state.multiplier[p],
+                           &now = state.multiplier[p];
+        const double sizes      = stable_norm(old) * stable_norm(now);
+        const double product    = old * now;
+        const bool   has_turned = !old_state.sticks[p] && !state.sticks[p] &&
+                                product > 0. && sizes > product;
+        if (has_turned)
+          work +=
+            stable_norm(now) * stable_norm(slips[p]) * (1. - product / sizes);
+      }
+    return face.sum(work);
   }
 } // namespace Viscoplastic

@@ -195,6 +195,28 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<FullMatrix<double>>
+  StressSpace<dim>::prolongation() const
+  {
+    // The samples belong to the support points of the element, whose shape
+    // functions are constant or (bi-, tri-)linear.
+    std::vector<FullMatrix<double>> result(
+      GeometryInfo<dim>::max_children_per_cell,
+      FullMatrix<double>(n_samples, n_samples));
+    for (unsigned int child = 0; child < result.size(); ++child)
+      for (unsigned int s = 0; s < n_samples; ++s)
+        for (unsigned int r = 0; r < n_samples; ++r)
+          result[child](s, r) =
+            element->shape_value(r,
+                                 GeometryInfo<dim>::child_to_cell_coordinates(
+                                   element->get_unit_support_points()[s],
+                                   child));
+    return result;
+  }
+
+
+
+  template <int dim>
   SymmetricTensor<2, 3>
   StressSpace<dim>::mean(const std::size_t            cell,
                          const SymmetricTensor<2, 3> *samples) const

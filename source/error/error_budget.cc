@@ -17,14 +17,17 @@ namespace Viscoplastic
   double
   ErrorBudget::space(const ErrorEstimate &estimate,
                      const double         size,
-                     const bool           has_viscosity) const
+                     const bool           has_time_error) const
   {
     const double all = tolerance * size;
     // Time steps have not made all of their error yet.
     const double time =
-      has_viscosity ? std::max(estimate.time, time_share * all) : 0.;
+      has_time_error ?
+        std::max(estimate.time + estimate.friction, time_share * all) :
+        0.;
     return std::max(least_space_share * all,
-                    all - time - estimate.initial - estimate.algebraic);
+                    all - time - estimate.transfer - estimate.initial -
+                      estimate.algebraic);
   }
 
 } // namespace Viscoplastic

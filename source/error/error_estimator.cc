@@ -17,21 +17,6 @@ namespace Viscoplastic
     {
       return std::sqrt(2. * std::max(0., forces.strain_energy));
     }
-
-
-
-    /// E^-1 stress : stress.
-    double
-    complementary_square(const Stiffness             &stiffness,
-                         const SymmetricTensor<2, 3> &stress)
-    {
-      if (!stiffness.is_isotropic())
-        return stiffness.strain(stress) * stress;
-      const double trace_square = Utilities::fixed_power<2>(trace(stress));
-      return (stress * stress - trace_square / 3.) /
-               (2. * stiffness.shear_modulus()) +
-             trace_square / (9. * stiffness.bulk_modulus());
-    }
   } // namespace
 
 
@@ -105,12 +90,14 @@ namespace Viscoplastic
   void
   ErrorEstimator<dim>::change_mesh(const AdmissibleSpace<dim> &space,
                                    const DistributedMatrix    &matrix,
+                                   const double                memory_loss,
                                    EvaluatedState<dim>        &accepted) const
   {
     DistributedVector velocity = space.owned_vector(), force = velocity;
     space.to_frames(accepted.state.velocity, velocity);
     matrix.vmult(force, velocity);
     accepted.errors.velocity_square = velocity * force;
+    accepted.errors.transfer += memory_loss;
   }
 
 
@@ -171,15 +158,14 @@ namespace Viscoplastic
             // Steps are chosen with the slope as the change of slope there.
             if (is_first)
               step += defect.second * k * change;
-            sums[0] += weight * complementary_square(stiffness, step);
+            sums[0] += weight * stiffness.complementary_square(step);
             sums[1] +=
-              weight * complementary_square(stiffness, state.time_error[i]);
+              weight * stiffness.complementary_square(state.time_error[i]);
             if (is_measured)
               {
-                sums[2] += weight * complementary_square(stiffness, state.z[i]);
-                sums[3] +=
-                  weight *
-                  complementary_square(stiffness, state.z[i] - accepted.z[i]);
+                sums[2] += weight * stiffness.complementary_square(state.z[i]);
+                sums[3] += weight * stiffness.complementary_square(
+                                      state.z[i] - accepted.z[i]);
               }
           }
       }
@@ -197,6 +183,7 @@ namespace Viscoplastic
   ErrorEstimator<dim>::assess(const StressSpace<dim>    &stress_space,
                               const TimeDefect          &defect,
                               const ContactReport       &report,
+                              const double               turning,
                               const EvaluatedState<dim> &accepted,
                               const FlowRate            *accepted_rate,
                               EvaluatedState<dim>       &end) const
@@ -206,9 +193,13 @@ namespace Viscoplastic
     const ErrorEstimate        &before   = accepted.errors;
     ErrorEstimate              &estimate = end.errors;
     estimate.initial                     = before.initial;
-    estimate.energy_norm                 = energy_norm(forces);
-    estimate.space     = space_calibration * end.space_estimate.residual;
-    estimate.algebraic = report.error;
+    estimate.transfer                    = before.transfer;
+    estimate.friction =
+      std::sqrt(Utilities::fixed_power<2>(before.friction) +
+                Utilities::fixed_power<2>(friction_calibration) * turning);
+    estimate.energy_norm = energy_norm(forces);
+    estimate.space       = space_calibration * end.space_estimate.residual;
+    estimate.algebraic   = report.error;
 
     if (scene.has_viscosity())
       {

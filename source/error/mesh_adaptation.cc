@@ -150,7 +150,8 @@ namespace Viscoplastic
   bool
   mark_cells(parallel::distributed::Triangulation<dim> &triangulation,
              const Vector<double>                      &squared_estimate,
-             const RefinementParameters                &parameters)
+             const RefinementParameters                &parameters,
+             const std::function<void()>               &limit_coarsening)
   {
     AssertDimension(squared_estimate.size(), triangulation.n_active_cells());
     const MPI_Comm comm = triangulation.get_communicator();
@@ -180,6 +181,8 @@ namespace Viscoplastic
       limit_refinement(triangulation, squared_estimate, allowed);
 
     triangulation.prepare_coarsening_and_refinement();
+    if (limit_coarsening)
+      limit_coarsening();
     if (is_worth_it(triangulation, squared_estimate, parameters.smallest_share))
       return true;
     for (const auto &cell : triangulation.active_cell_iterators())
@@ -199,7 +202,7 @@ namespace Viscoplastic
     const Vector<double>                      &squared_estimate,
     const RefinementParameters                &parameters,
     const double                               ratio,
-    const bool                                 may_coarsen)
+    const std::function<void()>               &limit_coarsening)
   {
     // The squared estimate of cells of twice the size is four times as large.
     const double aim = 0.85, coarsen_below = 0.6, square = ratio * ratio;
@@ -210,12 +213,12 @@ namespace Viscoplastic
       {
         chosen.refinement_fraction =
           std::min(0.6, (1. - aim * aim / square) / 0.75);
-        if (may_coarsen)
+        if (limit_coarsening)
           chosen.coarsening_fraction = 0.05 / (3. * square);
         // Not for coarser cells alone.
         chosen.smallest_share = 1e-6;
       }
-    else if (ratio < coarsen_below && may_coarsen)
+    else if (ratio < coarsen_below && limit_coarsening)
       {
         chosen.coarsening_fraction =
           ratio > 0. ? std::min(0.5, (aim * aim - square) / (6. * square)) :
@@ -224,7 +227,10 @@ namespace Viscoplastic
       }
     else
       return false;
-    return mark_cells(triangulation, squared_estimate, chosen);
+    return mark_cells(triangulation,
+                      squared_estimate,
+                      chosen,
+                      limit_coarsening);
   }
 
 
@@ -276,18 +282,7 @@ namespace Viscoplastic
         old_cell[cell->active_cell_index()] = index++;
       }
 
-    // The samples belong to the support points of the element of Q_h, whose
-    // shape functions are constant or (bi-, tri-)linear.
-    const FiniteElement<dim> &element = *old_stress_space.element;
-    prolongation.assign(GeometryInfo<dim>::max_children_per_cell,
-                        FullMatrix<double>(n_samples, n_samples));
-    for (unsigned int child = 0; child < prolongation.size(); ++child)
-      for (unsigned int s = 0; s < n_samples; ++s)
-        for (unsigned int r = 0; r < n_samples; ++r)
-          prolongation[child](s, r) =
-            element.shape_value(r,
-                                GeometryInfo<dim>::child_to_cell_coordinates(
-                                  element.get_unit_support_points()[s], child));
+    prolongation = old_stress_space.prolongation();
 
     handle = triangulation.register_data_attach(
       [this](const CellIterator &cell, const CellStatus status) {
@@ -484,23 +479,25 @@ namespace Viscoplastic
   template bool
   mark_cells<2>(parallel::distributed::Triangulation<2> &,
                 const Vector<double> &,
-                const RefinementParameters &);
+                const RefinementParameters &,
+                const std::function<void()> &);
   template bool
   mark_cells<3>(parallel::distributed::Triangulation<3> &,
                 const Vector<double> &,
-                const RefinementParameters &);
+                const RefinementParameters &,
+                const std::function<void()> &);
   template bool
   mark_cells_to_tolerance<2>(parallel::distributed::Triangulation<2> &,
                              const Vector<double> &,
                              const RefinementParameters &,
                              const double,
-                             const bool);
+                             const std::function<void()> &);
   template bool
   mark_cells_to_tolerance<3>(parallel::distributed::Triangulation<3> &,
                              const Vector<double> &,
                              const RefinementParameters &,
                              const double,
-                             const bool);
+                             const std::function<void()> &);
   template class StateTransfer<2>;
   template class StateTransfer<3>;
   template FrictionState

@@ -213,6 +213,8 @@ namespace Viscoplastic
         record["estimated_error"] = {{"t", errors->t},
                                      {"space", errors->largest.space},
                                      {"time", errors->largest.time},
+                                     {"friction", errors->largest.friction},
+                                     {"transfer", errors->largest.transfer},
                                      {"algebraic", errors->largest.algebraic},
                                      {"initial", errors->largest.initial},
                                      {"total", errors->largest.total()},

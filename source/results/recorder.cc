@@ -31,12 +31,19 @@ namespace Viscoplastic
 
 
 
+    template <int dim>
     void
-    add_estimates(const ErrorEstimate &estimate, Statistics &row)
+    add_estimates(const Scene<dim>    &scene,
+                  const ErrorEstimate &estimate,
+                  Statistics          &row)
     {
       row.add("energy_norm", estimate.energy_norm);
       row.add("estimate_space", estimate.space);
       row.add("estimate_time", estimate.time);
+      if (dim == 3 && scene.has_friction())
+        row.add("estimate_friction", estimate.friction);
+      if (scene.is_adaptive() && scene.has_irreversible_stress())
+        row.add("estimate_transfer", estimate.transfer);
       row.add("estimate_algebraic", estimate.algebraic);
       row.add("estimate_initial", estimate.initial);
       row.add("estimate_total", estimate.total());
@@ -290,7 +297,7 @@ namespace Viscoplastic
     if (scene.is_adaptive())
       row.add("estimator", quantities.refinement_estimate);
     if (has_error_estimate)
-      add_estimates(step.end.errors, row);
+      add_estimates(scene, step.end.errors, row);
     if (scene.measures_errors())
       add_errors(errors, row);
     write_seconds();
@@ -421,9 +428,10 @@ namespace Viscoplastic
          << " has not been kept: at t = " << run.errors->t
          << " the error is estimated as " << run.errors->relative()
          << " of the solution, of it " << errors.space / size
-         << " by the mesh, " << errors.time / size << " by the time steps and "
-         << errors.initial / size << " by the initial data; ";
-    if (errors.time > 0.5 * errors.total())
+         << " by the mesh, " << (errors.time + errors.friction) / size
+         << " by the time steps and " << errors.initial / size
+         << " by the initial data; ";
+    if (errors.time + errors.friction > 0.5 * errors.total())
       text << "steps of the smallest size are too long, so that the data jump "
               "or 'Step control/Smallest step' is too large.";
     else if (!scene.is_adaptive())

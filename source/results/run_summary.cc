@@ -222,11 +222,15 @@ namespace Viscoplastic
       const ErrorEstimate &largest = run.errors->largest;
       out << "Estimated error in the energy norm, largest at t = "
           << number(run.errors->t)
-          << " (without what the mesh\nhas done to the memory z of earlier "
-             "steps), and relative to the solution:\n";
+          << " (without what the mesh\nhas done to the rates that made "
+             "the memory z), and relative to the solution:\n";
       part("mesh", largest.space);
       if (run.viscous_dissipation)
         part("time steps", largest.time);
+      if (largest.friction > 0.)
+        part("slip that turns", largest.friction);
+      if (largest.transfer > 0.)
+        part("changes of the mesh", largest.transfer);
       part("iterations", largest.algebraic);
       if (largest.initial > 0.)
         part("initial data", largest.initial);

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
+#include <viscoplastic_contact/error/memory_loss.h>
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/mesh/mesh.h>
@@ -202,7 +203,7 @@ namespace Viscoplastic
     AssertThrow(!control.is_on || !scene.has_viscosity() || error_estimator,
                 ExcMessage("'Step control/Tolerance' needs an estimate of the "
                            "error; set 'Error control/Error bar' = true."));
-    control.set_has_estimate(scene.has_viscosity());
+    control.set_has_estimate(scene.has_time_error());
     announcer.announce(scene);
   }
 
@@ -276,7 +277,7 @@ namespace Viscoplastic
           refine_first_mesh(errors.space,
                             budget->space(errors,
                                           budget->size(errors.energy_norm),
-                                          scene.has_viscosity()),
+                                          scene.has_time_error()),
                             accepted.space_estimate.squared_indicators);
       }
     while (is_refined);
@@ -314,20 +315,15 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::adapt_mesh()
   {
     TimerOutput::Scope    phase(timer, "adaptation");
-    const ErrorEstimate  &errors = accepted.errors;
     const Vector<double> &squared_indicators =
       accepted.space_estimate.squared_indicators;
     if (budget)
       {
-        const double size =
-          budget->size(recorder.summary().errors->largest_energy_norm);
-        if (size > 0. &&
-            mark_cells_to_tolerance(
-              triangulation,
-              squared_indicators,
-              parameters.refinement,
-              errors.space / budget->space(errors, size, scene.has_viscosity()),
-              /* may_coarsen = */ true))
+        if (mark_cells_to_tolerance(triangulation,
+                                    squared_indicators,
+                                    parameters.refinement,
+                                    space_ratio(accepted.errors),
+                                    keep_memory()))
           change_mesh();
         return;
       }
@@ -345,23 +341,51 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  ViscoplasticContact<dim>::space_ratio(const ErrorEstimate &errors) const
+  {
+    const double size =
+      budget->size(std::max(recorder.summary().errors->largest_energy_norm,
+                            errors.energy_norm));
+    // A body that has not moved yet says nothing about the mesh.
+    return size > 0. ? errors.space /
+                         budget->space(errors, size, scene.has_time_error()) :
+                       1.;
+  }
+
+
+
+  template <int dim>
+  std::function<void()>
+  ViscoplasticContact<dim>::keep_memory()
+  {
+    return [this] {
+      const double size =
+        budget->size(recorder.summary().errors->largest_energy_norm);
+      limit_memory_loss(triangulation,
+                        discretization->stress_space,
+                        accepted.state.z,
+                        budget->transfer(accepted.errors, size));
+    };
+  }
+
+
+
+  template <int dim>
   bool
   ViscoplasticContact<dim>::refine_for(const AcceptedStep<dim> &step)
   {
     if (!budget || !scene.is_adaptive())
       return false;
-    TimerOutput::Scope   phase(timer, "adaptation");
-    const ErrorEstimate &errors = step.end.errors;
-    const double         size =
-      budget->size(std::max(recorder.summary().errors->largest_energy_norm,
-                            errors.energy_norm));
-    const double allowed = budget->space(errors, size, scene.has_viscosity());
-    if (size == 0. || errors.space <= allowed ||
+    TimerOutput::Scope phase(timer, "adaptation");
+    const double       ratio = space_ratio(step.end.errors);
+    if (ratio <= 1. ||
         !mark_cells_to_tolerance(triangulation,
                                  step.end.space_estimate.squared_indicators,
                                  parameters.refinement,
-                                 errors.space / allowed,
-                                 /* may_coarsen = */ n_refinements == 0))
+                                 ratio,
+                                 n_refinements == 0 ? keep_memory() :
+                                                      std::function<void()>()))
       return false;
     change_mesh();
     ++n_refinements;
@@ -382,8 +406,7 @@ namespace Viscoplastic
         !mark_cells_to_tolerance(triangulation,
                                  squared_indicators,
                                  parameters.refinement,
-                                 estimate / allowed,
-                                 /* may_coarsen = */ false))
+                                 estimate / allowed))
       return false;
     triangulation.execute_coarsening_and_refinement();
     set_up();
@@ -400,6 +423,10 @@ namespace Viscoplastic
     DistributedVector density;
     if (discretization->face)
       density = discretization->face->density(state.friction);
+    const double loss =
+      error_estimator ?
+        memory_loss(triangulation, discretization->stress_space, state.z) :
+        0.;
     const double       energy = stored_energy(*discretization, accepted);
     StateTransfer<dim> transfer(triangulation,
                                 discretization->stress_space,
@@ -420,7 +447,7 @@ namespace Viscoplastic
                                       state);
     accepted.rate.reset();
     if (error_estimator)
-      error_estimator->change_mesh(d.space, d.matrix, accepted);
+      error_estimator->change_mesh(d.space, d.matrix, loss, accepted);
     recorder.record_mesh_change(stored_energy(d, accepted) - energy);
   }
 

@@ -195,24 +195,38 @@ namespace Viscoplastic
         });
       }
     TimerOutput::Scope phase(timer, "estimate");
+    double             turning = 0.;
+    if (dim == 3 && discretization.face)
+      {
+        DistributedVector change = end.forces.u;
+        change -= accepted.forces.u;
+        turning =
+          turning_work(discretization.face->layout(),
+                       accepted.state.friction,
+                       state.friction,
+                       discretization.face->slips(change,
+                                                  step.foundation_step));
+      }
     error_estimator->assess(discretization.stress_space,
                             time_defect(step.is_implicit ?
                                           TimeScheme::backward_euler :
                                           scene.parameters.time.scheme),
                             step.report,
+                            turning,
                             accepted,
                             old_rate,
                             end);
     const ErrorEstimate &estimate = end.errors;
     StepErrors           errors;
-    errors.indicator = estimate.time_indicator;
+    errors.indicator =
+      estimate.time_indicator + estimate.friction - accepted.errors.friction;
     errors.change =
       std::max(state.k * std::sqrt(std::max(0., estimate.velocity_square)),
                estimate.irreversible_change);
     errors.size   = scene.parameters.error_control.has_tolerance() ?
                       estimate.energy_norm :
                       std::max(estimate.energy_norm, estimate.irreversible_norm);
-    errors.before = accepted.errors.time;
+    errors.before = accepted.errors.time + accepted.errors.friction;
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
       throw StepFailure(state.n, state.t, "the solution is not finite.");
     return errors;

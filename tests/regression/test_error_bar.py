@@ -11,7 +11,7 @@ from harness import SOURCE, TestCase, main, run
 from test_restart import EVERY_STEP, Job, without_wall_times
 from test_shear_layer import MU, THETA, tau
 
-PARTS = ("space", "time", "algebraic", "initial")
+PARTS = ("space", "time", "algebraic", "initial")  # of a plane scene on one mesh
 ESTIMATE = {
     "energy_norm",
     "estimate_total",
@@ -166,6 +166,62 @@ class TimePart(TestCase):
             np.sqrt(np.mean((error / THETA) ** 2) / MU),
             relative=1e-6,
         )
+
+
+class FrictionPart(TestCase):
+    """Slip that turns, on a conveyor that does, in an elastic body."""
+
+    CONVEYOR = {
+        "Geometry/Arguments": "3, 3, 3 : 0, 0, 0 : 1, 1, 1 : true",
+        "Error control/Error bar": "true",
+        "Output/Fields every": 0,
+    }
+
+    def run_with(self, steps, **more):
+        return run(
+            "conveyor_3d",
+            {**self.CONVEYOR, "Time/Phases": f"1: {steps}, 2: {steps}", **more},
+        )
+
+    def test_first_order_and_larger_than_the_error(self):
+        fine = self.run_with(128, **{"Output/Reference fields": "true"})
+        estimates = []
+        for steps in 4, 8:
+            coarse = self.run_with(
+                steps, **{"Exact solution/Reference directory": fine.directory}
+            )
+            for end in steps, 2 * steps:
+                error = coarse["error_energy"][end]
+                estimate = coarse["estimate_friction"][end]
+                self.assertGreater(error, 0)
+                self.assertGreater(estimate, 0.9 * error)
+                self.assertLess(estimate, 2.5 * error)
+            estimates.append(coarse["estimate_friction"][-1])
+            self.assertEqual(coarse["estimate_time"].max(), 0)
+        self.assertClose(estimates[0] / estimates[1], 2, absolute=0.4)
+
+    def test_chooses_steps_without_viscosity(self):
+        found = []
+        for tolerance in 0.1, 0.02:
+            control = {
+                "Step control/Tolerance": tolerance,
+                "Step control/Resolve events": "false",
+            }
+            found.append(self.run_with(4, **control))
+            relative = found[-1]["estimate_friction"] / found[-1]["energy_norm"].max()
+            self.assertLess(relative[-1], 2 * tolerance)
+        self.assertGreater(len(found[1]["t"]), 1.5 * len(found[0]["t"]))
+        self.assertLess(
+            found[1]["estimate_friction"][-1], 0.5 * found[0]["estimate_friction"][-1]
+        )
+        to_tolerance = self.run_with(4, **{"Error control/Tolerance": 0.5})
+        self.assertLess(
+            to_tolerance["estimate_total"].max(),
+            0.5 * to_tolerance["energy_norm"].max(),
+        )
+
+    def test_plane_bodies_have_none(self):
+        self.assertNotIn("estimate_friction", run("slab", SLAB).statistics)
 
 
 class SpacePart(TestCase):

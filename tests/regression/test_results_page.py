@@ -8,6 +8,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
+
 import synthetic_study as synthetic
 import test_pad
 import test_shear_layer
@@ -155,6 +157,32 @@ class Tables(Folder):
         self.assertEqual(tables.best_seconds([None, measured, predicted]), 5)
         self.assertEqual(tables.best_seconds([None, predicted]), 1)
         self.assertIsNone(tables.best_seconds([None]))
+
+    def test_runs_to_a_tolerance(self):
+        columns = {
+            "step": np.arange(4.0),
+            "cells": np.array([4.0, 16.0, 40.0, 28.0]),
+            "wall_total": np.array([0.0, 0.1, 0.3, 0.5]),
+            "energy_norm": np.array([0.0, 1.0, 2.0, 1.0]),
+            "estimate_total": np.array([0.01, 0.05, 0.08, 0.03]),
+            "error_energy": np.array([0.0, 0.02, 0.06, 0.03]),
+            "exact_energy": np.array([0.0, 1.0, 2.0, 1.0]),
+        }
+        row = tables.known_to_tolerance_row("x", "norton", 0.05, columns)
+        self.assertEqual(
+            row, ["x", "norton", "5 %", "4 %", "3 %", "0.6", "40", "3", "0.5 s"]
+        )
+        self.assertEqual(len(row), len(tables.KNOWN_TO_TOLERANCE_HEADER))
+
+        study = self.study(variants=(UNIFORM, ADAPTIVE))
+        row = tables.to_tolerance_row("x", 0.05, columns, study, "error_energy")
+        self.assertEqual(len(row), len(tables.TO_TOLERANCE_HEADER))
+        best = tables.price(study, UNIFORM, 0.05, "error_energy")["seconds"]
+        self.assertTrue(row[-2].startswith(tables.seconds(best)), row)
+        self.assertEqual(row[-1], tables.number(best / 0.5, 2))
+        # Nothing is known of uniform meshes that are so accurate.
+        row = tables.to_tolerance_row("x", 1e-9, columns, study, "error_energy")
+        self.assertEqual(row[-2:], ["–", "–"])
 
     def test_fits(self):
         study = self.study(variants=(UNIFORM, ADAPTIVE))

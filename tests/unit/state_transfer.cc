@@ -3,6 +3,7 @@
 // The transfer of a state to a new mesh, on any number of ranks.
 
 #include "sampled_body.h"
+#include <viscoplastic_contact/error/memory_loss.h>
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 
 #include <cmath>
@@ -129,6 +130,75 @@ namespace
             EXPECT_LT((body.integral(state.z) - integral).norm(),
                       1e-13 * integral.norm());
           }
+      }
+  }
+
+
+
+  TYPED_TEST(Transfer, LosesWhatWasForetold)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const bool at_quadrature_points : {false, true})
+      {
+        SampledBody<dim> body(box_with<dim>("set Role = clamped\n"),
+                              at_quadrature_points);
+        body.refine_where([](const Point<dim> &x) { return x[0] < 1.5; });
+        body.set_up();
+        State<dim> state;
+        state.u         = body.space->ghosted_vector();
+        state.velocity  = state.u;
+        state.z         = body.sample(wavy_stress<dim>);
+        const auto mark = [&] {
+          for (const auto &cell : body.triangulation.active_cell_iterators())
+            if (cell->is_locally_owned() && cell->level() > 0)
+              cell->set_coarsen_flag();
+          body.triangulation.prepare_coarsening_and_refinement();
+        };
+        const auto loss = [&](const IrreversibleStress &z) {
+          return memory_loss(body.triangulation, *body.stress_space, z);
+        };
+        EXPECT_EQ(loss(state.z), 0.); // nothing is marked
+        mark();
+        const double foretold = loss(state.z);
+        EXPECT_EQ(loss(IrreversibleStress()), 0.);
+        EXPECT_LT(loss(body.sample(
+                    [](const Point<dim> &) { return constant_stress(); })),
+                  1e-14);
+
+        // Less is lost if fewer families go.
+        const double allowed = 0.9 * foretold;
+        limit_memory_loss(body.triangulation,
+                          *body.stress_space,
+                          state.z,
+                          allowed);
+        EXPECT_LE(loss(state.z), allowed);
+        EXPECT_GT(loss(state.z), 0.);
+        mark();
+        limit_memory_loss(body.triangulation,
+                          *body.stress_space,
+                          state.z,
+                          2. * foretold);
+        EXPECT_EQ(loss(state.z), foretold);
+
+        // Coarser and back again: what has changed.
+        const auto n_cells = body.triangulation.n_global_active_cells();
+        state              = adapt(body, state, -1.).state;
+        EXPECT_EQ(body.triangulation.n_global_levels(), 1u);
+        state = adapt(body, state, 1.5).state;
+        EXPECT_EQ(body.triangulation.n_global_active_cells(), n_cells);
+        const IrreversibleStress before = body.sample(wavy_stress<dim>);
+        ASSERT_EQ(state.z.size(), before.size());
+        double square = 0.;
+        for (std::size_t c = 0, i = 0; c < body.stress_space->n_cells(); ++c)
+          for (unsigned int s = 0; s < body.stress_space->n_samples; ++s, ++i)
+            {
+              const Stress lost = state.z[i] - before[i];
+              square += body.stress_space->weight(c, s) *
+                        (body.stress_space->moduli(c).strain(lost) * lost);
+            }
+        EXPECT_NEAR(std::sqrt(Utilities::MPI::sum(square, MPI_COMM_WORLD)),
+                    foretold,
+                    1e-12 * foretold);
       }
   }
 

@@ -409,4 +409,40 @@ namespace
       face, points(".>>"), points("..>", {1., 1., 0.}), false));
     EXPECT_FALSE(has_contact_event(face, points(""), points(""), false));
   }
+
+
+
+  TEST(ContactEvents, TurningCostsWork)
+  {
+    // Points with the bound 2 whose multiplier turns by an angle while they
+    // slip by 3.
+    const auto state = [](const std::vector<double> &angles) {
+      FrictionState result(std::vector<double>(angles.size(), 2.));
+      for (unsigned int p = 0; p < angles.size(); ++p)
+        {
+          result.sticks[p]        = false;
+          result.multiplier[p][0] = 2. * std::cos(angles[p]);
+          result.multiplier[p][1] = 2. * std::sin(angles[p]);
+        }
+      return result;
+    };
+    const FrictionFace face;
+    const auto work = [&](const FrictionState &from, const FrictionState &to) {
+      std::vector<Tensor<1, 2>> slips(to.multiplier);
+      for (Tensor<1, 2> &slip : slips)
+        slip *= 1.5;
+      return turning_work(face, from, to, slips);
+    };
+    const double n_ranks = face.sum(1.);
+    EXPECT_EQ(work(state({0., 1.}), state({0., 1.})), 0.);
+    EXPECT_NEAR(work(state({0., 0.2}), state({0.3, 0.1})),
+                n_ranks * 6. * (2. - std::cos(0.3) - std::cos(0.1)),
+                1e-13);
+    // Neither slip that turns back nor slip that begins.
+    EXPECT_EQ(work(state({0.}), state({numbers::PI})), 0.);
+    FrictionState at_rest = state({0.});
+    at_rest.sticks[0]     = true;
+    EXPECT_EQ(work(at_rest, state({0.5})), 0.);
+    EXPECT_EQ(work(state({0.5}), at_rest), 0.);
+  }
 } // namespace

@@ -22,4 +22,16 @@ namespace Viscoplastic
                     const FrictionState &old_state,
                     const FrictionState &state,
                     const bool           from_kink);
+
+  /**
+   * sum of |lambda| |s| (1 - cos theta) over the points that slip in a step and
+   * in the one before, with theta <= pi/2 the angle between their multipliers:
+   * how much more work slip in the old direction would have asked for. Zero in
+   * the plane. @p slips: of the step. Collective.
+   */
+  double
+  turning_work(const FrictionFace              &face,
+               const FrictionState             &old_state,
+               const FrictionState             &state,
+               const std::vector<Tensor<1, 2>> &slips);
 } // namespace Viscoplastic

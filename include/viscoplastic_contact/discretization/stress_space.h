@@ -106,6 +106,11 @@ namespace Viscoplastic
     mean_stress(const DistributedVector  &ghosted_u,
                 const IrreversibleStress &z) const;
 
+    /// For each child of a cell the matrix that makes its samples from those of
+    /// its parent: values of the polynomial through them.
+    std::vector<FullMatrix<double>>
+    prolongation() const;
+
   private:
     static constexpr unsigned int n_vertices =
       GeometryInfo<dim>::vertices_per_cell;

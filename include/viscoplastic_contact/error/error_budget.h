@@ -20,6 +20,8 @@ namespace Viscoplastic
   public:
     /// The largest share of the initial data, which one mesh has to resolve.
     static constexpr double initial_share = 0.25;
+    /// The share of what coarser meshes take from z, over the run.
+    static constexpr double transfer_share = 0.1;
     /// What the mesh may use whatever the others have used.
     static constexpr double least_space_share = 0.4;
 
@@ -51,8 +53,16 @@ namespace Viscoplastic
       return initial_share * tolerance * expected_size;
     }
 
-    /// What the time steps of the run may use, relative to the solution. Where
-    /// nothing flows they have no error.
+    /// What the next change of the mesh may take from z: half of what is left.
+    double
+    transfer(const ErrorEstimate &accepted, const double size) const
+    {
+      return 0.5 *
+             std::max(0.,
+                      transfer_share * tolerance * size - accepted.transfer);
+    }
+
+    /// What the time steps of the run may use, relative to the solution.
     double
     time_tolerance() const
     {
@@ -64,7 +74,7 @@ namespace Viscoplastic
     double
     space(const ErrorEstimate &estimate,
           const double         size,
-          const bool           has_viscosity) const;
+          const bool           has_time_error) const;
 
     const double tolerance;
     double       expected_size = 0.;

@@ -7,8 +7,9 @@ namespace Viscoplastic
 {
   /**
    * The error of a state in the energy norm a(.,.)^{1/2}, by its causes. It
-   * bounds the error of one step for given z, with the time error of z: the
-   * error in space that has accumulated in z is not part of it.
+   * bounds the error of one step for given z, with the time error of z and what
+   * coarser meshes have taken from it: the error in space of the rates that z
+   * has been made of is not part of it.
    */
   struct ErrorEstimate
   {
@@ -17,6 +18,11 @@ namespace Viscoplastic
     /// The error of the time steps up to now, (int E^-1 D : D)^{1/2}, with D
     /// the sum of their defects (see ErrorEstimator).
     double time = 0.;
+    /// The error of slip that has turned its direction within steps.
+    double friction = 0.;
+    /// What changes of the mesh have taken from z, (int E^-1 d : d)^{1/2} with
+    /// d the change of z in coarsened cells, summed.
+    double transfer = 0.;
     /// The error of the iterations that solved the step.
     double algebraic = 0.;
     /// The error of the initial data.
@@ -41,15 +47,15 @@ namespace Viscoplastic
     void
     exchange(Archive &archive)
     {
-      archive &space &time &algebraic &initial &time_indicator
-        &velocity_variation &energy_norm &velocity_square;
+      archive &space &time &friction &transfer &algebraic &initial
+        &time_indicator &velocity_variation &energy_norm &velocity_square;
     }
 
     /// The sum, a bound by the triangle inequality.
     double
     total() const
     {
-      return space + time + algebraic + initial;
+      return space + time + friction + transfer + algebraic + initial;
     }
   };
 

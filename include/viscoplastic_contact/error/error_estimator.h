@@ -39,6 +39,15 @@ namespace Viscoplastic
    * a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds their
    * effect on u. That errors of z relax, too, is left out: where the stress
    * follows from the loads it does not happen.
+   *
+   * Friction: slip that turns in a step has the direction of its end. In an
+   * elastic body the error of what is linear between the steps satisfies
+   * a(e, e) <= sum over the steps of rho |s| - lambda . s, with s the slip of a
+   * step and lambda the multiplier at its beginning. Of this sum only what
+   * comes from turning counts (see turning_work()): the slip of a point that
+   * has been at rest, or keeps its direction, is exact at the end of the step.
+   *
+   * Changes of the mesh: what they take from z adds up.
    */
   template <int dim>
   class ErrorEstimator
@@ -49,6 +58,9 @@ namespace Viscoplastic
      * scenes. How it was found: doc/method.md, section 12.
      */
     static constexpr double space_calibration = 0.3;
+
+    /// The same for slip that turns.
+    static constexpr double friction_calibration = 0.4;
 
     /// Bounds of the relative tolerance of coupled iterations.
     static constexpr double least_tolerance = 1e-10, largest_tolerance = 1e-5;
@@ -73,10 +85,11 @@ namespace Viscoplastic
                        EvaluatedState<dim> &initial) const;
 
     /// Renew what depends on the mesh in the estimate of a state that has moved
-    /// to a new one. Collective.
+    /// to a new one. @p memory_loss: what z has lost in it. Collective.
     void
     change_mesh(const AdmissibleSpace<dim> &space,
                 const DistributedMatrix    &matrix,
+                const double                memory_loss,
                 EvaluatedState<dim>        &accepted) const;
 
     /**
@@ -90,12 +103,14 @@ namespace Viscoplastic
     /**
      * Set the estimate and the fields of time errors of the end of a step. Its
      * forces and space estimate, and with viscosity the rates of both states,
-     * have been evaluated. @p defect: of the scheme of the step. Collective.
+     * have been evaluated. @p defect: of the scheme of the step. @p turning:
+     * the turning_work() of the step. Collective.
      */
     void
     assess(const StressSpace<dim>    &stress_space,
            const TimeDefect          &defect,
            const ContactReport       &report,
+           const double               turning,
            const EvaluatedState<dim> &accepted,
            const FlowRate            *accepted_rate,
            EvaluatedState<dim>       &end) const;

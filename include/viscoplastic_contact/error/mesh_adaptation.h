@@ -11,6 +11,7 @@
 #include <viscoplastic_contact/parameters/parameters.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace Viscoplastic
@@ -28,14 +29,16 @@ namespace Viscoplastic
    * present one, and the number of cells would not fall by a tenth.
    *
    * @p squared_estimate has an entry for each active cell, of which those of
-   * owned cells are read. Returns whether the mesh will change on any rank.
+   * owned cells are read. @p limit_coarsening may withdraw marks for coarsening
+   * before that is decided. Returns whether the mesh will change on any rank.
    * Collective.
    */
   template <int dim>
   bool
   mark_cells(parallel::distributed::Triangulation<dim> &triangulation,
              const Vector<double>                      &squared_estimate,
-             const RefinementParameters                &parameters);
+             const RefinementParameters                &parameters,
+             const std::function<void()>               &limit_coarsening = {});
 
 
   /**
@@ -45,8 +48,9 @@ namespace Viscoplastic
    * below 0.85 of what it may be, halved cells having a quarter of the squared
    * estimate, but at most those with 0.6 of it: estimates of finer meshes know
    * better which cells to refine next. Cells that matter least are coarsened
-   * with them if @p may_coarsen. Below 0.6, cells are coarsened up to that
-   * aim, if that removes a tenth of them. In between the mesh stays.
+   * with them. Below 0.6, cells are coarsened up to that aim, if that removes a
+   * tenth of them. In between the mesh stays. Nothing is coarsened without
+   * @p limit_coarsening.
    *
    * Only levels and number of cells of @p parameters count. Collective.
    */
@@ -57,7 +61,7 @@ namespace Viscoplastic
     const Vector<double>                      &squared_estimate,
     const RefinementParameters                &parameters,
     const double                               ratio,
-    const bool                                 may_coarsen);
+    const std::function<void()>               &limit_coarsening = {});
 
 
   /**

@@ -70,6 +70,10 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     strain(const SymmetricTensor<2, 3> &stress) const;
 
+    /// E^-1 stress : stress.
+    double
+    complementary_square(const SymmetricTensor<2, 3> &stress) const;
+
     /// mu, unit of stress; of an anisotropic tensor Voigt's average.
     double
     shear_modulus() const;
@@ -199,6 +203,18 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < 3; ++i)
       result[i][i] += dilatation3;
     return result;
+  }
+
+
+
+  inline double
+  Stiffness::complementary_square(const SymmetricTensor<2, 3> &stress) const
+  {
+    if (anisotropic_data)
+      return strain(stress) * stress;
+    const double pressure = trace(stress) / 3.;
+    return (stress * stress - 3. * pressure * pressure) / (2. * mu) +
+           pressure * pressure / bulk;
   }
 
 

@@ -17,6 +17,7 @@
 #include <viscoplastic_contact/run/run_directories.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -148,6 +149,15 @@ namespace Viscoplastic
     refine_first_mesh(const double          estimate,
                       const double          allowed,
                       const Vector<double> &squared_indicators);
+
+    /// The error of the mesh over what it may be in a run to a tolerance.
+    double
+    space_ratio(const ErrorEstimate &errors) const;
+
+    /// What withdraws marks for coarsening where z would lose too much for the
+    /// tolerance of the run.
+    std::function<void()>
+    keep_memory();
 
     /// Change the mesh as its cells are marked, and bring the accepted state to
     /// it.

@@ -101,6 +101,14 @@ namespace Viscoplastic
     bool
     has_friction() const;
 
+    /// Whether the error of time steps is estimated: of z, and of slip that may
+    /// turn.
+    bool
+    has_time_error() const
+    {
+      return has_viscosity() || (dim == 3 && has_friction());
+    }
+
     bool
     has_contact() const;
 

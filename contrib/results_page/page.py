@@ -119,11 +119,10 @@ With `Error control/Tolerance` the run chooses meshes and steps by itself
 error in the energy norm of all steps, estimated and true, over the largest norm.
 
 {known_to_tolerance}
-The scenes of the pictures above, from their coarsest meshes. Beside each run is
-the cheapest one on a uniform mesh that is so accurate, from the price list:
-measured, or in italics predicted. Its error is the difference to a finer run, and
-that of the run to a tolerance is its estimate, which is mostly larger than its
-error; so the comparison favours uniform meshes.
+The scenes of the pictures above, from their coarsest meshes. Errors are
+differences to a run with half of the smallest tolerance or less, as large as
+that run's own error allows, at the ends of phases. Beside each run is the cheapest one on a uniform
+mesh with the same error, from the price list: measured, or in italics predicted.
 
 {to_tolerance}
 ## What the tolerance of the solver is worth

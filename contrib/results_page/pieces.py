@@ -216,8 +216,10 @@ def prices(runner):
 
 
 def run_to(tolerance, name, files, runner, overrides=None):
-    return runner.run(
-        f"to_tolerance/{name}_{tolerance}",
+    """The columns of a run to a tolerance, and where its results are."""
+    name = f"to_tolerance/{name}_{tolerance}"
+    columns = runner.run(
+        name,
         files,
         {
             **(overrides or {}),
@@ -226,6 +228,7 @@ def run_to(tolerance, name, files, runner, overrides=None):
             "Output/Fields every": "0",
         },
     )
+    return columns, runner.directory / name
 
 
 def known_to_tolerance(runner):
@@ -235,7 +238,8 @@ def known_to_tolerance(runner):
         files = [folder / f"{scene}.prm", *([folder / f"{law}.prm"] if law else [])]
         facts_of = facts(files[0], files[1] if law else None, "")
         for eps in tolerances:
-            columns = run_to(eps, "_".join([scene, *([law] if law else [])]), files, runner)
+            name = "_".join([scene, *([law] if law else [])])
+            columns, _ = run_to(eps, name, files, runner)
             rows.append(
                 tables.known_to_tolerance_row(
                     facts_of["scene"], facts_of["law"], eps, columns
@@ -245,16 +249,22 @@ def known_to_tolerance(runner):
 
 
 def to_tolerance(runner):
+    """Errors are differences to a run with a smaller tolerance."""
     rows = []
-    for name, tolerances in plan.TO_TOLERANCE.items():
+    for name, (tolerances, finest) in plan.TO_TOLERANCE.items():
         study = diagram_study(name, runner)
+        files = [SCENES / f"{name}.prm"]
         overrides = {
             entry: value
             for entry, value in plan.DIAGRAMS[name][1].items()
             if not entry.startswith("Study/")
         }
+        _, reference = run_to(
+            finest, name, files, runner, {**overrides, "Output/Reference fields": "true"}
+        )
+        overrides["Exact solution/Reference directory"] = reference
         for eps in tolerances:
-            columns = run_to(eps, name, [SCENES / f"{name}.prm"], runner, overrides)
+            columns, _ = run_to(eps, name, files, runner, overrides)
             rows.append(
                 tables.to_tolerance_row(f"`{name}`", eps, columns, study, study.error())
             )

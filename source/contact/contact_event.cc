@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/contact_event.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Viscoplastic
@@ -49,13 +50,12 @@ namespace Viscoplastic
       {
         const Tensor<1, 2> &old = old_state.multiplier[p],
                            &now = state.multiplier[p];
-        const double sizes      = stable_norm(old) * stable_norm(now);
-        const double product    = old * now;
-        const bool   has_turned = !old_state.sticks[p] && !state.sticks[p] &&
-                                product > 0. && sizes > product;
-        if (has_turned)
-          work +=
-            stable_norm(now) * stable_norm(slips[p]) * (1. - product / sizes);
+        const double force      = stable_norm(now);
+        if (old_state.sticks[p] || state.sticks[p] || force == 0. ||
+            stable_norm(old) == 0.)
+          continue;
+        const double cosine = (old / stable_norm(old)) * (now / force);
+        work += force * stable_norm(slips[p]) * std::clamp(1. - cosine, 0., 1.);
       }
     return face.sum(work);
   }

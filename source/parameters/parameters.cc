@@ -314,9 +314,9 @@ namespace Viscoplastic
     prm.add_parameter("Largest step",
                       largest_step,
                       "Longer steps are not taken; 0 for the length of the "
-                      "phase, or in plane scenes without viscosity, whose "
-                      "steps have no estimate, for the steps of `Time/Phases'. "
-                      "Unit: time.",
+                      "phase, or in scenes without viscosity, which see only "
+                      "slip that turns from one step to the next, for the "
+                      "steps of `Time/Phases'. Unit: time.",
                       Patterns::Double(0.));
     prm.add_parameter("Smallest step",
                       smallest_step,

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iomanip>
 #include <limits>
 #include <sstream>
 
@@ -203,7 +204,7 @@ namespace Viscoplastic
     AssertThrow(!control.is_on || !scene.has_viscosity() || error_estimator,
                 ExcMessage("'Step control/Tolerance' needs an estimate of the "
                            "error; set 'Error control/Error bar' = true."));
-    control.set_has_estimate(scene.has_time_error());
+    control.set_has_estimate(scene.has_viscosity());
     announcer.announce(scene);
   }
 
@@ -389,6 +390,11 @@ namespace Viscoplastic
       return false;
     change_mesh();
     ++n_refinements;
+    std::ostringstream text;
+    text << "  mesh " << std::setprecision(3) << ratio
+         << " times too coarse for step " << step.time_step.n << ", refined to "
+         << triangulation.n_global_active_cells() << " cells\n";
+    out << text.str() << std::flush;
     return true;
   }
 

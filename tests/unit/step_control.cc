@@ -434,12 +434,13 @@ namespace
       return turning_work(face, from, to, slips);
     };
     const double n_ranks = face.sum(1.);
-    EXPECT_EQ(work(state({0., 1.}), state({0., 1.})), 0.);
+    EXPECT_NEAR(work(state({0., 1.}), state({0., 1.})), 0., 1e-14);
     EXPECT_NEAR(work(state({0., 0.2}), state({0.3, 0.1})),
                 n_ranks * 6. * (2. - std::cos(0.3) - std::cos(0.1)),
                 1e-13);
-    // Neither slip that turns back nor slip that begins.
-    EXPECT_EQ(work(state({0.}), state({numbers::PI})), 0.);
+    // Slip that turns back counts as a right angle, slip that begins or ends
+    // not.
+    EXPECT_NEAR(work(state({0.}), state({numbers::PI})), n_ranks * 6., 1e-13);
     FrictionState at_rest = state({0.});
     at_rest.sticks[0]     = true;
     EXPECT_EQ(work(at_rest, state({0.5})), 0.);

@@ -37,7 +37,7 @@ namespace Viscoplastic::Testing
                                               this->scene.schedule,
                                               order_of(p.time.scheme),
                                               0.);
-      control->set_has_estimate(this->scene.has_time_error());
+      control->set_has_estimate(this->scene.has_viscosity());
       stepper        = std::make_unique<TimeStepper<dim>>(*discretization,
                                                    error_estimator.get(),
                                                    *control,

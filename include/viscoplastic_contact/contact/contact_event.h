@@ -25,9 +25,9 @@ namespace Viscoplastic
 
   /**
    * sum of |lambda| |s| (1 - cos theta) over the points that slip in a step and
-   * in the one before, with theta <= pi/2 the angle between their multipliers:
-   * how much more work slip in the old direction would have asked for. Zero in
-   * the plane. @p slips: of the step. Collective.
+   * in the one before, with theta the angle between their multipliers, or pi/2
+   * if it is larger: how much more work slip in the old direction would have
+   * asked for. @p slips: of the step. Collective.
    */
   double
   turning_work(const FrictionFace              &face,

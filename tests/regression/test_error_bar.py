@@ -202,14 +202,15 @@ class FrictionPart(TestCase):
 
     def test_chooses_steps_without_viscosity(self):
         found = []
-        for tolerance in 0.1, 0.02:
+        for tolerance in 0.1, 0.01:
             control = {
                 "Step control/Tolerance": tolerance,
                 "Step control/Resolve events": "false",
             }
             found.append(self.run_with(4, **control))
             relative = found[-1]["estimate_friction"] / found[-1]["energy_norm"].max()
-            self.assertLess(relative[-1], 2 * tolerance)
+            # relative to the path, which is longer than the solution is large
+            self.assertLess(relative[-1], 3 * tolerance)
         self.assertGreater(len(found[1]["t"]), 1.5 * len(found[0]["t"]))
         self.assertLess(
             found[1]["estimate_friction"][-1], 0.5 * found[0]["estimate_friction"][-1]

@@ -121,8 +121,9 @@ error in the energy norm of all steps, estimated and true, over the largest norm
 {known_to_tolerance}
 The scenes of the pictures above, from their coarsest meshes. Errors are
 differences to a run with half of the smallest tolerance or less, as large as
-that run's own error allows, at the ends of phases. Beside each run is the cheapest one on a uniform
-mesh with the same error, from the price list: measured, or in italics predicted.
+that run's own error allows, at the ends of phases. Beside each run is what
+uniform meshes take for the same error by the price list (between its errors by a
+power of the error), where that goes so far.
 
 {to_tolerance}
 ## What the tolerance of the solver is worth

@@ -336,29 +336,43 @@ TO_TOLERANCE_HEADER = (
     "cells",
     "steps",
     "seconds",
-    "a uniform mesh with that error",
+    "uniform meshes",
     "times as long",
 )
 
 
-def to_tolerance_row(scene, tolerance, columns, study, error):
-    """A run to a tolerance beside what a study says of uniform meshes."""
-    reached = error_of(columns)
-    prices = [
-        price(study, variant, reached, error)
-        for variant in study.variants()
-        if variant[0] == "uniform"
-    ]
-    prices = [found for found in prices if found]
-    uniform = min(prices, key=lambda found: found["seconds"], default=None)
+def uniform_seconds(reached, study, tolerances, error):
+    """What an error costs on uniform meshes: between the prices of two
+    tolerances by a power of the error, None beyond them."""
+    prices = []
+    for eps in tolerances:
+        found = [
+            price(study, variant, eps, error)
+            for variant in study.variants()
+            if variant[0] == "uniform"
+        ]
+        best = best_seconds(found)
+        if best is not None:
+            prices.append((eps, best))
+    prices.sort()
+    if not prices or not prices[0][0] <= reached <= prices[-1][0]:
+        return None
+    errors, times = np.log(np.array(prices)).T
+    return float(np.exp(np.interp(np.log(reached), errors, times)))
+
+
+def to_tolerance_row(scene, tolerance, columns, compared, uniform):
+    """A run to a tolerance, the same compared with a reference, and the seconds
+    that uniform meshes take for its error."""
+    own = columns["wall_total"][-1]
     return [
         scene,
         percent(tolerance),
         percent(estimate_of(columns)),
-        percent(reached),
+        percent(error_of(compared)),
         *size_cells(columns),
-        price_cell(uniform, False),
-        number(uniform and uniform["seconds"] / columns["wall_total"][-1], 2),
+        UNKNOWN if uniform is None else seconds(uniform),
+        UNKNOWN if uniform is None else number(uniform / own, 2),
     ]
 
 

@@ -515,6 +515,20 @@ namespace Viscoplastic
       return section == "Dimension" || path == "Mesh refinement/Strategy" ||
              path == "Output/Points" || path == "Error control/Error bar";
     }
+
+
+
+    /// Whether a run gets a tolerance, or loses the one that it has: meshes and
+    /// schemes are others then. It may get another one.
+    bool
+    is_switched(const std::string &path,
+                const std::string &old_value,
+                const std::string &value)
+    {
+      return path == "Error control/Tolerance" &&
+             (Utilities::string_to_double(old_value) > 0.) !=
+               (Utilities::string_to_double(value) > 0.);
+    }
   } // namespace
 
 
@@ -533,7 +547,9 @@ namespace Viscoplastic
         if (old == old_values.end())
           changes.forbidden.push_back("'" + path + "' is new");
         else if (old->second != value)
-          (is_fixed(path) ? changes.forbidden : changes.allowed)
+          (is_fixed(path) || is_switched(path, old->second, value) ?
+             changes.forbidden :
+             changes.allowed)
             .push_back("'" + path + "' is " + quoted(value) + " (was " +
                        quoted(old->second) + ")");
       }

@@ -174,18 +174,36 @@ class Tables(Folder):
         )
         self.assertEqual(len(row), len(tables.KNOWN_TO_TOLERANCE_HEADER))
 
-        study = self.study(variants=(UNIFORM, ADAPTIVE))
-        row = tables.to_tolerance_row("x", 0.05, columns, study, "error_energy")
+        # Differences to a reference are known at some steps only.
+        compared = {
+            **columns,
+            "error_energy": np.array([np.nan, 0.02, np.nan, 0.04]),
+            "exact_energy": np.array([np.nan, 1.0, np.nan, 2.0]),
+        }
+        row = tables.to_tolerance_row("x", 0.05, columns, compared, 1.5)
         self.assertEqual(len(row), len(tables.TO_TOLERANCE_HEADER))
-        best = tables.price(study, UNIFORM, 0.03, "error_energy")["seconds"]
-        self.assertTrue(row[-2].startswith(tables.seconds(best)), row)
-        self.assertEqual(row[-1], tables.number(best / 0.5, 2))
-        # Differences to a reference are known at some steps only. Nothing is
-        # known of uniform meshes that are so accurate.
-        columns["error_energy"] = np.array([np.nan, 1e-9, np.nan, 2e-9])
-        row = tables.to_tolerance_row("x", 0.05, columns, study, "error_energy")
-        self.assertEqual(row[3], tables.percent(1e-9))
+        self.assertEqual(row[3], "2 %")
+        self.assertEqual(row[-2:], ["1.5 s", "3"])
+        row = tables.to_tolerance_row("x", 0.05, columns, compared, None)
         self.assertEqual(row[-2:], ["–", "–"])
+
+    def test_prices_of_uniform_meshes_in_between(self):
+        study = self.study(variants=(UNIFORM, ADAPTIVE))
+
+        def measured(eps):
+            return tables.price(study, UNIFORM, eps, "error_energy")["seconds"]
+
+        def between(reached):
+            return tables.uniform_seconds(reached, study, (0.1, 0.03), "error_energy")
+
+        self.assertClose(between(0.1), measured(0.1), 1e-12)
+        self.assertClose(between(0.03), measured(0.03), 1e-12)
+        middle = (0.1 * 0.03) ** 0.5
+        self.assertClose(
+            between(middle), (measured(0.1) * measured(0.03)) ** 0.5, 1e-12
+        )
+        self.assertIsNone(between(0.2))
+        self.assertIsNone(between(0.02))
 
     def test_fits(self):
         study = self.study(variants=(UNIFORM, ADAPTIVE))

@@ -125,6 +125,19 @@ class Restart(TestCase):
     def test_bit_by_bit_on_two_ranks(self):
         self.check("slab", {**COARSE_SLAB, **to(0.06)}, (5,), ranks=2)
 
+    def test_another_tolerance_but_not_none(self):
+        scene = {**COARSE_SLAB, **to(0.1), **EVERY_STEP}
+        with Job("slab", scene) as job:
+            most_cells = job.run()["cells"].max()
+            job.forget_after(2)
+            finer = {"Error control__Tolerance": 0.05}
+            result = job.run("--restart", overrides=finer)
+            self.assertGreater(result["cells"].max(), most_cells)
+            job.forget_after(2)
+            none = {"Error control__Tolerance": 0}
+            refusal = job.run("--restart", code=1, overrides=none)
+            self.assertIn("'Error control/Tolerance' is 0", refusal.stderr)
+
 
 class Missed(TestCase):
     """A tolerance out of reach: the run ends with what it has, and says why."""

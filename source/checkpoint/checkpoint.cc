@@ -513,7 +513,8 @@ namespace Viscoplastic
       if (section == "Initial state")
         return entry != "Compatibility tolerance";
       return section == "Dimension" || path == "Mesh refinement/Strategy" ||
-             path == "Output/Points" || path == "Error control/Error bar";
+             path == "Output/Points" || path == "Error control/Error bar" ||
+             path == "Error control/Quantity";
     }
 
 

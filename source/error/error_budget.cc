@@ -2,32 +2,49 @@
 #include <viscoplastic_contact/error/error_budget.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace Viscoplastic
 {
   ErrorBudget::ErrorBudget(const double       tolerance,
                            const unsigned int dimension,
-                           const unsigned int order)
+                           const unsigned int order,
+                           const bool         of_quantity)
     : tolerance(tolerance)
+    , of_quantity(of_quantity)
     , time_share(1. / (1. + dimension * order))
   {}
 
 
 
   double
-  ErrorBudget::space(const ErrorEstimate &estimate,
-                     const double         size,
-                     const bool           has_time_error) const
+  ErrorBudget::transfer(const ErrorEstimate &accepted, const double size) const
+  {
+    const double left = 0.5 * std::max(0.,
+                                       transfer_share * tolerance * size -
+                                         errors(accepted).transfer);
+    if (!of_quantity)
+      return left;
+    const double sensitivity = accepted.quantity.dual_error;
+    return sensitivity > 0. ? left / sensitivity :
+                              std::numeric_limits<double>::infinity();
+  }
+
+
+
+  double
+  ErrorBudget::space(const ErrorParts &errors,
+                     const double      size,
+                     const bool        has_time_error) const
   {
     const double all = tolerance * size;
     // Time steps have not made all of their error yet.
-    const double time =
-      has_time_error ?
-        std::max(estimate.time + estimate.friction, time_share * all) :
-        0.;
+    const double time = has_time_error ? std::max(errors.time + errors.friction,
+                                                  time_share * all) :
+                                         0.;
     return std::max(least_space_share * all,
-                    all - time - estimate.transfer - estimate.initial -
-                      estimate.algebraic);
+                    all - time - errors.transfer - errors.initial -
+                      errors.algebraic);
   }
 
 } // namespace Viscoplastic

@@ -110,8 +110,13 @@ namespace Viscoplastic
     if (solver.contact_tolerance > 0. || accepted.energy_norm == 0. ||
         discretization == 0.)
       return solver.strict_tolerance();
-    return std::clamp(algebraic_fraction * discretization /
-                        accepted.energy_norm,
+    double allowed = algebraic_fraction * discretization;
+    if (const QuantityEstimate &quantity = accepted.quantity;
+        quantity.dual_norm > 0. && quantity.space + quantity.time > 0.)
+      allowed = std::min(allowed,
+                         algebraic_fraction * (quantity.space + quantity.time) /
+                           quantity.dual_norm);
+    return std::clamp(allowed / accepted.energy_norm,
                       least_tolerance,
                       largest_tolerance);
   }

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/error/residual_estimator.h>
 #include <viscoplastic_contact/laws/strain.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Viscoplastic
@@ -183,11 +184,10 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  ResidualEstimator<dim>::volume_residual(
-    const Shape          &shape,
-    const StressTerms    &terms,
-    const Tensor<1, dim> *body_force) const
+  typename ResidualEstimator<dim>::Residuals
+  ResidualEstimator<dim>::divergence(const Shape       &shape,
+                                     const StressTerms &terms,
+                                     const bool         one_point) const
   {
     // From the second derivatives of u_h; z_h has none, and under mean
     // dilatation the volumetric part is constant on the cell.
@@ -196,27 +196,20 @@ namespace Viscoplastic
     const double     mu              = stiffness.shear_modulus(),
                  lambda = (mean_dilatation ? 0. : stiffness.bulk_modulus()) -
                           2. / 3. * mu;
-    // Without a force that varies, one point speaks for all where the second
-    // derivatives are constant.
-    const bool one_point =
-      shape.constant_hessians && (body_force == nullptr || uniform_body_force);
-    double square = 0.;
+    Residuals result;
     for (unsigned int q = 0; q < (one_point ? 1 : n_points); ++q)
       {
         std::array<Tensor<2, dim>, dim> hessian; // of u_i
         for (unsigned int v = 0; v < n_vertices; ++v)
           for (unsigned int i = 0; i < dim; ++i)
             hessian[i] += terms.u[v][i] * shape.hessians[q][v];
-        Tensor<1, dim> residual;
-        if (body_force != nullptr)
-          residual = body_force[uniform_body_force ? 0 : q];
         if (stiffness.is_isotropic())
           for (unsigned int i = 0; i < dim; ++i)
             {
               double gradient = 0.; // of div u_h
               for (unsigned int k = 0; k < dim; ++k)
                 gradient += hessian[k][k][i];
-              residual[i] += mu * trace(hessian[i]) + (mu + lambda) * gradient;
+              result[q][i] += mu * trace(hessian[i]) + (mu + lambda) * gradient;
             }
         else
           for (unsigned int j = 0; j < dim; ++j)
@@ -228,23 +221,20 @@ namespace Viscoplastic
               const SymmetricTensor<2, 3> stress =
                 stiffness.stress(reduced_strain(gradient, mean_dilatation, 0.));
               for (unsigned int i = 0; i < dim; ++i)
-                residual[i] += stress[i][j];
+                result[q][i] += stress[i][j];
             }
-        square += residual.norm_square() *
-                  (one_point ? shape.volume : shape.weights[q]);
       }
-    return square;
+    return result;
   }
 
 
 
   template <int dim>
-  double
-  ResidualEstimator<dim>::boundary_residual(
-    const BoundaryFace      &face,
-    const double             t,
-    const Tensor<1, dim>    *tractions,
-    const DistributedVector *multiplier_density) const
+  typename ResidualEstimator<dim>::Residuals
+  ResidualEstimator<dim>::boundary_residuals(
+    const BoundaryFace   &face,
+    const Fields         &fields,
+    const Tensor<1, dim> *tractions) const
   {
     const BoundaryCondition<dim> &condition = *face.condition;
     const LocalCell              &cell      = cells[face.cell];
@@ -253,62 +243,63 @@ namespace Viscoplastic
                varies =
                  condition.carries_load() && condition.load_depends_on_time(),
                bounds_vary = friction && condition.bound_depends_on_time();
-    Assert(!friction || multiplier_density != nullptr,
+    Assert(!friction || fields.multiplier_density != nullptr,
            ExcMessage("A scene with friction has multipliers."));
-    double square = 0.;
+    Residuals result;
     for (unsigned int q = 0; q < n_face_points; ++q)
       {
-        Tensor<1, dim> density;
+        Tensor<1, dim> density, given;
         if (friction)
+          for (unsigned int v = 0; v < n_vertices; ++v)
+            for (unsigned int d = 0; d < dim; ++d)
+              density[d] +=
+                face_values[face.face][q][v] *
+                fields.multiplier_density->begin()[cell.nodes[v] + d];
+        if (fields.t)
           {
-            for (unsigned int v = 0; v < n_vertices; ++v)
-              for (unsigned int d = 0; d < dim; ++d)
-                density[d] += face_values[face.face][q][v] *
-                              multiplier_density->begin()[cell.nodes[v] + d];
+            given =
+              varies ?
+                condition.load(face.positions[q], shape.normals[q], *fields.t) :
+                face.data[q];
             // Nodal multipliers respect nodal bounds; between nodes the
             // density exceeds a bound that jumps.
-            const double excess =
-              tangential(density, condition.normal).norm() -
-              (bounds_vary ? condition.bound(face.positions[q], t) :
-                             face.bounds[q]);
-            if (excess > 0.)
-              square += excess * excess * shape.weights[q];
+            if (friction)
+              result[n_face_points + q][0] =
+                std::max(0.,
+                         tangential(density, condition.normal).norm() -
+                           (bounds_vary ?
+                              condition.bound(face.positions[q], *fields.t) :
+                              face.bounds[q]));
           }
-        const Tensor<1, dim> given =
-          varies ? condition.load(face.positions[q], shape.normals[q], t) :
-                   face.data[q];
-        square +=
-          contradiction(condition, tractions[q], given, density).norm_square() *
-          shape.weights[q];
+        result[q] = contradiction(condition, tractions[q], given, density);
       }
-    return face.diameter * square;
+    return result;
   }
 
 
 
   template <int dim>
-  Vector<double>
-  ResidualEstimator<dim>::estimate(
-    const DistributedVector  &ghosted_u,
-    const IrreversibleStress &z,
-    const double              t,
-    const DistributedVector  *multiplier_density) const
+  template <typename Visitor>
+  void
+  ResidualEstimator<dim>::visit_residuals(const Fields  &fields,
+                                          const Visitor &visit) const
   {
     const AdmissibleSpace<dim>  &space   = stress_space.space;
     const std::size_t            n_owned = stress_space.n_cells();
-    const double                *u       = ghosted_u.begin();
+    const double                *u       = fields.u.begin();
     IrreversibleStress           means;
-    const SymmetricTensor<2, 3> *mean_z = mean_irreversible_stress(z, means);
-    std::vector<double>          eta(cells.size()); // squared
+    const SymmetricTensor<2, 3> *mean_z =
+      mean_irreversible_stress(fields.z, means);
 
     // Tractions on all faces, and what is amiss within the cells.
     std::vector<Tensor<1, dim>> &tractions = traction_buffer;
     tractions.resize((cells.size() * n_faces + subface_sides.size()) *
                      n_face_points);
-    const auto                          &b = space.scene.body_force;
-    std::array<Tensor<1, dim>, n_points> force;
-    if (b && uniform_body_force)
-      force[0] = b->vector(Point<dim>(), t);
+    const auto    &b       = space.scene.body_force;
+    const bool     is_kept = !body_force.empty();
+    Tensor<1, dim> uniform_force;
+    if (b && uniform_body_force && fields.t)
+      uniform_force = b->vector(Point<dim>(), *fields.t);
     for (std::size_t c = 0; c < cells.size(); ++c)
       {
         const StressTerms terms = stress_terms(c, u, mean_z);
@@ -319,16 +310,27 @@ namespace Viscoplastic
                         &tractions[(c * n_faces + f) * n_face_points]);
         if (c >= n_owned)
           continue;
-        const bool is_kept = !body_force.empty();
-        if (b && !uniform_body_force && !is_kept)
-          for (unsigned int q = 0; q < n_points; ++q)
-            force[q] = b->vector(origins[c] + shape.positions[q], t);
-        eta[c] = Utilities::fixed_power<2>(shape.diameter) *
-                 volume_residual(shape,
-                                 terms,
-                                 is_kept ? &body_force[c * n_points] :
-                                 b       ? force.data() :
-                                           nullptr);
+        // Without a force that varies, one point speaks for all where the
+        // second derivatives are constant.
+        const bool one_point =
+          shape.constant_hessians && (!b || uniform_body_force);
+        const unsigned int n         = one_point ? 1 : n_points;
+        Residuals          residuals = divergence(shape, terms, one_point);
+        if (b && fields.t)
+          for (unsigned int q = 0; q < n; ++q)
+            residuals[q] +=
+              is_kept ? body_force[c * n_points + q] :
+              uniform_body_force ?
+                        uniform_force :
+                        b->vector(origins[c] + shape.positions[q], *fields.t);
+        visit({Part::cell,
+               c,
+               Utilities::fixed_power<2>(shape.diameter),
+               n,
+               one_point ? &shape.volume : shape.weights.data(),
+               residuals,
+               nullptr,
+               0.});
       }
     for (std::size_t s = 0; s < subface_sides.size(); ++s)
       add_tractions(subface_shapes[subface_sides[s].table],
@@ -340,28 +342,147 @@ namespace Viscoplastic
       {
         const FaceShape &shape =
           shapes[cells[face.cells[0]].shape].faces[face.face];
-        double square = 0.;
+        const bool is_hanging =
+          face.tractions[1] >= cells.size() * n_faces * n_face_points;
+        Residuals jumps;
         for (unsigned int q = 0; q < n_face_points; ++q)
-          square += (tractions[face.tractions[0] + q] +
-                     tractions[face.tractions[1] + face.partner[q]])
-                      .norm_square() *
-                    shape.weights[q];
+          jumps[q] = tractions[face.tractions[0] + q] +
+                     tractions[face.tractions[1] + face.partner[q]];
         for (const unsigned int cell : face.cells)
-          eta[cell] += 0.5 * face.diameter * square;
+          visit(
+            {Part::interior_face,
+             cell,
+             0.5 * face.diameter,
+             n_face_points,
+             shape.weights.data(),
+             jumps,
+             &shape,
+             is_hanging && cell == face.cells[1] ? 1. / n_face_points : 1.});
       }
     for (const BoundaryFace &face : boundary_faces)
-      eta[face.cell] += boundary_residual(
-        face,
-        t,
-        &tractions[(face.cell * n_faces + face.face) * n_face_points],
-        multiplier_density);
+      {
+        const Residuals residuals = boundary_residuals(
+          face,
+          fields,
+          &tractions[(face.cell * n_faces + face.face) * n_face_points]);
+        const FaceShape &shape =
+          shapes[cells[face.cell].shape].faces[face.face];
+        std::array<double, 2 * n_face_points> weights;
+        for (unsigned int q = 0; q < weights.size(); ++q)
+          weights[q] = shape.weights[q % n_face_points];
+        visit({Part::boundary_face,
+               face.cell,
+               face.diameter,
+               2 * n_face_points,
+               weights.data(),
+               residuals,
+               &shape,
+               1.});
+      }
+  }
 
+
+
+  template <int dim>
+  Vector<double>
+  ResidualEstimator<dim>::by_active_index(
+    const std::vector<double> &by_cell) const
+  {
     Vector<double> result(
-      space.dof_handler.get_triangulation().n_active_cells());
-    for (std::size_t c = 0; c < n_owned; ++c)
-      result[cells[c].active_index] =
-        eta[c] / cells[c].stiffness.smallest_deviatoric_eigenvalue();
+      stress_space.space.dof_handler.get_triangulation().n_active_cells());
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      result[cells[c].active_index] = by_cell[c];
     return result;
+  }
+
+
+
+  template <int dim>
+  Vector<double>
+  ResidualEstimator<dim>::estimate(const Fields &fields) const
+  {
+    std::vector<double> eta(cells.size()); // squared
+    visit_residuals(fields, [&eta](const LocalResiduals &r) {
+      double square = 0.;
+      for (unsigned int q = 0; q < r.n_points; ++q)
+        square += r.values[q].norm_square() * r.weights[q];
+      eta[r.cell] += r.factor * square;
+    });
+    for (std::size_t c = 0; c < eta.size(); ++c)
+      eta[c] /= cells[c].stiffness.smallest_deviatoric_eigenvalue();
+    return by_active_index(eta);
+  }
+
+
+
+  template <int dim>
+  double
+  ResidualEstimator<dim>::compliance_product(const Stiffness      &stiffness,
+                                             const Tensor<1, dim> &normal,
+                                             const Tensor<1, dim> &r,
+                                             const Tensor<1, dim> &s) const
+  {
+    if (stiffness.is_isotropic())
+      {
+        const double mu          = stiffness.shear_modulus(),
+                     across      = stiffness.bulk_modulus() + 4. / 3. * mu,
+                     normal_part = (r * normal) * (s * normal);
+        return normal_part / across + (r * s - normal_part) / mu;
+      }
+    Tensor<2, dim> acoustic;
+    for (unsigned int k = 0; k < dim; ++k)
+      {
+        SymmetricTensor<2, 3> strain;
+        for (unsigned int j = 0; j < dim; ++j)
+          strain[k][j] += (j == k ? 1. : 0.5) * normal[j];
+        const Tensor<1, dim> traction =
+          in_plane(stiffness.stress(strain), normal);
+        for (unsigned int i = 0; i < dim; ++i)
+          acoustic[i][k] = traction[i];
+      }
+    return r * (invert(acoustic) * s);
+  }
+
+
+
+  template <int dim>
+  typename ResidualEstimator<dim>::Products
+  ResidualEstimator<dim>::multiply(const Fields &state,
+                                   const Fields &dual) const
+  {
+    std::vector<Tensor<1, dim>> of_state;
+    visit_residuals(state, [&of_state](const LocalResiduals &r) {
+      if (r.part != Part::cell)
+        of_state.insert(of_state.end(),
+                        r.values.begin(),
+                        r.values.begin() + n_face_points);
+    });
+    std::vector<double> of_both(cells.size()), of_dual(cells.size());
+    auto                next = of_state.cbegin();
+    visit_residuals(dual, [&](const LocalResiduals &r) {
+      if (r.part == Part::cell)
+        return;
+      const LocalCell &cell = cells[r.cell];
+      double           both = 0., squares = 0., area = 0.;
+      for (unsigned int q = 0; q < n_face_points; ++q, ++next)
+        {
+          const Tensor<1, dim> &normal = r.face->normals[q];
+          area += r.weights[q];
+          both +=
+            r.weights[q] *
+            compliance_product(cell.stiffness, normal, r.values[q], *next);
+          squares += r.weights[q] * compliance_product(cell.stiffness,
+                                                       normal,
+                                                       r.values[q],
+                                                       r.values[q]);
+        }
+      const double width = shapes[cell.shape].volume * r.share / area;
+      const double factor =
+        (r.part == Part::interior_face ? 1. / 24. : 1. / 6.) * width;
+      of_both[r.cell] += factor * both;
+      of_dual[r.cell] += factor * squares;
+    });
+    return {by_active_index(of_both), by_active_index(of_dual)};
   }
 
 

@@ -45,12 +45,29 @@ namespace Viscoplastic
     if (d.face)
       density = d.face->density(state.friction);
     Vector<double> squared = residual_estimator->estimate(
-      state.u, state.z, state.t, d.face ? &density : nullptr);
+      {state.u, state.z, state.t, d.face ? &density : nullptr});
     result.residual =
       total_estimate(squared, d.space.dof_handler.get_triangulation());
     if (refines_by_residual)
       result.squared_indicators = std::move(squared);
     return result;
+  }
+
+
+
+  template <int dim>
+  typename ResidualEstimator<dim>::Products
+  SpaceEstimator<dim>::multiply(const State<dim>        &state,
+                                const DualSolution<dim> &dual) const
+  {
+    const ContactFace<dim> *face = discretization.face.get();
+    DistributedVector       density;
+    if (face != nullptr)
+      density = face->density(state.friction);
+    const IrreversibleStress none;
+    return residual_estimator->multiply(
+      {state.u, state.z, state.t, face != nullptr ? &density : nullptr},
+      {dual.cartesian, none, {}, face != nullptr ? &dual.density : nullptr});
   }
 
 

@@ -404,6 +404,14 @@ namespace Viscoplastic
     if (refinement.strategy == RefinementStrategy::automatic)
       refinement.strategy =
         has_tolerance ? RefinementStrategy::residual : RefinementStrategy::none;
+    AssertThrow(error_control.quantity.empty() || error_control.error_estimator,
+                ExcMessage("'Error control/Quantity' needs the estimate of the "
+                           "error; set 'Error control/Error bar' = true."));
+    AssertThrow(error_control.quantity.empty() ||
+                  refinement.strategy != RefinementStrategy::kelly,
+                ExcMessage("'Error control/Quantity' refines by residuals; set "
+                           "'Mesh refinement/Strategy' = residual, or none for "
+                           "a fixed mesh."));
     if (!has_tolerance)
       return;
     AssertThrow(error_control.error_estimator,

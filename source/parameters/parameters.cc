@@ -369,6 +369,16 @@ namespace Viscoplastic
                       "first step of each phase, `Geometry' the first mesh. "
                       "0: meshes and steps are those of the other entries.",
                       Patterns::Double(0., 1.));
+    prm.add_parameter("Quantity",
+                      quantity,
+                      "A column of statistics.csv whose error is estimated by "
+                      "duality, too: a component of the friction force, of the "
+                      "reaction of a boundary, or of the displacement of one "
+                      "of `Output/Points', as in `friction_force_x', "
+                      "`reaction_1_y', `point0_x'. `Tolerance' is that of this "
+                      "quantity then, relative to its largest value, and "
+                      "meshes are refined where it feels their errors. "
+                      "Empty: the energy norm.");
     prm.add_parameter("Error bar",
                       error_estimator,
                       "Estimate the error of every step in the energy norm: "

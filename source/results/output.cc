@@ -186,12 +186,30 @@ namespace Viscoplastic
 
 
 
+    nlohmann::ordered_json
+    record_of_errors(const ErrorSummary &errors,
+                     const std::string  &name_of_size)
+    {
+      return {{"t", errors.t},
+              {"space", errors.largest.space},
+              {"time", errors.largest.time},
+              {"friction", errors.largest.friction},
+              {"transfer", errors.largest.transfer},
+              {"algebraic", errors.largest.algebraic},
+              {"initial", errors.largest.initial},
+              {"total", errors.largest.total()},
+              {name_of_size, errors.size},
+              {"relative", errors.relative()}};
+    }
+
+
+
     template <int dim>
     void
-    write_record(const Scene<dim>   &scene,
-                 const std::string  &path,
-                 const unsigned int  n_ranks,
-                 const ErrorSummary *errors = nullptr)
+    write_record(const Scene<dim>      &scene,
+                 const std::string     &path,
+                 const unsigned int     n_ranks,
+                 const RunSummary<dim> *summary = nullptr)
     {
       std::ostringstream parameters;
       scene.parameters.handler.print_parameters(parameters,
@@ -209,18 +227,15 @@ namespace Viscoplastic
                                     {"n_mpi_ranks", n_ranks},
                                     {"dimension", dim},
                                     {"effects", scene.effects()}};
-      if (errors != nullptr)
-        record["estimated_error"] = {{"t", errors->t},
-                                     {"space", errors->largest.space},
-                                     {"time", errors->largest.time},
-                                     {"friction", errors->largest.friction},
-                                     {"transfer", errors->largest.transfer},
-                                     {"algebraic", errors->largest.algebraic},
-                                     {"initial", errors->largest.initial},
-                                     {"total", errors->largest.total()},
-                                     {"largest_energy_norm",
-                                      errors->largest_energy_norm},
-                                     {"relative", errors->relative()}};
+      if (summary != nullptr && summary->errors)
+        record["estimated_error"] =
+          record_of_errors(*summary->errors, "largest_energy_norm");
+      if (summary != nullptr && !summary->quantity.empty())
+        {
+          auto &errors = record["estimated_error_of_quantity"] =
+            record_of_errors(summary->quantity_errors, "largest_value");
+          errors["quantity"] = summary->quantity;
+        }
       record["date"] = date;
       replace_file(path + "run.json", json_text(record));
     }
@@ -280,14 +295,14 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  Output<dim>::record_errors(const ErrorSummary &errors) const
+  Output<dim>::record_errors(const RunSummary<dim> &summary) const
   {
     fail_together(communicator, [&]() {
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         write_record(scene,
                      path,
                      Utilities::MPI::n_mpi_processes(communicator),
-                     &errors);
+                     &summary);
     });
   }
 

@@ -47,6 +47,16 @@ namespace Viscoplastic
       row.add("estimate_algebraic", estimate.algebraic);
       row.add("estimate_initial", estimate.initial);
       row.add("estimate_total", estimate.total());
+      if (scene.quantity)
+        {
+          const QuantityEstimate &quantity = estimate.quantity;
+          row.add("quantity_correction", quantity.correction);
+          row.add("quantity_space", quantity.space);
+          row.add("quantity_time", quantity.time);
+          row.add("quantity_other",
+                  quantity.total() - quantity.space - quantity.time);
+          row.add("quantity_total", quantity.total());
+        }
       row.add("time_indicator", estimate.time_indicator);
       row.add("velocity_variation", estimate.velocity_variation);
     }
@@ -70,6 +80,8 @@ namespace Viscoplastic
   {
     if (has_error_estimate)
       run.errors.emplace();
+    if (scene.quantity)
+      run.quantity = scene.quantity->name;
     if (budget != nullptr)
       run.tolerance = budget->tolerance;
   }
@@ -208,7 +220,14 @@ namespace Viscoplastic
     // Initial data that have not been brought into equilibrium have no
     // estimate.
     if (run.errors && (step.time_step.n > 0 || step.end.is_solution))
-      run.errors->update(step.end.errors, t);
+      {
+        const ErrorEstimate &estimate = step.end.errors;
+        run.errors->update(estimate, estimate.energy_norm, t);
+        if (scene.quantity)
+          run.quantity_errors.update(estimate.quantity,
+                                     std::abs(estimate.quantity.value),
+                                     t);
+      }
     if (const double k_r = step.stiffness(); k_r > run.stiffness.value)
       {
         run.stiffness.update(k_r, t);
@@ -349,10 +368,16 @@ namespace Viscoplastic
       }
     if (scene.is_adaptive() && !has_error_estimate)
       present.error_estimate = quantities.refinement_estimate;
-    const double size = budget ? budget->size(run.errors->largest_energy_norm) :
-                                 step.end.errors.energy_norm;
-    if (has_error_estimate && size > 0.)
-      present.relative_error = step.end.errors.total() / size;
+    if (has_error_estimate)
+      {
+        const ErrorEstimate &estimate = step.end.errors;
+        const double         size     = budget ?
+                                          budget->size(run.controlled_errors().size) :
+                                          estimate.energy_norm;
+        if (size > 0.)
+          present.relative_error =
+            (budget ? budget->errors(estimate) : estimate).total() / size;
+      }
     if (control.may_reject())
       {
         present.expected_steps =
@@ -417,20 +442,21 @@ namespace Viscoplastic
   std::string
   Recorder<dim>::remark_on_tolerance() const
   {
-    const ErrorEstimate &errors = run.errors->largest;
-    const double         size   = run.errors->largest_energy_norm;
+    const ErrorSummary &summary = run.controlled_errors();
+    const ErrorParts   &errors  = summary.largest;
+    const double        size    = summary.size;
     const auto n_cells = discretization->space.dof_handler.get_triangulation()
                            .n_global_active_cells();
     const RefinementParameters &refinement = scene.parameters.refinement;
     std::ostringstream          text;
     text << std::setprecision(3)
          << "Warning: 'Error control/Tolerance' = " << budget->tolerance
-         << " has not been kept: at t = " << run.errors->t
-         << " the error is estimated as " << run.errors->relative()
-         << " of the solution, of it " << errors.space / size
-         << " by the mesh, " << (errors.time + errors.friction) / size
-         << " by the time steps and " << errors.initial / size
-         << " by the initial data; ";
+         << " has not been kept: at t = " << summary.t
+         << " the error is estimated as " << summary.relative() << " of the "
+         << (scene.quantity ? "largest " + scene.quantity->name : "solution")
+         << ", of it " << errors.space / size << " by the mesh, "
+         << (errors.time + errors.friction) / size << " by the time steps and "
+         << errors.initial / size << " by the initial data; ";
     if (errors.time + errors.friction > 0.5 * errors.total())
       text << "steps of the smallest size are too long, so that the data jump "
               "or 'Step control/Smallest step' is too large.";
@@ -482,7 +508,7 @@ namespace Viscoplastic
         result.push_back(text.str());
       }
 
-    if (budget && run.errors->relative() > budget->tolerance)
+    if (budget && run.controlled_errors().relative() > budget->tolerance)
       result.push_back(remark_on_tolerance());
 
     // What meshes do is no physics.

@@ -192,6 +192,35 @@ namespace Viscoplastic
     /// The errors against a known solution, and the estimated ones.
     template <int dim>
     void
+    print_parts(std::ostream          &out,
+                const RunSummary<dim> &run,
+                const ErrorSummary    &errors)
+    {
+      const auto part = [&](const std::string &name, const double value) {
+        std::ostringstream text;
+        text << std::setprecision(2) << value;
+        if (errors.size > 0.)
+          text << " (" << 100. * value / errors.size << " %)";
+        print_row(out, name, text.str());
+      };
+      const ErrorParts &largest = errors.largest;
+      part("mesh", largest.space);
+      if (run.viscous_dissipation)
+        part("time steps", largest.time);
+      if (largest.friction > 0.)
+        part("slip that turns", largest.friction);
+      if (largest.transfer > 0.)
+        part("changes of the mesh", largest.transfer);
+      part("iterations", largest.algebraic);
+      if (largest.initial > 0.)
+        part("initial data", largest.initial);
+      part("sum", largest.total());
+    }
+
+
+
+    template <int dim>
+    void
     print_errors(std::ostream &out, const RunSummary<dim> &run)
     {
       const auto error =
@@ -211,31 +240,19 @@ namespace Viscoplastic
       if (!run.errors)
         return;
 
-      const auto part = [&](const std::string &name, const double value) {
-        const double       size = run.errors->largest_energy_norm;
-        std::ostringstream text;
-        text << std::setprecision(2) << value;
-        if (size > 0.)
-          text << " (" << 100. * value / size << " %)";
-        print_row(out, name, text.str());
-      };
-      const ErrorEstimate &largest = run.errors->largest;
       out << "Estimated error in the energy norm, largest at t = "
           << number(run.errors->t)
           << " (without what the mesh\nhas done to the rates that made "
              "the memory z), and relative to the solution:\n";
-      part("mesh", largest.space);
-      if (run.viscous_dissipation)
-        part("time steps", largest.time);
-      if (largest.friction > 0.)
-        part("slip that turns", largest.friction);
-      if (largest.transfer > 0.)
-        part("changes of the mesh", largest.transfer);
-      part("iterations", largest.algebraic);
-      if (largest.initial > 0.)
-        part("initial data", largest.initial);
-      part("sum", largest.total());
-      if (run.tolerance && run.errors->relative() <= *run.tolerance)
+      print_parts(out, run, *run.errors);
+      if (!run.quantity.empty())
+        {
+          out << "Estimated error of " << run.quantity
+              << ", largest at t = " << number(run.quantity_errors.t)
+              << ", and relative to its largest value:\n";
+          print_parts(out, run, run.quantity_errors);
+        }
+      if (run.tolerance && run.controlled_errors().relative() <= *run.tolerance)
         out << "The tolerance of " << 100. * *run.tolerance
             << " % has been kept.\n";
     }

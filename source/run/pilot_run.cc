@@ -41,14 +41,14 @@ namespace Viscoplastic
 
   template <int dim>
   double
-  energy_norm_of_pilot_run(const Parameters &parameters, std::string &failure)
+  size_in_pilot_run(const Parameters &parameters, std::string &failure)
   {
     Console silence(MPI_COMM_WORLD, /* quiet = */ true);
     try
       {
         const Parameters         pilot({}, assignments(parameters));
         ViscoplasticContact<dim> problem(pilot, silence);
-        return problem.run_without_files().errors->largest_energy_norm;
+        return problem.run_without_files().controlled_errors().size;
       }
     catch (const std::exception &exception)
       {
@@ -60,7 +60,7 @@ namespace Viscoplastic
 
 
   template double
-  energy_norm_of_pilot_run<2>(const Parameters &, std::string &);
+  size_in_pilot_run<2>(const Parameters &, std::string &);
   template double
-  energy_norm_of_pilot_run<3>(const Parameters &, std::string &);
+  size_in_pilot_run<3>(const Parameters &, std::string &);
 } // namespace Viscoplastic

@@ -56,6 +56,7 @@ namespace Viscoplastic
       // iterations go on to a fixed tolerance.
       parameters.step_control.is_on() ? "Error control/Error bar=true" :
                                         "Error control/Error bar=false",
+      "Error control/Quantity=",
       assign("Geometry/Global refinements", refinements - 1),
       "Time/Phases=" + write_phases(phases),
       assign("Mesh refinement/Minimal level", less(refinement.minimal_level)),

@@ -39,7 +39,8 @@ namespace Viscoplastic
         parameters.error_control.has_tolerance() ?
           std::make_optional<ErrorBudget>(parameters.error_control.tolerance,
                                           dim,
-                                          order_of(parameters.time.scheme)) :
+                                          order_of(parameters.time.scheme),
+                                          scene.quantity.has_value()) :
           std::nullopt)
     , control(parameters.step_control,
               parameters.time.stiffness_policy,
@@ -145,7 +146,7 @@ namespace Viscoplastic
     if (budget)
       {
         TimerOutput::Scope phase(timer, "pilot run");
-        budget->expect_size(energy_norm_of_pilot_run<dim>(parameters, failure));
+        budget->expect_size(size_in_pilot_run<dim>(parameters, failure));
         control.expect_size(budget->expected_size);
       }
     set_up();
@@ -275,9 +276,9 @@ namespace Viscoplastic
         error_estimator->assess_equilibrium(initial_report, accepted);
         is_refined =
           budget &&
-          refine_first_mesh(errors.space,
-                            budget->space(errors,
-                                          budget->size(errors.energy_norm),
+          refine_first_mesh(budget->errors(errors).space,
+                            budget->space(budget->errors(errors),
+                                          budget->size(budget->size(errors)),
                                           scene.has_time_error()),
                             accepted.space_estimate.squared_indicators);
       }
@@ -346,12 +347,22 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::space_ratio(const ErrorEstimate &errors) const
   {
     const double size =
-      budget->size(std::max(recorder.summary().errors->largest_energy_norm,
-                            errors.energy_norm));
+      budget->size(std::max(recorder.summary().controlled_errors().size,
+                            budget->size(errors)));
     // A body that has not moved yet says nothing about the mesh.
-    return size > 0. ? errors.space /
-                         budget->space(errors, size, scene.has_time_error()) :
-                       1.;
+    if (!(size > 0.))
+      return 1.;
+    const double allowed =
+      budget->space(budget->errors(errors), size, scene.has_time_error());
+    if (!scene.quantity)
+      return errors.space / allowed;
+    // Quantities behave like squares of the energy norm. Where contributions
+    // happen to cancel, none of them may become larger.
+    const QuantityEstimate &quantity = errors.quantity;
+    return std::sqrt(
+      std::max(quantity.space,
+               std::min(quantity.unsigned_space, 0.9 * allowed)) /
+      allowed);
   }
 
 
@@ -362,7 +373,7 @@ namespace Viscoplastic
   {
     return [this] {
       const double size =
-        budget->size(recorder.summary().errors->largest_energy_norm);
+        budget->size(recorder.summary().controlled_errors().size);
       limit_memory_loss(triangulation,
                         discretization->stress_space,
                         accepted.state.z,
@@ -492,8 +503,8 @@ namespace Viscoplastic
       write_uncertainties(output->directory() + "uncertainty.csv",
                           recorder.summary(),
                           *coarser);
-    if (const auto &errors = recorder.summary().errors)
-      output->record_errors(*errors);
+    if (recorder.summary().errors)
+      output->record_errors(recorder.summary());
     for (const std::string &remark : remarks)
       out << remark << '\n';
     out << "Results in " << output->directory() << std::endl;

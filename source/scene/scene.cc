@@ -71,6 +71,10 @@ namespace Viscoplastic
          Utilities::split_string_list(parameters.output.points, ';'))
       if (!point.empty())
         output_points.push_back(parse_point<dim>(point, "Output/Points"));
+    if (!parameters.error_control.quantity.empty())
+      quantity = quantity_of_interest(parameters.error_control.quantity,
+                                      boundary,
+                                      output_points.size());
   }
 
 

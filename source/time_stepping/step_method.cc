@@ -39,6 +39,12 @@ namespace Viscoplastic
         return explicit_step.equilibrate(problem);
       }
 
+      BulkSolver *
+      elastic_solver() override
+      {
+        return explicit_step.elastic_solver();
+      }
+
       // Implicit steps among others keep nothing.
       std::optional<PreconditionerState>
       preconditioner_state() const override

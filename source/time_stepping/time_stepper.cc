@@ -53,6 +53,11 @@ namespace Viscoplastic
                         std::make_unique<SpaceEstimator<dim>>(discretization) :
                         nullptr)
     , step_method(make_step_method(discretization, timer))
+    , quantity_estimator(
+        scene.quantity ?
+          std::make_unique<QuantityEstimator<dim>>(discretization,
+                                                   *space_estimator) :
+          nullptr)
   {}
 
 
@@ -179,7 +184,7 @@ namespace Viscoplastic
   StepErrors
   TimeStepper<dim>::assess(const EvaluatedState<dim> &accepted,
                            const FlowRate            *old_rate,
-                           AcceptedStep<dim>         &step) const
+                           AcceptedStep<dim>         &step)
   {
     EvaluatedState<dim> &end   = step.end;
     const State<dim>    &state = end.state;
@@ -216,6 +221,7 @@ namespace Viscoplastic
                             accepted,
                             old_rate,
                             end);
+    assess_quantity(end);
     const ErrorEstimate &estimate = end.errors;
     StepErrors           errors;
     errors.indicator =
@@ -227,9 +233,41 @@ namespace Viscoplastic
                       estimate.energy_norm :
                       std::max(estimate.energy_norm, estimate.irreversible_norm);
     errors.before = accepted.errors.time + accepted.errors.friction;
+    if (scene.quantity && scene.parameters.error_control.has_tolerance())
+      {
+        const QuantityEstimate &quantity = estimate.quantity,
+                               &before   = accepted.errors.quantity;
+        errors.indicator *= quantity.dual_norm;
+        errors.change = std::abs(quantity.value - before.value);
+        errors.size   = std::abs(quantity.value);
+        errors.before = before.time + before.friction;
+      }
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
       throw StepFailure(state.n, state.t, "the solution is not finite.");
     return errors;
+  }
+
+
+
+  template <int dim>
+  void
+  TimeStepper<dim>::assess_quantity(EvaluatedState<dim> &end)
+  {
+    if (!quantity_estimator)
+      return;
+    BulkSolver *solver = step_method->elastic_solver();
+    if (solver == nullptr)
+      {
+        if (!elastic_solver)
+          {
+            elastic_solver = std::make_unique<StepSolver<dim>>(discretization);
+            elastic_solver->set_matrix(
+              discretization.matrix,
+              discretization.moduli.max_poissons_ratio());
+          }
+        solver = &elastic_solver->bulk();
+      }
+    quantity_estimator->assess(*solver, end);
   }
 
 

@@ -104,7 +104,7 @@ namespace
                 const Vector<double> plain = plain_residual_estimate(
                                        *body.stress_space, u, z, t, &density),
                                      fast =
-                                       estimator.estimate(u, z, t, &density);
+                                       estimator.estimate({u, z, t, &density});
                 ASSERT_EQ(plain.size(), fast.size());
                 double difference = 0.;
                 for (unsigned int i = 0; i < plain.size(); ++i)

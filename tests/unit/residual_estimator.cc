@@ -35,7 +35,7 @@ namespace
                     const DistributedVector  *multiplier_density)
   {
     return ResidualEstimator<dim>(stress_space)
-      .estimate(u, z, t, multiplier_density);
+      .estimate({u, z, t, multiplier_density});
   }
 
 

@@ -26,9 +26,28 @@ namespace Viscoplastic
     static constexpr double least_space_share = 0.4;
 
     /// Of a scene in @p dimension dimensions with a scheme of order @p order.
+    /// @p of_quantity: whether the tolerance is that of the quantity of
+    /// interest, whose value is the size of the solution then.
     ErrorBudget(const double       tolerance,
                 const unsigned int dimension,
-                const unsigned int order);
+                const unsigned int order,
+                const bool         of_quantity = false);
+
+    /// The errors that the tolerance is for.
+    const ErrorParts &
+    errors(const ErrorEstimate &estimate) const
+    {
+      return of_quantity ? static_cast<const ErrorParts &>(estimate.quantity) :
+                           estimate;
+    }
+
+    /// The size of the solution in a state.
+    double
+    size(const ErrorEstimate &estimate) const
+    {
+      return of_quantity ? std::abs(estimate.quantity.value) :
+                           estimate.energy_norm;
+    }
 
     /// What the solution is expected to reach, from what a coarse run has
     /// found, which may be too large.
@@ -38,29 +57,26 @@ namespace Viscoplastic
       expected_size = 0.95 * of_coarse_run;
     }
 
-    /// The largest energy norm of the run, as far as it can be expected; @p
-    /// so_far that of the steps up to now.
+    /// The largest size of the run, as far as it can be expected; @p so_far
+    /// that of the steps up to now.
     double
     size(const double so_far) const
     {
       return std::max(expected_size, so_far);
     }
 
-    /// What the initial data may use.
+    /// What the initial data may use; zero if nothing can be said before the
+    /// first step.
     double
     initial() const
     {
-      return initial_share * tolerance * expected_size;
+      return of_quantity ? 0. : initial_share * tolerance * expected_size;
     }
 
-    /// What the next change of the mesh may take from z: half of what is left.
+    /// What the next change of the mesh may take from z, in the energy norm:
+    /// half of what is left.
     double
-    transfer(const ErrorEstimate &accepted, const double size) const
-    {
-      return 0.5 *
-             std::max(0.,
-                      transfer_share * tolerance * size - accepted.transfer);
-    }
+    transfer(const ErrorEstimate &accepted, const double size) const;
 
     /// What the time steps of the run may use, relative to the solution.
     double
@@ -69,14 +85,15 @@ namespace Viscoplastic
       return time_share * tolerance;
     }
 
-    /// What the mesh may use in a state with this estimate; @p size is the
-    /// largest energy norm of the run.
+    /// What the mesh may use in a state with these errors; @p size is the
+    /// largest of the run.
     double
-    space(const ErrorEstimate &estimate,
-          const double         size,
-          const bool           has_time_error) const;
+    space(const ErrorParts &errors,
+          const double      size,
+          const bool        has_time_error) const;
 
     const double tolerance;
+    const bool   of_quantity;
     double       expected_size = 0.;
 
   private:

@@ -2,16 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 namespace Viscoplastic
 {
   /**
-   * The error of a state in the energy norm a(.,.)^{1/2}, by its causes. It
-   * bounds the error of one step for given z, with the time error of z and what
-   * coarser meshes have taken from it: the error in space of the rates that z
-   * has been made of is not part of it.
+   * The error of a state by its causes, in the energy norm a(.,.)^{1/2} where
+   * nothing else is said.
    */
-  struct ErrorEstimate
+  struct ErrorParts
   {
     /// The error of the mesh: space_calibration times the residual estimator.
     double space = 0.;
@@ -27,6 +26,60 @@ namespace Viscoplastic
     double algebraic = 0.;
     /// The error of the initial data.
     double initial = 0.;
+
+    /// The sum, a bound by the triangle inequality.
+    double
+    total() const
+    {
+      return space + time + friction + transfer + algebraic + initial;
+    }
+
+    /// Write to, or read from, an archive.
+    template <typename Archive>
+    void
+    exchange(Archive &archive)
+    {
+      archive &space &time &friction &transfer &algebraic &initial;
+    }
+  };
+
+
+
+  /// A quantity of interest, with its error.
+  struct QuantityEstimate : public ErrorParts
+  {
+    double value = 0.;
+    /// What is to be added to the value: the error of mesh and time steps with
+    /// its sign, as far as it is known.
+    double correction = 0.;
+    /// The sum of what the cells contribute to the error of the mesh, without
+    /// signs.
+    double unsigned_space = 0.;
+    /// a(w, w)^{1/2} of the dual solution w, and its own estimated error.
+    double dual_norm = 0., dual_error = 0.;
+
+    /// Write to, or read from, an archive.
+    template <typename Archive>
+    void
+    exchange(Archive &archive)
+    {
+      ErrorParts::exchange(archive);
+      archive &value &correction &unsigned_space &dual_norm &dual_error;
+    }
+  };
+
+
+
+  /**
+   * All that is estimated of a state. The error in the energy norm is that of
+   * one step for given z, with the time error of z and what coarser meshes have
+   * taken from it: the error in space of the rates that z has been made of is
+   * not part of it.
+   */
+  struct ErrorEstimate : public ErrorParts
+  {
+    /// That of `Error control/Quantity'; zero without one.
+    QuantityEstimate quantity;
 
     /// What this step alone has added to D, in the norm of `time'.
     double time_indicator = 0.;
@@ -47,15 +100,9 @@ namespace Viscoplastic
     void
     exchange(Archive &archive)
     {
-      archive &space &time &friction &transfer &algebraic &initial
-        &time_indicator &velocity_variation &energy_norm &velocity_square;
-    }
-
-    /// The sum, a bound by the triangle inequality.
-    double
-    total() const
-    {
-      return space + time + friction + transfer + algebraic + initial;
+      ErrorParts::exchange(archive);
+      quantity.exchange(archive);
+      archive &time_indicator &velocity_variation &energy_norm &velocity_square;
     }
   };
 
@@ -65,29 +112,38 @@ namespace Viscoplastic
   struct ErrorSummary
   {
     /// The estimate with the largest total, and its time.
-    ErrorEstimate largest;
-    double        t = 0.;
-    /// Over the run.
-    double largest_energy_norm = 0.;
+    ErrorParts largest;
+    double     t = 0.;
+    /// Of the solution, the largest over the run: the energy norm, or the size
+    /// of the quantity.
+    double size = 0.;
 
     /// Take a state at time t into account.
     void
-    update(const ErrorEstimate &estimate, const double at_t)
+    update(const ErrorParts &errors, const double size_at_t, const double at_t)
     {
-      if (estimate.total() > largest.total())
+      if (errors.total() > largest.total())
         {
-          largest = estimate;
+          largest = errors;
           t       = at_t;
         }
-      largest_energy_norm = std::max(largest_energy_norm, estimate.energy_norm);
+      size = std::max(size, size_at_t);
     }
 
     /// 0 for a body that never deforms.
     double
     relative() const
     {
-      return largest_energy_norm > 0. ? largest.total() / largest_energy_norm :
-                                        0.;
+      return size > 0. ? largest.total() / size : 0.;
+    }
+
+    /// Write to, or read from, an archive.
+    template <typename Archive>
+    void
+    exchange(Archive &archive)
+    {
+      largest.exchange(archive);
+      archive &t &size;
     }
   };
 } // namespace Viscoplastic

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -48,16 +49,48 @@ namespace Viscoplastic
   public:
     explicit ResidualEstimator(const StressSpace<dim> &stress_space);
 
-    /**
-     * eta_K^2 for each active cell, zero on cells of other ranks.
-     * @p z may be empty. @p multiplier_density is the nodal field lambda_h on
-     * Gamma_3, Cartesian with ghosts, and null without friction. Collective.
-     */
+    /// What has residuals.
+    struct Fields
+    {
+      /// With ghosts, Cartesian.
+      const DistributedVector &u;
+      /// May be empty.
+      const IrreversibleStress &z;
+      /// Of the data; none, for fields that have no data.
+      std::optional<double> t;
+      /// The nodal field lambda_h on Gamma_3, Cartesian with ghosts; null
+      /// without friction.
+      const DistributedVector *multiplier_density;
+    };
+
+    /// eta_K^2 for each active cell, zero on cells of other ranks. Collective.
     Vector<double>
-    estimate(const DistributedVector  &ghosted_u,
-             const IrreversibleStress &z,
-             const double              t,
-             const DistributedVector  *multiplier_density) const;
+    estimate(const Fields &fields) const;
+
+    /// For each active cell, zero on cells of other ranks.
+    struct Products
+    {
+      /// a(e_u, e_w) and a(e_w, e_w).
+      Vector<double> of_both, of_dual;
+    };
+
+    /**
+     * The products of the errors of two solutions, with their signs, from the
+     * jumps r = [sigma_h nu] of both:
+     *
+     *     a(e_u, e_w)_K = sum_e 1/24 h (r_u, M^-1 r_w)_e   interior faces
+     *                   + 1/6 h (r_u, M^-1 r_w)_e          Gamma_2, Gamma_3
+     *
+     * with the width h of the cell across the face, the acoustic tensor
+     * M = nu . E . nu, and the contradictions to the data for r on the
+     * boundary. For smooth solutions on meshes of equal boxes this is exact to
+     * leading order: the error is -x (h - x)/2 times the second derivative in
+     * each direction then, whose stress jumps by h between cells and misses
+     * the data by h/2. No calibration, but no bound either: for products of
+     * errors, which have signs. Collective.
+     */
+    Products
+    multiply(const Fields &state, const Fields &dual) const;
 
   private:
     static constexpr unsigned int n_vertices = 1u << dim, n_points = 1u << dim,
@@ -169,17 +202,62 @@ namespace Viscoplastic
                   const StressTerms &terms,
                   Tensor<1, dim>    *tractions) const;
 
-    /// |b + div E eps(u_h)|^2 integrated over a cell.
-    double
-    volume_residual(const Shape          &shape,
-                    const StressTerms    &terms,
-                    const Tensor<1, dim> *body_force) const;
+    /// The most points of a cell, and twice the most of a face.
+    using Residuals = std::array<Tensor<1, dim>, n_points>;
 
+    /// div E eps(u_h) at the points of a cell; only at the first if
+    /// @p one_point.
+    Residuals
+    divergence(const Shape       &shape,
+               const StressTerms &terms,
+               const bool         one_point) const;
+
+    /// The contradictions of tractions to the data at the points of a face,
+    /// and behind them by how much the density of friction exceeds its bound.
+    Residuals
+    boundary_residuals(const BoundaryFace   &face,
+                       const Fields         &fields,
+                       const Tensor<1, dim> *tractions) const;
+
+    /// Where residuals are.
+    enum class Part
+    {
+      cell,
+      interior_face,
+      boundary_face
+    };
+
+    /// A part of the residuals of a cell of this rank, or of a ghost.
+    struct LocalResiduals
+    {
+      Part        part;
+      std::size_t cell;
+      /// eta_K^2 has the part factor sum_q weights[q] |values[q]|^2.
+      double        factor;
+      unsigned int  n_points;
+      const double *weights;
+      Residuals     values;
+      /// Of a face: what is at its points, and its part of the cell's face.
+      const FaceShape *face;
+      double           share;
+    };
+
+    /// Evaluate the residuals and visit(LocalResiduals), in an order that
+    /// depends on the mesh alone. Collective.
+    template <typename Visitor>
+    void
+    visit_residuals(const Fields &fields, const Visitor &visit) const;
+
+    /// r . M^-1 s, see multiply().
     double
-    boundary_residual(const BoundaryFace      &face,
-                      const double             t,
-                      const Tensor<1, dim>    *tractions,
-                      const DistributedVector *multiplier_density) const;
+    compliance_product(const Stiffness      &stiffness,
+                       const Tensor<1, dim> &normal,
+                       const Tensor<1, dim> &r,
+                       const Tensor<1, dim> &s) const;
+
+    /// Values of cells by active cell index.
+    Vector<double>
+    by_active_index(const std::vector<double> &by_cell) const;
 
     /// Means of z of owned cells and ghosts, kept in @p means if z is not them
     /// itself; null without z. Collective.

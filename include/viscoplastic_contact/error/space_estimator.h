@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/error/dual_problem.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 
 #include <memory>
@@ -38,6 +39,11 @@ namespace Viscoplastic
     /// Collective.
     SpaceEstimate
     estimate(const State<dim> &state) const;
+
+    /// How the residuals of a state and of a dual solution go together; there
+    /// has to be a residual estimator. Collective.
+    typename ResidualEstimator<dim>::Products
+    multiply(const State<dim> &state, const DualSolution<dim> &dual) const;
 
   private:
     const Discretization<dim> &discretization;

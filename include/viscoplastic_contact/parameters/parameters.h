@@ -150,10 +150,13 @@ namespace Viscoplastic
   struct ErrorControlParameters
   {
     /// Of the run, relative; 0 where meshes and steps are given.
-    double tolerance            = 0.;
-    bool   error_estimator      = true;
-    double algebraic_fraction   = 0.05;
-    bool   two_level_comparison = false;
+    double tolerance = 0.;
+    /// The column of statistics.csv whose error is controlled; empty for the
+    /// energy norm.
+    std::string quantity;
+    bool        error_estimator      = true;
+    double      algebraic_fraction   = 0.05;
+    bool        two_level_comparison = false;
 
     /// Whether the run chooses meshes and steps to a tolerance.
     bool

@@ -3,7 +3,7 @@
 
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/discretization/state.h>
-#include <viscoplastic_contact/error/error_estimate.h>
+#include <viscoplastic_contact/results/run_summary.h>
 
 #include <optional>
 #include <set>
@@ -52,7 +52,7 @@ namespace Viscoplastic
 
     /// Add the estimated error to the record of the run. On all ranks.
     void
-    record_errors(const ErrorSummary &errors) const;
+    record_errors(const RunSummary<dim> &summary) const;
 
     const std::string &
     directory() const

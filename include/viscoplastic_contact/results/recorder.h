@@ -6,10 +6,10 @@
 #include <viscoplastic_contact/base/console.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/progress.h>
+#include <viscoplastic_contact/discretization/point_probe.h>
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/results/energy_balance.h>
-#include <viscoplastic_contact/results/point_probe.h>
 #include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/results/statistics.h>
 #include <viscoplastic_contact/results/step_quantities.h>
@@ -218,8 +218,8 @@ namespace Viscoplastic
       archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
     if (run.errors)
       {
-        run.errors->largest.exchange(archive);
-        archive &run.errors->t &run.errors->largest_energy_norm;
+        run.errors->exchange(archive);
+        run.quantity_errors.exchange(archive);
       }
   }
 } // namespace Viscoplastic

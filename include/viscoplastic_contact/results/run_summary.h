@@ -59,8 +59,18 @@ namespace Viscoplastic
     std::optional<double> error_estimate;
     /// The errors of a scene with error estimate.
     std::optional<ErrorSummary> errors;
+    /// Those of the quantity of this name; empty without one.
+    std::string  quantity;
+    ErrorSummary quantity_errors;
     /// Of a run that has one.
     std::optional<double> tolerance;
+
+    /// The errors that a tolerance is for.
+    const ErrorSummary &
+    controlled_errors() const
+    {
+      return quantity.empty() ? *errors : quantity_errors;
+    }
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,
       tension_area;

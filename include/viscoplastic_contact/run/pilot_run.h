@@ -6,12 +6,13 @@
 namespace Viscoplastic
 {
   /**
-   * About how large the energy norm of the solution of a scene becomes: that of
-   * a run on its first mesh with at most eight steps for each phase. A run to a
-   * relative tolerance has to know it before its first step. Zero, and
-   * @p failure says why, if that run fails. Collective.
+   * About how large the solution of a scene becomes, in the energy norm or by
+   * its quantity of interest: in a run on its first mesh with at most eight
+   * steps for each phase. A run to a relative tolerance has to know it before
+   * its first step. Zero, and @p failure says why, if that run fails.
+   * Collective.
    */
   template <int dim>
   double
-  energy_norm_of_pilot_run(const Parameters &parameters, std::string &failure);
+  size_in_pilot_run(const Parameters &parameters, std::string &failure);
 } // namespace Viscoplastic

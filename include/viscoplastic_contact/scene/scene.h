@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/scene/boundary_condition.h>
 #include <viscoplastic_contact/scene/exact_solution.h>
 #include <viscoplastic_contact/scene/material.h>
+#include <viscoplastic_contact/scene/quantity_of_interest.h>
 
 #include <map>
 #include <memory>
@@ -133,6 +134,8 @@ namespace Viscoplastic
     std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
     /// Points whose displacement is recorded.
     std::vector<Point<dim>> output_points;
+    /// That of `Error control/Quantity'; absent if there is none.
+    std::optional<QuantityOfInterest> quantity;
     /// What is allowed but should be known, a sentence each.
     std::vector<std::string> warnings;
 

@@ -24,6 +24,12 @@ namespace Viscoplastic
     StepSolution<dim>
     equilibrate(const StepProblem<dim> &problem) override;
 
+    BulkSolver *
+    elastic_solver() override
+    {
+      return &solver.bulk();
+    }
+
     std::optional<PreconditionerState>
     preconditioner_state() const override;
 

@@ -42,6 +42,12 @@ namespace Viscoplastic
     StepSolution<dim>
     equilibrate(const StepProblem<dim> &problem) override;
 
+    BulkSolver *
+    elastic_solver() override
+    {
+      return nullptr;
+    }
+
     std::optional<PreconditionerState>
     preconditioner_state() const override;
 

@@ -45,6 +45,10 @@ namespace Viscoplastic
     restore(const EvaluatedState<dim>                &accepted,
             const std::optional<PreconditionerState> &preconditioner) = 0;
 
+    /// The solver for the matrix of a(.,.); null if steps have another matrix.
+    virtual BulkSolver *
+    elastic_solver() = 0;
+
     /// The linear solver in use; empty before there is one.
     virtual std::string
     solver_name() const = 0;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/error/quantity_estimator.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 #include <viscoplastic_contact/time_stepping/step_method.h>
+#include <viscoplastic_contact/time_stepping/step_solver.h>
 
 namespace Viscoplastic
 {
@@ -102,13 +104,17 @@ namespace Viscoplastic
     StepErrors
     assess(const EvaluatedState<dim> &accepted,
            const FlowRate            *old_rate,
-           AcceptedStep<dim>         &step) const;
+           AcceptedStep<dim>         &step);
 
     /// The data of a step. Collective.
     StepProblem<dim>
     make_problem(const EvaluatedState<dim> &accepted,
                  const FlowRate            *old_rate,
                  const TimeStep            &time_step) const;
+
+    /// Add the error of the quantity of interest, if there is one. Collective.
+    void
+    assess_quantity(EvaluatedState<dim> &end);
 
     const Discretization<dim> &discretization;
     const Scene<dim>          &scene;
@@ -118,5 +124,10 @@ namespace Viscoplastic
     /// The estimator; null where a scene asks for no estimate.
     std::unique_ptr<SpaceEstimator<dim>> space_estimator;
     std::unique_ptr<StepMethod<dim>>     step_method;
+    /// Null where a scene asks for no quantity.
+    std::unique_ptr<QuantityEstimator<dim>> quantity_estimator;
+    /// For its dual problems, if the steps have other matrices; made when it
+    /// is needed.
+    std::unique_ptr<StepSolver<dim>> elastic_solver;
   };
 } // namespace Viscoplastic

@@ -2,7 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/mapping_q1.h>
 
-#include <viscoplastic_contact/results/point_probe.h>
+#include <viscoplastic_contact/discretization/point_probe.h>
 
 #include <sstream>
 
@@ -66,6 +66,19 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           result[d] += shape_values[v] * ghosted_u.begin()[nodes[v] + d];
     return Utilities::MPI::sum(result, communicator);
+  }
+
+
+
+  template <int dim>
+  void
+  PointProbe<dim>::add_force(const Tensor<1, dim> &force,
+                             std::vector<double>  &cartesian) const
+  {
+    if (is_mine)
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        for (unsigned int d = 0; d < dim; ++d)
+          cartesian[nodes[v] + d] += shape_values[v] * force[d];
   }
 
 

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/discretization/admissible_space.h>
 
 #include <array>
+#include <vector>
 
 namespace Viscoplastic
 {
@@ -18,6 +19,12 @@ namespace Viscoplastic
     /// Collective.
     Tensor<1, dim>
     value(const DistributedVector &ghosted_u) const;
+
+    /// Add what a force at the point does to the nodes of its cell, to a vector
+    /// in the order of `relevant`.
+    void
+    add_force(const Tensor<1, dim> &force,
+              std::vector<double>  &cartesian) const;
 
   private:
     static constexpr unsigned int n_vertices =

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/discretization/force_balance.h>
+#include <viscoplastic_contact/discretization/point_probe.h>
+#include <viscoplastic_contact/discretization/state.h>
+
+#include <optional>
+
+namespace Viscoplastic
+{
+  /// The solution w of a dual problem.
+  template <int dim>
+  struct DualSolution
+  {
+    /// In frames, and Cartesian with ghosts.
+    DistributedVector w, cartesian;
+    /// The nodal density of what holds w on Gamma_3, Cartesian with ghosts;
+    /// empty without friction.
+    DistributedVector density;
+    /// a(w, w)^{1/2}.
+    double norm = 0.;
+  };
+
+
+  /**
+   * The dual problem of a quantity J: how J feels a residual R of the equations
+   * of a step,
+   *
+   *     a(u, v) + (z, eps(v)) + sum_c lambda_c . v_c = L(v) + R(v),
+   *
+   * with the law of friction linearised at a state: points that stick do so,
+   * and the multiplier of a point that slips changes with the direction of its
+   * slip only, d(lambda) = K d(s) with K = rho/|s| across the slip (none in
+   * the plane). The change of J is then
+   *
+   *     J' = sign R(w),   a(w, v) + sum_slipping K w_c . v_c = l(v)
+   *
+   * for all v in V_h that are zero where points stick, where
+   *
+   * - of the displacement of a point, l is its component: sign = 1;
+   * - of a reaction, l = 0, and w is the unit direction on the boundary instead
+   *   of zero: sign = -1;
+   * - of the friction force, l = 0, w is the unit direction at points that
+   *   stick, and w_c less this direction takes the place of w_c at those that
+   *   slip: sign = 1.
+   */
+  template <int dim>
+  class DualProblem
+  {
+  public:
+    /// Both stay in use. Collective.
+    DualProblem(const Discretization<dim> &discretization,
+                const QuantityOfInterest  &quantity);
+
+    /// J of a state. Collective.
+    double
+    value(const State<dim> &state, const Forces<dim> &forces) const;
+
+    /// Solve with a solver for the matrix of a(.,.). Collective. Throws
+    /// ExcMessage.
+    DualSolution<dim>
+    solve(BulkSolver &solver, const FrictionState &friction) const;
+
+    double
+    sign() const
+    {
+      return quantity.kind == QuantityOfInterest::Kind::reaction ? -1. : 1.;
+    }
+
+  private:
+    /// The prescribed values of w, in frames.
+    DistributedVector
+    prescribed() const;
+
+    /// The nodal density of -a(w, .) on the face.
+    DistributedVector
+    density(const Vector<double> &force) const;
+
+    const Discretization<dim>     &discretization;
+    const QuantityOfInterest      &quantity;
+    std::optional<PointProbe<dim>> probe;
+    DistributedVector              load; // l
+  };
+} // namespace Viscoplastic

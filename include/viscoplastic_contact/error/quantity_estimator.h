@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/error/dual_problem.h>
+#include <viscoplastic_contact/error/evaluated_state.h>
+
+namespace Viscoplastic
+{
+  /**
+   * Estimates the error of a quantity J of interest at the end of each step, on
+   * one mesh. With the residual R of the state and the solution w of the dual
+   * problem (DualProblem),
+   *
+   *     J(u) - J(u_h) = sign R(w - w_h) + sign R_z(w),
+   *
+   * where R_z is the residual that errors of z make:
+   *
+   * - mesh: R(w - w_h) is a(e_u, e_w), with e the errors of both problems, of
+   *   which ResidualEstimator::multiply() tells the part of each cell. Their
+   *   sum is the estimate, safety times that is what counts as error, and their
+   *   sizes are the indicators by which meshes are refined.
+   * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
+   *   steps (see ErrorEstimator).
+   * - everything else is known by its norm: slip that turns and the iterations
+   *   by a(w, w)^{1/2}, initial data and changes of the mesh, which are
+   *   orthogonal to what is constant in cells, by the error of w.
+   */
+  template <int dim>
+  class QuantityEstimator
+  {
+  public:
+    /// The estimate is exact to leading order for the mesh of one step, and
+    /// knows nothing of what the meshes before have done to z, or of fronts of
+    /// slip between nodes. How large that may be: doc/method.md, section 12.
+    static constexpr double safety = 2.;
+
+    /// All arguments stay in use. Collective.
+    QuantityEstimator(const Discretization<dim> &discretization,
+                      const SpaceEstimator<dim> &space_estimator);
+
+    /// Add the quantity, its errors and the indicators to a state whose
+    /// estimate in the energy norm is complete. @p solver: for the matrix of
+    /// a(.,.). Collective. Throws ExcMessage.
+    void
+    assess(BulkSolver &solver, EvaluatedState<dim> &end) const;
+
+  private:
+    const Discretization<dim> &discretization;
+    const SpaceEstimator<dim> &space_estimator;
+    const DualProblem<dim>     dual_problem;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/scene/boundary_condition.h>
+
+#include <map>
+#include <string>
+
+namespace Viscoplastic
+{
+  /**
+   * A number whose error is estimated by duality: a column of statistics.csv
+   * that is linear in the displacement and the forces at the end of a step.
+   */
+  struct QuantityOfInterest
+  {
+    enum class Kind
+    {
+      friction_force,
+      reaction,
+      displacement // of a point of `Output/Points'
+    };
+
+    Kind kind;
+    /// The boundary id of a reaction, the number of a point; and x, y or z.
+    unsigned int number = 0, component = 0;
+    /// The column.
+    std::string name;
+  };
+
+  /// The quantity that @p column names. Throws ExcMessage if there is none in
+  /// a scene with these conditions and so many output points.
+  template <int dim>
+  QuantityOfInterest
+  quantity_of_interest(
+    const std::string                                          &column,
+    const std::map<types::boundary_id, BoundaryCondition<dim>> &boundary,
+    const unsigned int                                          n_points);
+} // namespace Viscoplastic

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/contact/friction_points.h>
+#include <viscoplastic_contact/error/dual_problem.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Of the dual solution in the energy norm: an estimate needs no more.
+    constexpr double dual_tolerance = 1e-3;
+  } // namespace
+
+
+
+  template <int dim>
+  DualProblem<dim>::DualProblem(const Discretization<dim> &discretization,
+                                const QuantityOfInterest  &quantity)
+    : discretization(discretization)
+    , quantity(quantity)
+    , load(discretization.space.owned_vector())
+  {
+    if (quantity.kind != QuantityOfInterest::Kind::displacement)
+      return;
+    const AdmissibleSpace<dim> &space = discretization.space;
+    probe.emplace(space, space.scene.output_points[quantity.number]);
+    std::vector<double> cartesian(space.relevant.n_elements());
+    probe->add_force(Point<dim>::unit_vector(quantity.component), cartesian);
+    space.add_cartesian_load(cartesian, load);
+  }
+
+
+
+  template <int dim>
+  double
+  DualProblem<dim>::value(const State<dim>  &state,
+                          const Forces<dim> &forces) const
+  {
+    const unsigned int d = quantity.component;
+    switch (quantity.kind)
+      {
+        case QuantityOfInterest::Kind::friction_force:
+          return discretization.face->resultant(state.friction)[d];
+        case QuantityOfInterest::Kind::reaction:
+          return reactions(discretization.space, forces).at(quantity.number)[d];
+        default:
+          return probe->value(state.u)[d];
+      }
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  DualProblem<dim>::prescribed() const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    const Tensor<1, dim>        direction =
+      Point<dim>::unit_vector(quantity.component);
+    DistributedVector w = space.owned_vector();
+    if (quantity.kind == QuantityOfInterest::Kind::reaction)
+      // What reactions() makes of the forces at prescribed components,
+      // transposed.
+      for (const auto &node : space.boundary_nodes())
+        {
+          const NodalFrame<dim> &frame = space.frame(node.frame);
+          if (frame.n_fixed == 0)
+            continue;
+          Tensor<1, dim> parts;
+          for (unsigned int i = 0; i < frame.n_fixed; ++i)
+            if (frame.condition_boundary[i] == quantity.number)
+              parts[i] = frame.condition_direction[i] * direction;
+          const Tensor<1, dim> value = invert(condition_matrix(frame)) * parts;
+          const std::size_t    first =
+            space.owned.index_within_set(node.first_dof);
+          for (unsigned int i = 0; i < frame.n_fixed; ++i)
+            w.begin()[first + frame.fixed[i]] = value[i];
+        }
+    const ContactFace<dim> *face = discretization.slipping_face();
+    if (quantity.kind == QuantityOfInterest::Kind::friction_force &&
+        face != nullptr)
+      {
+        DistributedVector everywhere = space.owned_vector(),
+                          ghosted    = space.ghosted_vector();
+        for (std::size_t i = quantity.component; i < space.owned.n_elements();
+             i += dim)
+          everywhere.begin()[i] = 1.;
+        ghosted = everywhere;
+        space.to_frames(ghosted, everywhere);
+        face->restriction().set(face->restriction().gather(everywhere), w);
+      }
+    return w;
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  DualProblem<dim>::density(const Vector<double> &force) const
+  {
+    const FrictionFace &face = discretization.face->layout();
+    FrictionState       held(std::vector<double>(face.points.size(), 0.));
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      {
+        const FrictionFace::Point &point = face.points[p];
+        held.multiplier[p] = slip(point, face.node_values(force, point.node)) /
+                             face.n_node_points(point.node);
+      }
+    return discretization.face->density(held);
+  }
+
+
+
+  template <int dim>
+  DualSolution<dim>
+  DualProblem<dim>::solve(BulkSolver          &solver,
+                          const FrictionState &friction) const
+  {
+    const Discretization<dim>  &d     = discretization;
+    const AdmissibleSpace<dim> &space = d.space;
+    DualSolution<dim>           dual;
+    dual.w = prescribed();
+    // Rounding of the step that has been solved is not that of w.
+    solver.set_rounding_error(0.);
+    if (d.slipping_face() == nullptr)
+      solver.solve(load, dual.w, dual_tolerance);
+    else
+      {
+        const FrictionFace &face   = d.face->layout();
+        FrictionState       linear = friction;
+        for (unsigned int p = 0; p < linear.n_points(); ++p)
+          // Nothing holds a point without friction.
+          linear.sticks[p] = linear.sticks[p] && linear.bound[p] > 0.;
+        std::vector<Tensor<2, 3>> inverse_diagonal;
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          inverse_diagonal.push_back(
+            invert(solver.face_matrix().diagonal_block(node)));
+        const Vector<double> no_force(face.n_dofs());
+        Vector<double>       change(face.n_dofs());
+        solver.begin(load, dual.w);
+        solver.set_truncation(make_truncation(face, linear, inverse_diagonal),
+                              /* may_rebuild = */ false);
+        solver.correct(no_force, dual_tolerance, change);
+        solver.search_terms(change);
+        solver.take_step(1.);
+        solver.finish();
+      }
+
+    DistributedVector elastic = space.owned_vector();
+    d.matrix.vmult(elastic, dual.w);
+    dual.norm      = std::sqrt(std::max(0., dual.w * elastic));
+    dual.cartesian = space.ghosted_vector();
+    space.to_cartesian(dual.w, dual.cartesian);
+    if (d.face)
+      {
+        DistributedVector force = load;
+        force -= elastic;
+        dual.density = density(d.face->restriction().gather(force));
+      }
+    return dual;
+  }
+
+
+
+  template class DualProblem<2>;
+  template class DualProblem<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/scene/quantity_of_interest.h>
+
+#include <vector>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  QuantityOfInterest
+  quantity_of_interest(
+    const std::string                                          &column,
+    const std::map<types::boundary_id, BoundaryCondition<dim>> &boundary,
+    const unsigned int                                          n_points)
+  {
+    using Kind = QuantityOfInterest::Kind;
+    std::vector<QuantityOfInterest> known;
+    const auto                      add =
+      [&known](const Kind kind, const unsigned int i, const std::string &name) {
+        for (unsigned int d = 0; d < dim; ++d)
+          known.push_back({kind, i, d, name + '_' + "xyz"[d]});
+      };
+    bool has_friction = false;
+    for (const auto &[id, condition] : boundary)
+      has_friction |= condition.has_friction();
+    if (has_friction)
+      add(Kind::friction_force, 0, "friction_force");
+    for (const auto &[id, condition] : boundary)
+      if (condition.constrains())
+        add(Kind::reaction, id, "reaction_" + std::to_string(id));
+    for (unsigned int i = 0; i < n_points; ++i)
+      add(Kind::displacement, i, "point" + std::to_string(i));
+
+    std::string names;
+    for (const QuantityOfInterest &quantity : known)
+      {
+        if (quantity.name == column)
+          return quantity;
+        names += (names.empty() ? "" : ", ") + quantity.name;
+      }
+    AssertThrow(false,
+                ExcMessage("'Error control/Quantity': '" + excerpt(column) +
+                           "' is none of the quantities of this scene whose "
+                           "error can be estimated: " +
+                           (names.empty() ? "there are none; give 'Output/"
+                                            "Points'" :
+                                            names) +
+                           "."));
+    return {};
+  }
+
+
+
+  template QuantityOfInterest
+  quantity_of_interest<2>(
+    const std::string &,
+    const std::map<types::boundary_id, BoundaryCondition<2>> &,
+    const unsigned int);
+  template QuantityOfInterest
+  quantity_of_interest<3>(
+    const std::string &,
+    const std::map<types::boundary_id, BoundaryCondition<3>> &,
+    const unsigned int);
+} // namespace Viscoplastic

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Errors of quantities of interest, by duality."""
+
+import functools
+
+import numpy as np
+
+from harness import TestCase, main, run
+from test_error_bar import manufactured
+from test_restart import EVERY_STEP, Job, without_wall_times
+
+COARSE_SLAB = {
+    "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+    "Output/Fields every": 0,
+    "Solver/Contact tolerance": 0,
+}
+
+
+def of(column, tolerance=0, **more):
+    return {
+        "Error control/Quantity": column,
+        "Error control/Tolerance": tolerance,
+        **more,
+    }
+
+
+@functools.lru_cache
+def fine_slab(law):
+    """The slab as accurately as its quantities are compared with it."""
+    overrides = {"Geometry/Global refinements": 2, "Material/Law": law}
+    return run("slab", {**overrides, "Time/Phases": "1: 128, 2: 128"})
+
+
+class Estimated(TestCase):
+    """Signs and sizes of the errors on a given mesh."""
+
+    def check(self, coarse, fine, column, band, safety=2):
+        """The correction, over the times of the coarse run, against the error."""
+        common = np.isin(np.round(fine["t"], 9), np.round(coarse["t"], 9))
+        error = fine[column][common] - coarse[column]
+        correction = coarse["quantity_correction"]
+        worst = np.abs(error).argmax()
+        quotient = correction[worst] / error[worst]
+        self.assertGreater(quotient, band[0], column)
+        self.assertLess(quotient, band[1], column)
+        # Of the mesh it is taken safety times, and the parts are a bound.
+        self.assertClose(
+            coarse["quantity_total"],
+            sum(coarse[f"quantity_{part}"] for part in ("space", "time", "other")),
+            relative=1e-10,
+        )
+        self.assertTrue(
+            np.all(
+                coarse["quantity_total"] * (1 + 1e-9)
+                >= np.abs(correction)
+                - 1e-12 * np.abs(coarse[column]).max()
+            )
+        )
+        # The largest bound is one of the largest error, and not by far.
+        quotient = coarse["quantity_total"].max() / np.abs(error).max()
+        self.assertGreater(quotient, 1.0, column)
+        self.assertLess(quotient, 2 * safety, column)
+
+    def test_of_a_moving_front(self):
+        for column in (
+            "friction_force_x",
+            "reaction_3_x",
+            "reaction_2_y",
+            "point0_x",
+        ):
+            coarse = run("slab", of(column, **{"Output/Fields every": 0}))
+            self.check(coarse, fine_slab("maxwell"), column, (0.8, 1.4))
+
+    def test_of_backward_euler(self):
+        """Its own matrices are no help for the dual problem of a(.,.)."""
+        coarse = run("slab", of("reaction_2_y", **{"Time/Scheme": "backward Euler"}))
+        self.check(coarse, fine_slab("maxwell"), "reaction_2_y", (0.7, 1.5))
+
+    def test_in_space(self):
+        """A clamped block without friction, linear in every respect."""
+        scene = {
+            "Geometry/Arguments": "4, 4, 4 : 0, 0, 0 : 1, 1, 1 : true",
+            "Boundary 4/Role": "free",
+            "Time/Phases": "1.5: 3",
+            "Material/Law": "elastic",
+        }
+        fine = run("coulomb_pad_3d", {**scene, "Geometry/Global refinements": 2})
+        column = "point0_x"
+        coarse = run(
+            "coulomb_pad_3d",
+            of(column, **scene, **{"Geometry/Global refinements": 0}),
+        )
+        self.check(coarse, fine, column, (0.5, 1.2))
+
+    def test_of_time_steps(self):
+        """Few steps on a fine mesh, until all of the face slips."""
+        overrides = {"Geometry/Global refinements": 4}
+        coarse = manufactured(
+            "tresca_2d",
+            **of("friction_force_x", **overrides, **{"Time/Phases": "1: 10"}),
+        )
+        fine = manufactured("tresca_2d", **overrides, **{"Time/Phases": "1: 80"})
+        common = np.isin(np.round(fine["t"], 9), np.round(coarse["t"], 9))
+        error = (fine["friction_force_x"][common] - coarse["friction_force_x"])[1:6]
+        self.assertTrue(np.all(error < 0))
+        quotient = coarse["quantity_correction"][1:6] / error
+        self.assertGreater(quotient.min(), 1.0)
+        self.assertLess(quotient.max(), 1.4)
+
+    def test_costs_nothing_without(self):
+        plain = run("slab", COARSE_SLAB)
+        self.assertFalse(any("quantity" in name for name in plain.statistics))
+        self.assertNotIn("Estimated error of", plain.stdout)
+
+
+class Kept(TestCase):
+    """Runs to a tolerance of the quantity."""
+
+    def check(self, column, tolerance, law="maxwell"):
+        scene = {**COARSE_SLAB, "Material/Law": law}
+        result = run("slab", of(column, tolerance, **scene))
+        fine = fine_slab(law)
+        size = np.abs(fine[column]).max()
+        exact = np.interp(result["t"], fine["t"], fine[column])
+        error = np.abs(exact - result[column]).max() / size
+        estimate = result["quantity_total"].max() / np.abs(result[column]).max()
+        self.assertLess(estimate, tolerance)
+        self.assertLess(error, 1.1 * tolerance, column)
+        self.assertGreater(error, tolerance / 4, column)
+        self.assertIn(f"Estimated error of {column}", result.stdout)
+        self.assertIn("has been kept", result.stdout)
+        return result
+
+    def test_forces_and_displacements(self):
+        for column in "friction_force_x", "reaction_3_x", "point0_x":
+            result = self.check(column, 0.01)
+            # The energy norm to 1 % takes 30 000 cells here.
+            self.assertLess(result["cells"].max(), 400)
+
+    def test_elastic(self):
+        self.check("reaction_2_y", 0.01, "elastic")
+
+    def test_refines_where_the_quantity_feels_it(self):
+        point = run("slab", of("point0_x", 0.005, **COARSE_SLAB))
+        force = run("slab", of("friction_force_x", 0.005, **COARSE_SLAB))
+        self.assertNotEqual(point["cells"].max(), force["cells"].max())
+
+    def test_on_1_2_3_ranks(self):
+        scene = {**COARSE_SLAB, "Solver/Linear solver": "multigrid"}
+        one = run("slab", of("reaction_3_x", 0.005, **scene))
+        for ranks in 2, 3:
+            several = run("slab", of("reaction_3_x", 0.005, **scene), ranks=ranks)
+            self.assertEqual(list(several["cells"]), list(one["cells"]))
+            self.assertClose(several["t"], one["t"], 1e-4)
+            self.assertClose(
+                several["quantity_total"][1:], one["quantity_total"][1:], 2e-2
+            )
+
+    def test_survives_restart(self):
+        scene = of("reaction_3_x", 0.005, **COARSE_SLAB, **EVERY_STEP)
+        with Job("slab", scene) as job:
+            reference = job.run()
+            rows = without_wall_times(reference.directory / "statistics.csv")
+            with Job("slab", scene, copy_of=job) as again:
+                again.forget_after(6)
+                result = again.run("--restart")
+                self.assertEqual(
+                    without_wall_times(result.directory / "statistics.csv"), rows
+                )
+
+
+class Refused(TestCase):
+    def check(self, sentence, **overrides):
+        result = run("slab", overrides, check=False)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn(sentence, " ".join(result.stderr.split()))
+
+    def test_unknown_columns(self):
+        for column in "friction_force_z", "max_displacement", "point1_x":
+            self.check(f"'{column}' is none of the quantities", **of(column))
+
+    def test_without_estimate(self):
+        self.check(
+            "'Error control/Quantity' needs the estimate of the error",
+            **of("reaction_3_x", **{"Error control/Error bar": "false"}),
+        )
+        self.check(
+            "'Error control/Quantity' refines by residuals",
+            **of("reaction_3_x", **{"Mesh refinement/Strategy": "kelly"}),
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Errors of quantities of interest: the dual problem tells what a residual does
+// to them, and products of errors are those of the errors. Every test holds on
+// any number of ranks.
+
+#include <deal.II/grid/grid_tools.h>
+
+#include "refusals.h"
+#include "stepping_body.h"
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+
+
+  template <typename Dimension>
+  class Quantity : public testing::Test
+  {};
+  TYPED_TEST_SUITE(Quantity, Dimensions);
+
+
+
+  std::string
+  quantity(const std::string &column)
+  {
+    return subsection("Error control", "set Quantity = " + column);
+  }
+
+
+
+  template <int dim>
+  std::string
+  output_point()
+  {
+    return subsection("Output",
+                      std::string("set Points = 0.3, 0.4") +
+                        (dim == 3 ? ", 0.1" : ""));
+  }
+
+
+
+  /// A change of z by dz is a residual -(dz, eps(.)).
+  TYPED_TEST(Quantity, DualTellsWhatAResidualDoes)
+  {
+    constexpr int                  dim = TypeParam::value;
+    const std::vector<std::string> columns{
+      "friction_force_x",
+      "reaction_" + std::to_string(2 * dim - 1) + "_x",
+      "reaction_" + std::to_string(2 * dim - 2) + "_" + "xyz"[dim - 1],
+      "point0_x",
+      "point0_y"};
+    for (const std::string &column : columns)
+      for (const std::string linear_solver : {"direct", "multigrid"})
+        {
+          if (linear_solver == "direct" &&
+              Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+            continue;
+          SCOPED_TRACE(column + ", " + linear_solver);
+          SteppingBody<dim> body(maxwell + time("forward Euler", "1: 8") +
+                                 solver(linear_solver) + quantity(column) +
+                                 output_point<dim>());
+          // Some points stick, others slip.
+          const unsigned int n = dim == 2 ? 2 : 5;
+          body.advance(n);
+          const Discretization<dim> &d    = *body.discretization;
+          const double               t    = body.accepted.state.t;
+          const TimeStep             step = {n + 1, t, t + 0.125, 0.125};
+          FlowRate                   rate = body.rate();
+          const auto end = body.stepper->try_step(body.accepted, &rate, step);
+          const State<dim> &state    = end.end.state;
+          const auto        slipping = std::count(state.friction.sticks.begin(),
+                                           state.friction.sticks.end(),
+                                           false);
+          EXPECT_GT(Utilities::MPI::sum<unsigned int>(slipping, MPI_COMM_WORLD),
+                    0u);
+
+          const DualProblem<dim> dual(d, *body.scene.quantity);
+          const auto w = dual.solve(*body.stepper->method().elastic_solver(),
+                                    state.friction);
+          // Not the same everywhere, or nothing would move.
+          IrreversibleStress dz(state.z.size());
+          std::size_t        i = 0;
+          for (const auto &cell : d.space.cells)
+            for (unsigned int s = 0; s < d.stress_space.n_samples; ++s, ++i)
+              for (unsigned int e = 0; e < 6; ++e)
+                dz[i].access_raw_entry(e) =
+                  1e-6 * std::sin(1. + e + 3. * cell->center()[0] +
+                                  5. * cell->center()[dim - 1]);
+          for (i = 0; i < dz.size(); ++i)
+            rate.rate[i] += dz[i] / step.k;
+          const auto changed =
+            body.stepper->try_step(body.accepted, &rate, step);
+          EXPECT_EQ(changed.end.state.friction.sticks, state.friction.sticks);
+          DistributedVector residual = d.space.owned_vector();
+          add_irreversible_load(d.stress_space, dz, residual);
+          const double told = dual.sign() * (residual * w.w),
+                       seen =
+                         dual.value(changed.end.state, changed.end.forces) -
+                         dual.value(state, end.end.forces);
+          EXPECT_GT(std::abs(seen), 1e-9);
+          EXPECT_NEAR(told,
+                      seen,
+                      (linear_solver == "direct" ? 1e-3 : 3e-3) *
+                        (std::abs(seen) + 1e-7));
+        }
+  }
+
+
+
+  /// Of the interpolant of a field whose second derivatives are constant.
+  TYPED_TEST(Quantity, ProductsOfErrorsAreThoseOfSmoothFields)
+  {
+    constexpr int dim = TypeParam::value;
+    // clamped all around: the errors of the interior count
+    std::string text =
+      box<dim>(1) + subsection("Material", "set Law = elastic");
+    for (unsigned int id = 0; id < 2 * dim; ++id)
+      text += boundary(id, "set Role = clamped");
+    for (const bool stretched : {false, true})
+      {
+        SCOPED_TRACE(stretched);
+        Body<dim> body(text);
+        body.triangulation.refine_global(dim == 2 ? 5 : 3);
+        if (stretched)
+          GridTools::transform(
+            [](Point<dim> x) {
+              x[1] *= 3.;
+              return x;
+            },
+            body.triangulation);
+        body.set_up();
+        // x^2 + y^2; x^2 - 2 y^2, and a dual one with other factors
+        const auto field = [](const Tensor<1, 2> &xx, const Tensor<1, 2> &yy) {
+          return [xx, yy](const Point<dim> &x) {
+            Tensor<1, dim> u;
+            for (unsigned int i = 0; i < 2; ++i)
+              u[i] = xx[i] * x[0] * x[0] + yy[i] * x[1] * x[1];
+            return u;
+          };
+        };
+        const auto pair = [](const double a, const double b) {
+          return Tensor<1, 2>({a, b});
+        };
+        const DistributedVector u = body.interpolate(
+                                  field(pair(1., 1.), pair(1., -2.))),
+                                w = body.interpolate(
+                                  field(pair(2., -1.), pair(1., 0.5)));
+        const auto products =
+          ResidualEstimator<dim>(*body.stress_space)
+            .multiply({u, {}, {}, nullptr}, {w, {}, {}, nullptr});
+        // Errors -x (h - x)/2 u_xx and so on: a(e_u, e_w) in a cell.
+        const double mu = 1. / 2.6, lambda = 0.3 / (1.3 * 0.4);
+        for (const auto &cell : body.space->cells)
+          if (!cell->at_boundary())
+            {
+              const double hx = cell->extent_in_direction(0),
+                           hy = cell->extent_in_direction(1);
+              const double xx = hx * hx / 12. * 4., yy = hy * hy / 12. * 4.;
+              const double both = ((lambda + 2. * mu) * 2. + mu * -1.) * xx +
+                                  (mu * 1. + (lambda + 2. * mu) * -1.) * yy;
+              const double of_dual = ((lambda + 2. * mu) * 4. + mu * 1.) * xx +
+                                     (mu * 1. + (lambda + 2. * mu) * 0.25) * yy;
+              const unsigned int c = cell->active_cell_index();
+              EXPECT_NEAR(products.of_both[c],
+                          both * cell->measure(),
+                          1e-9 * of_dual * cell->measure());
+              EXPECT_NEAR(products.of_dual[c],
+                          of_dual * cell->measure(),
+                          1e-9 * of_dual * cell->measure());
+            }
+      }
+  }
+
+
+
+  TEST(Quantities, ThatDoNotExistAreRefused)
+  {
+    const std::string known =
+      "'Error control/Quantity': 'friction_force_z' is none of the quantities "
+      "of this scene whose error can be estimated: friction_force_x, "
+      "friction_force_y, reaction_2_x, reaction_2_y, reaction_3_x, "
+      "reaction_3_y.";
+    expect_refusal([] { SteppingBody<2> body(quantity("friction_force_z")); },
+                   known);
+    expect_refusal(
+      [] {
+        SteppingBody<2> body(
+          subsection("Error control",
+                     "set Quantity = reaction_2_x\nset Error bar = false"));
+      },
+      "'Error control/Quantity' needs the estimate of the error");
+  }
+} // namespace

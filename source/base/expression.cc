@@ -245,6 +245,20 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  Expression<dim>::may_have_kinks() const
+  {
+    if (!parser || !time_dependent)
+      return false;
+    bool result = may_jump();
+    for (const char *function : {"abs", "min", "max", "fmod"})
+      result = result || mentions(text, function);
+    return result;
+  }
+
+
+
+  template <int dim>
   Tensor<1, dim>
   Expression<dim>::gradient(const Point<dim> &x, const double t) const
   {

@@ -290,12 +290,19 @@ namespace Viscoplastic
       "Phases' gives the first step of each phase. 0: the steps are those of "
       "`Time/Phases'.",
       Patterns::Double(0.));
-    prm.add_parameter("Landing times",
-                      landing_times,
-                      "Times separated by commas at which a step ends, besides "
-                      "the ends of phases and the multiples of `Output/Fields "
-                      "interval': where loads have kinks or jumps. Unit: "
-                      "time.");
+    prm.add_parameter(
+      "Landing times",
+      landing_times,
+      "Times separated by commas at which a step ends, besides "
+      "the ends of phases, the multiples of `Output/Fields "
+      "interval', and kinks and jumps of the data. Unit: time.");
+    prm.add_parameter(
+      "Land on kinks",
+      land_on_kinks,
+      "Whether steps chosen by their error end where data have "
+      "kinks in time (`min', `abs', `if', ...), and just before "
+      "and after jumps. These times are looked for at the "
+      "beginning and named.");
     add_choice(prm,
                "Resolve events",
                resolve_events,

@@ -30,6 +30,26 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  Announcer<dim>::announce(const KinksOfScene &found)
+  {
+    constexpr std::size_t most  = 6;
+    const auto           &kinks = found.kinks;
+    std::ostream         &out   = console.stream();
+    out << "Steps end at kinks and jumps in time of ";
+    for (std::size_t i = 0; i < found.entries.size(); ++i)
+      out << (i > 0 ? ", '" : "'") << found.entries[i] << '\'';
+    out << ": t = ";
+    for (std::size_t i = 0; i < std::min(most, kinks.size()); ++i)
+      out << (i > 0 ? ", " : "") << kinks[i].t;
+    if (kinks.size() > most)
+      out << ", ..., " << kinks.back().t << " (" << kinks.size() << " times)";
+    out << '\n';
+  }
+
+
+
+  template <int dim>
+  void
   Announcer<dim>::announce(const Discretization<dim> &discretization)
   {
     const DoFHandler<dim> &dof_handler = discretization.space.dof_handler;

@@ -12,6 +12,7 @@
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/run/pilot_run.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
+#include <viscoplastic_contact/scene/kinks_in_time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -207,6 +208,25 @@ namespace Viscoplastic
                            "error; set 'Error control/Error bar' = true."));
     control.set_has_estimate(scene.has_viscosity());
     announcer.announce(scene);
+    land_on_kinks();
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::land_on_kinks()
+  {
+    if (!control.is_on || !parameters.step_control.land_on_kinks)
+      return;
+    const KinksOfScene found = find_kinks(scene, triangulation);
+    if (found.kinks.empty())
+      return;
+    announcer.announce(found);
+    std::vector<double> kinks, jumps;
+    for (const Kink &kink : found.kinks)
+      (kink.is_jump ? jumps : kinks).push_back(kink.t);
+    control.land_on(kinks, jumps);
   }
 
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
-
 #include <viscoplastic_contact/scene/jump_in_time.h>
+#include <viscoplastic_contact/scene/sample_places.h>
 
 #include <algorithm>
 #include <array>
@@ -22,9 +21,6 @@ namespace Viscoplastic
     constexpr unsigned int n_intervals = 200, least_intervals = 10;
     /// Intervals that are halved.
     constexpr unsigned int n_candidates = 4;
-    /// So many places, or a few more, stand for a piece of the boundary or for
-    /// the body.
-    constexpr unsigned int n_places = 64;
     /// Values have to leave those at both ends of a step by this part of their
     /// range in the run to be called unseen. A sine goes that far with
     /// about two steps a period, not with three.
@@ -100,26 +96,6 @@ namespace Viscoplastic
 
 
 
-    /// The values of a datum at places, all at a time; at one place if these do
-    /// not matter.
-    template <int dim>
-    std::vector<double>
-    values_at(const Expression<dim>         &datum,
-              const std::vector<Point<dim>> &places,
-              const double                   t)
-    {
-      std::vector<double> result;
-      for (const Point<dim> &x : places)
-        {
-          result.push_back(datum.value(x, t));
-          if (!datum.depends_on_position())
-            break;
-        }
-      return result;
-    }
-
-
-
     double
     sum_of_sizes(const std::vector<double> &values)
     {
@@ -127,62 +103,6 @@ namespace Viscoplastic
       for (const double value : values)
         sum += std::fabs(value);
       return sum;
-    }
-
-
-
-    /// Places in cells or faces of dimension @p n, spread evenly.
-    template <int n, int dim, typename Iterator>
-    std::vector<Point<dim>>
-    places_in(const std::vector<Iterator> &parts)
-    {
-      if (parts.empty())
-        return {};
-      const std::size_t stride =
-        std::max<std::size_t>(1, parts.size() / n_places);
-      const double       in_each = double(n_places) * stride / parts.size();
-      const QIterated<n> lattice(QMidpoint<1>(),
-                                 std::ceil(std::pow(in_each, 1. / n)));
-      std::vector<Point<dim>> places;
-      for (std::size_t i = 0; i < parts.size(); i += stride)
-        for (const Point<n> &point : lattice.get_points())
-          {
-            Point<dim> x;
-            for (const unsigned int v : parts[i]->vertex_indices())
-              x += GeometryInfo<n>::d_linear_shape_function(point, v) *
-                   parts[i]->vertex(v);
-            places.push_back(x);
-          }
-      return places;
-    }
-
-
-
-    /// Points on the coarse mesh, which all ranks know.
-    template <int dim>
-    std::vector<Point<dim>>
-    places_on_boundary(const Triangulation<dim> &triangulation,
-                       const types::boundary_id  id)
-    {
-      std::vector<typename Triangulation<dim>::face_iterator> faces;
-      for (const auto &cell : triangulation.cell_iterators_on_level(0))
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary() &&
-              cell->face(f)->boundary_id() == id)
-            faces.push_back(cell->face(f));
-      return places_in<dim - 1, dim>(faces);
-    }
-
-
-
-    template <int dim>
-    std::vector<Point<dim>>
-    places_in_body(const Triangulation<dim> &triangulation)
-    {
-      std::vector<typename Triangulation<dim>::cell_iterator> cells;
-      for (const auto &cell : triangulation.cell_iterators_on_level(0))
-        cells.push_back(cell);
-      return places_in<dim, dim>(cells);
     }
   } // namespace
 
@@ -342,6 +262,16 @@ namespace Viscoplastic
         }
       return places.empty();
     }
+
+
+
+    /// Whether steps are chosen by their error.
+    bool
+    chooses_steps(const Parameters &parameters)
+    {
+      return parameters.step_control.is_on() ||
+             parameters.error_control.has_tolerance();
+    }
   } // namespace
 
 
@@ -371,7 +301,7 @@ namespace Viscoplastic
     // Not where the error chooses the steps, nor where data follow from a
     // solution, whose steps are a matter of its test.
     const bool looks_into_steps =
-      !scene.parameters.step_control.is_on() &&
+      !chooses_steps(scene.parameters) &&
       !(scene.exact_solution && scene.exact_solution->makes_data);
     const auto inspect = [&](const Expression<dim>         &datum,
                              const std::vector<Point<dim>> &places) {
@@ -420,8 +350,12 @@ namespace Viscoplastic
         "Data jump in time (" + jumps.list +
         "), but the theory asks for Lipschitz continuous ones, (2.10): "
         "equilibrium after a jump is exact, what creeps in its step is "
-        "not, and error estimates may miss that; give it a short step of "
-        "its own in 'Time/Phases', or make it a ramp.");
+        "not, and error estimates may miss that; " +
+        std::string(chooses_steps(scene.parameters) &&
+                        scene.parameters.step_control.land_on_kinks ?
+                      "it gets a short step of its own." :
+                      "give it a short step of its own in 'Time/Phases', or "
+                      "make it a ramp."));
     if (!unseen.list.empty())
       warnings.push_back(
         "Data come and go unseen within time steps (" + unseen.list +

@@ -113,6 +113,38 @@ namespace Viscoplastic
 
 
 
+  void
+  StepControl::land_on(const std::vector<double> &kinks,
+                       const std::vector<double> &jumps)
+  {
+    if (!is_on)
+      return;
+    const double near = 1e-9 * schedule.end_time();
+    const auto   add  = [&](const double t) {
+      // There may be one that rounding separates from it.
+      if (t < near || t > schedule.end_time() - near)
+        return;
+      const TimeSchedule::Phase &phase = schedule.phase_at(t);
+      bool is_new = t - phase.start > near && phase.end - t > near;
+      for (const double other : landing_times)
+        is_new &= std::fabs(t - other) > near;
+      if (is_new)
+        landing_times.push_back(t);
+    };
+    for (const double t : kinks)
+      add(t);
+    for (const double t : jumps)
+      {
+        // The values at t may be those before the jump or those after it.
+        const double k = smallest(t);
+        add(t - 0.5 * k);
+        add(t + 0.5 * k);
+      }
+    std::sort(landing_times.begin(), landing_times.end());
+  }
+
+
+
   double
   StepControl::next_target(const double t) const
   {

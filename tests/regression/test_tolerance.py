@@ -105,6 +105,56 @@ class Meshes(TestCase):
             )
 
 
+class Kinks(TestCase):
+    """The turn of a load, which no step of the phases meets."""
+
+    SCENE = {
+        **COARSE_SLAB,
+        "Material/Law": "elastic",
+        "Boundary 0/Traction": "0.3*min(t, 1.86 - t); 0",
+        "Mesh refinement/Strategy": "none",
+    }
+
+    def test_turn_of_a_load_is_found(self):
+        """Plane elastic bodies are exact at the ends of steps then."""
+        fine = run("slab", {**self.SCENE, "Time/Phases": "0.93: 50, 1.86: 50"})
+        phases = {"Time/Phases": "1.86: 9"}
+        found = run("slab", {**self.SCENE, **phases, **to(0.5)})
+        self.assertIn("Steps end at kinks", found.stdout)
+        self.assertIn("'Boundary 0/Traction': t = 0.93\n", found.stdout)
+        self.assertIn(0.93, list(found["t"]))
+        missed = run(
+            "slab",
+            {**self.SCENE, **phases, **to(0.5), "Step control/Land on kinks": "false"},
+        )
+        self.assertNotIn("Steps end at kinks", missed.stdout)
+        for column in "friction_force_x", "friction_dissipation", "point0_x":
+            self.assertClose(found[column][-1], fine[column][-1], 1e-8)
+            self.assertGreater(abs(missed[column][-1] / fine[column][-1] - 1), 0.1)
+
+    def test_jumps_get_steps_of_their_own(self):
+        scene = {
+            **self.SCENE,
+            "Material/Law": "maxwell",
+            "Boundary 0/Traction": "0.05*min(1, 10*t) + if(t < 0.77, 0, 0.15); 0",
+            "Time/Phases": "2: 8",
+            "Step control/Tolerance": 0.05,
+        }
+        found = run("slab", scene)
+        missed = run("slab", {**scene, "Step control/Land on kinks": "false"})
+        self.assertEqual(found["rejected"].sum(), 0)
+        self.assertGreater(missed["rejected"].sum(), 5)
+        self.assertLess(len(found["t"]), len(missed["t"]))
+        self.assertClose(found["friction_force_x"][-1], 0.095455, 1e-3)
+
+    def test_on_3_ranks(self):
+        scene = {**self.SCENE, "Time/Phases": "1.86: 9", **to(0.5)}
+        several = run(
+            "slab", {**scene, "Solver/Linear solver": "multigrid"}, ranks=3
+        )
+        self.assertIn(0.93, list(several["t"]))
+
+
 class Restart(TestCase):
     def check(self, name, scene, after, ranks=1):
         with Job(name, {**scene, **EVERY_STEP}) as job:

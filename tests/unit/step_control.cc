@@ -280,6 +280,43 @@ namespace
 
 
 
+  TEST(StepControl, LandsOnKinksAndAroundJumps)
+  {
+    const TimeSchedule schedule("1: 10, 2: 10");
+    auto               parameters = with_tolerance(0.1);
+    parameters.landing_times      = "1.3";
+    const auto no_error           = [](const TimeStep &step) {
+      return StepErrors{0., step.k, 1.};
+    };
+    StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
+    // Some of them are there already, up to rounding.
+    control.land_on({0.777, 1. + 1e-12, 1.3 - 1e-12, 2.}, {0.4});
+    const auto            done = steps(control, 2., no_error);
+    std::vector<TimeStep> around;
+    for (const TimeStep &step : done)
+      {
+        EXPECT_GT(step.k, 0.9e-6);
+        if (step.t_old < 0.4 && step.t > 0.4)
+          around.push_back(step);
+      }
+    ASSERT_EQ(around.size(), 1u);
+    EXPECT_NEAR(around[0].k, 1e-6, 1e-12);
+    const auto has = [&](const double t) {
+      return std::any_of(done.begin(), done.end(), [&](const TimeStep &step) {
+        return step.t == t;
+      });
+    };
+    for (const double t : {0.777, 1., 1.3, 2.})
+      EXPECT_TRUE(has(t)) << t;
+
+    // Steps of the phases stay.
+    StepControl fixed({}, StiffnessPolicy::refuse, schedule, 1, 0.);
+    fixed.land_on({0.777}, {0.4});
+    EXPECT_EQ(steps(fixed, 2., no_error).size(), 20u);
+  }
+
+
+
   TEST(StepControl, LandsOnTimes)
   {
     const TimeSchedule schedule("1: 10, 2: 10");

@@ -92,6 +92,10 @@ namespace Viscoplastic
     bool
     may_jump() const;
 
+    /// The same for its first derivative.
+    bool
+    may_have_kinks() const;
+
     /// The parameter that gives it.
     const std::string &
     name_of_entry() const

@@ -115,6 +115,7 @@ namespace Viscoplastic
     /// 0: the steps of the phases.
     double          tolerance = 0.;
     std::string     landing_times;
+    bool            land_on_kinks   = true;
     EventResolution resolve_events  = EventResolution::automatic;
     double          event_tolerance = 1e-3;
     double          largest_step = 0., smallest_step = 0.;

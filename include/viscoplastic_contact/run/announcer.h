@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/console.h>
 #include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/scene/kinks_in_time.h>
 
 #include <set>
 #include <string>
@@ -24,6 +25,10 @@ namespace Viscoplastic
 
     void
     announce(const Scene<dim> &scene);
+
+    /// Where steps will end.
+    void
+    announce(const KinksOfScene &found);
 
     /// The size of the first mesh.
     void

@@ -117,6 +117,10 @@ namespace Viscoplastic
     void
     make_mesh();
 
+    /// End steps that are chosen by their error at kinks and jumps of the data.
+    void
+    land_on_kinks();
+
     /// Refuse a first step beyond the stability limit, before anything is
     /// written, and warn of later ones. Source: source/run/check.cc.
     void

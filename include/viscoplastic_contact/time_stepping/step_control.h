@@ -101,6 +101,11 @@ namespace Viscoplastic
       has_estimate = value;
     }
 
+    /// End steps at these times, too; does nothing if the steps are those of
+    /// the phases. A jump gets a short step of its own.
+    void
+    land_on(const std::vector<double> &kinks, const std::vector<double> &jumps);
+
     /// The energy norm that the solution is expected to reach.
     void
     expect_size(const double size)

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/scene/kinks_in_time.h>
+#include <viscoplastic_contact/scene/sample_places.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Windows in which kinks are looked for, in all and in a phase.
+    constexpr unsigned int n_windows = 400, least_windows = 40;
+    /// A kink or jump is known to this part of the end time; nearer ones are
+    /// the same.
+    constexpr double accuracy = 1e-10;
+    /// A change of the slope is compared with the mean size of the slope, a
+    /// jump with the sum of all changes.
+    constexpr double least_share = 0.05;
+    /// In a window of an eighth of the width, second differences are at least
+    /// 3/32 times as large if there is a kink, 1/64 times if the datum is
+    /// smooth: halves of a window begin at its eighths.
+    constexpr double       least_fall = 0.04;
+    constexpr unsigned int n_shifts = 5, n_levels_to_tell = 3;
+    /// More than that are no kinks but noise.
+    constexpr std::size_t most_kinks = 1000;
+
+
+
+    /// A kink is one of at least this part of the places where a datum changes.
+    constexpr double least_places = 0.1;
+
+
+
+    template <int dim>
+    class Search
+    {
+    public:
+      Search(const Expression<dim>         &datum,
+             const std::vector<Point<dim>> &places,
+             const TimeSchedule            &schedule)
+        : datum(datum)
+        , places(places)
+        , end_time(schedule.end_time())
+      {
+        std::vector<double> times{0.};
+        const unsigned int  n =
+          std::max(least_windows, n_windows / schedule.n_phases());
+        while (times.back() < end_time)
+          {
+            const TimeSchedule::Phase &phase = schedule.phase_at(times.back());
+            for (unsigned int i = 1; i < n; ++i)
+              times.push_back(phase.start + i * (phase.end - phase.start) / n);
+            times.push_back(phase.end);
+          }
+        std::vector<double> before = values(0.);
+        paths.resize(before.size());
+        for (std::size_t i = 1; i < times.size(); ++i)
+          {
+            const std::vector<double> now = values(times[i]);
+            for (std::size_t p = 0; p < paths.size(); ++p)
+              paths[p] += std::fabs(now[p] - before[p]);
+            before = now;
+          }
+        for (const double path : paths)
+          n_moving += path > 0.;
+        // Each kink is well inside of one of them.
+        for (std::size_t i = 0; n_moving > 0 && i + 2 < times.size(); ++i)
+          look_into(times[i], times[i + 2]);
+      }
+
+      std::vector<Kink> kinks;
+
+    private:
+      std::vector<double>
+      values(const double t) const
+      {
+        return values_at(datum, places, t);
+      }
+
+      /// Whether something holds at enough of the places.
+      template <typename Predicate>
+      bool
+      is_common(const Predicate &holds_at) const
+      {
+        unsigned int n = 0;
+        for (std::size_t p = 0; p < paths.size(); ++p)
+          n += holds_at(p);
+        return n > 0 && n >= least_places * n_moving;
+      }
+
+      /// Of [t, t + width], in its middle, by place.
+      std::vector<double>
+      second_differences(const double t, const double width) const
+      {
+        std::vector<double> result = values(t);
+        const auto middle = values(t + 0.5 * width), right = values(t + width);
+        for (std::size_t p = 0; p < result.size(); ++p)
+          result[p] = std::fabs(result[p] - 2. * middle[p] + right[p]);
+        return result;
+      }
+
+      static double
+      sum(const std::vector<double> &differences)
+      {
+        return std::accumulate(differences.begin(), differences.end(), 0.);
+      }
+
+      /// Follow the largest second differences to where a kink is, if any.
+      void
+      look_into(double start, const double end)
+      {
+        double              width       = end - start;
+        std::vector<double> differences = second_differences(start, width);
+        double              earlier     = sum(differences);
+        const double        path        = sum(paths);
+        for (unsigned int level = 1; width > accuracy * end_time; ++level)
+          {
+            // What would be none if all of it were at one time.
+            if (!(sum(differences) >
+                  1e-6 * least_share * path * width / end_time))
+              return;
+            const double first = start;
+            differences.clear();
+            for (unsigned int s = 0; s < n_shifts; ++s)
+              {
+                const double shifted = first + s * width / 8.;
+                auto         there   = second_differences(shifted, 0.5 * width);
+                if (differences.empty() || sum(there) > sum(differences))
+                  {
+                    differences = std::move(there);
+                    start       = shifted;
+                  }
+              }
+            width *= 0.5;
+            if (level % n_levels_to_tell != 0)
+              continue;
+            const double now = sum(differences);
+            const double largest =
+              *std::max_element(differences.begin(), differences.end());
+            if (!(now > least_fall * earlier) ||
+                !is_common([&](const std::size_t p) {
+                  return differences[p] > least_share * largest;
+                }))
+              return;
+            earlier = now;
+          }
+        judge(start + 0.5 * width);
+      }
+
+      /// Add what is near a time, by the differences at some distance.
+      void
+      judge(const double t)
+      {
+        const double near = 10. * accuracy * end_time, far = 1e-5 * end_time;
+        if (t - 2. * far < 0. || t + 2. * far > end_time ||
+            (!kinks.empty() && std::fabs(t - kinks.back().t) < far))
+          return;
+        const auto before = values(t - near), after = values(t + near),
+                   left = values(t - far), right = values(t + far),
+                   farther_left  = values(t - 2. * far),
+                   farther_right = values(t + 2. * far);
+        const bool is_jump       = is_common([&](const std::size_t p) {
+          return std::fabs(after[p] - before[p]) > least_share * paths[p];
+        });
+        const bool is_kink       = is_common([&](const std::size_t p) {
+          return std::fabs((farther_right[p] - right[p]) -
+                           (left[p] - farther_left[p])) >
+                 least_share * paths[p] * far / end_time;
+        });
+        if (is_jump || is_kink)
+          kinks.push_back({without_rounding(t), is_jump});
+      }
+
+      /// Users write short numbers.
+      double
+      without_rounding(const double t) const
+      {
+        for (double scale = 1.; scale * accuracy * end_time < 0.01;
+             scale *= 10.)
+          {
+            const double rounded = std::round(t * scale) / scale;
+            if (std::fabs(rounded - t) < 2. * accuracy * end_time)
+              return rounded;
+          }
+        return t;
+      }
+
+      const Expression<dim>         &datum;
+      const std::vector<Point<dim>> &places;
+      const double                   end_time;
+      /// The sum of all changes, by place, and where it is not zero.
+      std::vector<double> paths;
+      unsigned int        n_moving = 0;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<Kink>
+  find_kinks(const Expression<dim>         &datum,
+             const std::vector<Point<dim>> &places,
+             const TimeSchedule            &schedule)
+  {
+    if (!datum.may_have_kinks() || places.empty())
+      return {};
+    try
+      {
+        std::vector<Kink> kinks = Search<dim>(datum, places, schedule).kinks;
+        if (kinks.size() > most_kinks)
+          kinks.clear();
+        return kinks;
+      }
+    catch (const ExceptionBase &)
+      {
+        return {}; // no value at a time that perhaps no step has
+      }
+  }
+
+
+
+  template <int dim>
+  KinksOfScene
+  find_kinks(const Scene<dim> &scene, const Triangulation<dim> &triangulation)
+  {
+    KinksOfScene result;
+    const auto   inspect = [&](const Expression<dim>         &datum,
+                             const std::vector<Point<dim>> &places) {
+      const auto found = find_kinks(datum, places, scene.schedule);
+      result.kinks.insert(result.kinks.end(), found.begin(), found.end());
+      auto &entries = result.entries;
+      if (!found.empty() &&
+          std::find(entries.begin(), entries.end(), datum.name_of_entry()) ==
+            entries.end())
+        entries.push_back(datum.name_of_entry());
+    };
+    for (const auto &[id, condition] : scene.boundary)
+      for (const Expression<dim> *datum : condition.data())
+        if (datum->may_have_kinks())
+          inspect(*datum, places_on_boundary(triangulation, id));
+    if (scene.body_force)
+      for (unsigned int d = 0; d < dim; ++d)
+        if ((*scene.body_force)[d].may_have_kinks())
+          inspect((*scene.body_force)[d], places_in_body(triangulation));
+
+    // Those of several data at the same time are one.
+    std::vector<Kink> &kinks = result.kinks;
+    std::sort(kinks.begin(), kinks.end(), [](const Kink &a, const Kink &b) {
+      return a.t < b.t;
+    });
+    const double      near = 100. * accuracy * scene.schedule.end_time();
+    std::vector<Kink> merged;
+    for (const Kink &kink : kinks)
+      if (merged.empty() || kink.t - merged.back().t > near)
+        merged.push_back(kink);
+      else
+        merged.back().is_jump |= kink.is_jump;
+    kinks = merged;
+    return result;
+  }
+
+
+
+  template std::vector<Kink>
+  find_kinks(const Expression<2> &,
+             const std::vector<Point<2>> &,
+             const TimeSchedule &);
+  template KinksOfScene
+  find_kinks(const Scene<2> &, const Triangulation<2> &);
+  template std::vector<Kink>
+  find_kinks(const Expression<3> &,
+             const std::vector<Point<3>> &,
+             const TimeSchedule &);
+  template KinksOfScene
+  find_kinks(const Scene<3> &, const Triangulation<3> &);
+} // namespace Viscoplastic

@@ -251,7 +251,8 @@ namespace Viscoplastic
     if (!parser || !time_dependent)
       return false;
     bool result = may_jump();
-    for (const char *function : {"abs", "min", "max", "fmod"})
+    for (const char *function :
+         {"abs", "min", "max", "fmod", "asin", "acos", "sqrt"})
       result = result || mentions(text, function);
     return result;
   }

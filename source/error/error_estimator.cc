@@ -127,6 +127,7 @@ namespace Viscoplastic
   void
   ErrorEstimator<dim>::add_defect(const StressSpace<dim> &stress_space,
                                   const TimeDefect       &defect,
+                                  const bool              has_slope,
                                   const State<dim>       &accepted,
                                   const FlowRate         &accepted_rate,
                                   EvaluatedState<dim>    &end) const
@@ -134,7 +135,6 @@ namespace Viscoplastic
     State<dim>    &state       = end.state;
     ErrorEstimate &estimate    = end.errors;
     const bool     is_second   = n_sample_fields(scene) > 2;
-    const bool     is_first    = accepted.k == 0.;
     const bool     is_measured = scene.parameters.step_control.is_on();
     const double   k           = state.k;
     state.time_error           = accepted.time_error;
@@ -155,13 +155,13 @@ namespace Viscoplastic
               {
                 state.rate_slope[i] = change / k;
                 // There is no second derivative before the second step.
-                if (!is_first)
+                if (has_slope)
                   step += defect.second * k * k * k * 2. / (k + accepted.k) *
                           (state.rate_slope[i] - accepted.rate_slope[i]);
               }
             state.time_error[i] += step;
             // Steps are chosen with the slope as the change of slope there.
-            if (is_first)
+            if (!has_slope)
               step += defect.second * k * change;
             sums[0] += weight * stiffness.complementary_square(step);
             sums[1] +=
@@ -189,6 +189,7 @@ namespace Viscoplastic
                               const TimeDefect          &defect,
                               const ContactReport       &report,
                               const double               turning,
+                              const bool                 is_fresh,
                               const EvaluatedState<dim> &accepted,
                               const FlowRate            *accepted_rate,
                               EvaluatedState<dim>       &end) const
@@ -210,7 +211,12 @@ namespace Viscoplastic
       {
         Assert(accepted_rate != nullptr && end.rate,
                ExcMessage("The rates have not been evaluated."));
-        add_defect(stress_space, defect, accepted.state, *accepted_rate, end);
+        add_defect(stress_space,
+                   defect,
+                   /* has_slope = */ accepted.state.k > 0. && !is_fresh,
+                   accepted.state,
+                   *accepted_rate,
+                   end);
       }
 
     // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:

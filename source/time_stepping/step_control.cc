@@ -119,12 +119,13 @@ namespace Viscoplastic
   {
     if (!is_on)
       return;
-    const double near = 1e-9 * schedule.end_time();
-    const auto   add  = [&](const double t) {
-      // There may be one that rounding separates from it.
-      if (t < near || t > schedule.end_time() - near)
+    const auto add = [&](const double t) {
+      if (t <= 0. || t >= schedule.end_time())
         return;
+      data_kinks.push_back(t);
+      // There may be one that rounding separates from it.
       const TimeSchedule::Phase &phase = schedule.phase_at(t);
+      const double               near  = 1e-9 * (phase.end - phase.start);
       bool is_new = t - phase.start > near && phase.end - t > near;
       for (const double other : landing_times)
         is_new &= std::fabs(t - other) > near;
@@ -134,13 +135,27 @@ namespace Viscoplastic
     for (const double t : kinks)
       add(t);
     for (const double t : jumps)
-      {
-        // The values at t may be those before the jump or those after it.
-        const double k = smallest(t);
-        add(t - 0.5 * k);
-        add(t + 0.5 * k);
-      }
+      if (t < schedule.end_time())
+        {
+          // The values at t may be those before the jump or those after it.
+          const TimeSchedule::Phase &phase = schedule.phase_at(t);
+          const double               k     = 1e-6 * (phase.end - phase.start);
+          add(t - 0.5 * k);
+          add(t + 0.5 * k);
+        }
     std::sort(landing_times.begin(), landing_times.end());
+    std::sort(data_kinks.begin(), data_kinks.end());
+  }
+
+
+
+  bool
+  StepControl::has_kink_at(const double t) const
+  {
+    const double near = 1e-9 * schedule.end_time();
+    const auto   later =
+      std::lower_bound(data_kinks.begin(), data_kinks.end(), t - near);
+    return later != data_kinks.end() && *later <= t + near;
   }
 
 

@@ -218,6 +218,7 @@ namespace Viscoplastic
                                           scene.parameters.time.scheme),
                             step.report,
                             turning,
+                            control.has_kink_at(step.time_step.t_old),
                             accepted,
                             old_rate,
                             end);

@@ -60,6 +60,11 @@ namespace
                  "100: 10");
     // A weak one on a curve.
     expect_kinks("sin(t) + 0.2*abs(t - 0.77)", {0.77});
+    // As well as its values are known there.
+    const auto folds = kinks_of("asin(sin(pi*t))");
+    ASSERT_EQ(folds.size(), 2u);
+    EXPECT_NEAR(folds[0].t, 0.5, 1e-8);
+    EXPECT_NEAR(folds[1].t, 1.5, 1e-8);
     // Times that a user writes are these times.
     EXPECT_EQ(kinks_of("abs(t - 0.375)").at(0).t, 0.375);
     EXPECT_EQ(kinks_of("abs(t - 1.1)").at(0).t, 1.1);

@@ -104,23 +104,27 @@ namespace Viscoplastic
      * Set the estimate and the fields of time errors of the end of a step. Its
      * forces and space estimate, and with viscosity the rates of both states,
      * have been evaluated. @p defect: of the scheme of the step. @p turning:
-     * the turning_work() of the step. Collective.
+     * the turning_work() of the step. @p is_fresh: at its beginning data have
+     * a kink, so that G may have one, too. Collective.
      */
     void
     assess(const StressSpace<dim>    &stress_space,
            const TimeDefect          &defect,
            const ContactReport       &report,
            const double               turning,
+           const bool                 is_fresh,
            const EvaluatedState<dim> &accepted,
            const FlowRate            *accepted_rate,
            EvaluatedState<dim>       &end) const;
 
   private:
     /// Add the defect of a step to the field of time errors, and put the norms
-    /// into the estimate. Collective.
+    /// into the estimate. @p has_slope: whether the slope of G before the step
+    /// goes on in it. Collective.
     void
     add_defect(const StressSpace<dim> &stress_space,
                const TimeDefect       &defect,
+               const bool              has_slope,
                const State<dim>       &accepted,
                const FlowRate         &accepted_rate,
                EvaluatedState<dim>    &end) const;

@@ -161,6 +161,11 @@ namespace Viscoplastic
     bool
     is_kink(const double t) const;
 
+    /// Whether data have a kink or jump at a time that land_on() has been told:
+    /// differences of what steps before and after it have seen say nothing.
+    bool
+    has_kink_at(const double t) const;
+
     const StepCounts &
     counts() const
     {
@@ -219,7 +224,7 @@ namespace Viscoplastic
     const TimeSchedule          &schedule;
     const unsigned int           order;
     const double                 output_interval, tolerance_of_run;
-    std::vector<double>          landing_times; // ascending
+    std::vector<double>          landing_times, data_kinks; // ascending
     bool                         has_estimate = true;
 
     /// Now, and before the last step was accepted.

@@ -12,7 +12,16 @@ matplotlib.use("Agg")  # draws to files, also without a display
 
 import matplotlib.pyplot as plt
 
-from . import animation, contact, fields, history, hysteresis, overview, stick_slip
+from . import (
+    animation,
+    contact,
+    errors,
+    fields,
+    history,
+    hysteresis,
+    overview,
+    stick_slip,
+)
 from . import study_pictures, style
 from .body import VIEW, available_fields
 from .paraview import write_state
@@ -31,6 +40,8 @@ pictures:
   fields      all of them
   contact     the contact face: traction, slip, where it sticks
   history     the main columns of statistics.csv over time, or --columns
+  errors      the estimated error by its causes over time, with cells and
+              time steps
   hysteresis  force over displacement, with the area of the loop
   stick-slip  map of stick and slip over arc length and time (2D)
 All but the overview go to RESULTS/pictures/.  Numbers are in the units of
@@ -58,7 +69,12 @@ doc/pictures.md shows what they look like.
 """
 
 AT_A_TIME = {"overview": overview, "contact": contact}  # and fields
-OVER_TIME = {"history": history, "hysteresis": hysteresis, "stick-slip": stick_slip}
+OVER_TIME = {
+    "history": history,
+    "errors": errors,
+    "hysteresis": hysteresis,
+    "stick-slip": stick_slip,
+}
 PICTURES = ("overview", "fields", "contact", *OVER_TIME)
 STILL, MOVING = ("png", "pdf", "svg"), ("gif", "mp4")
 

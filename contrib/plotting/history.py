@@ -18,16 +18,24 @@ class Panel:
     logarithmic values of many orders of magnitude, drawn by their size
     steps       a value holds for a step, not for an instant
     changing    to be left out where nothing changes
+    share_of    a column: values are given in per cent of its largest one
     """
 
     def __init__(
-        self, label, columns, logarithmic=False, steps=False, changing=False
+        self,
+        label,
+        columns,
+        logarithmic=False,
+        steps=False,
+        changing=False,
+        share_of=None,
     ):
         self.label = label
         self.columns = columns
         self.logarithmic = logarithmic
         self.steps = steps
         self.changing = changing
+        self.share_of = share_of
 
     def chosen(self, statistics):
         """Those of its columns that say something: not zero at all times."""
@@ -47,14 +55,36 @@ class Panel:
             return []
         # Against rounding in components that vanish by symmetry.
         threshold = 0.0 if self.logarithmic or self.steps else 1e-9 * largest
+        if self.share_of is not None:
+            # What nobody could see in the picture.
+            threshold = 1e-3 * largest
         return [name for name in found if sizes[name] > threshold]
 
+
+AREA = Panel("area", ["slip_area", "stick_area"], steps=True)
+STEP_SIZE = Panel("step size", ["k", "step_limit"], logarithmic=True, steps=True)
+CELLS = Panel("cells", ["cells"], steps=True, changing=True)
+ERROR = Panel(
+    "error in the\nenergy norm, %",
+    [
+        "error_energy",
+        *(
+            f"estimate_{part}"
+            for part in ("space", "time", "friction", "transfer", "initial", "total")
+        ),
+    ],
+    share_of="energy_norm",
+)
+QUANTITY = Panel(
+    "error of the\nquantity of interest",
+    ["quantity_correction", "quantity_space", "quantity_time", "quantity_total"],
+)
 
 PANELS = (
     Panel("friction force\non the foundation", ["friction_force_[xyz]"]),
     Panel("reactions\non the body", ["reaction_\\d+_[xyz]"]),
     Panel("loads on the body", ["load_[xyz]"]),
-    Panel("area", ["slip_area", "stick_area"], steps=True),
+    AREA,
     Panel(
         "energy",
         [
@@ -69,9 +99,11 @@ PANELS = (
     Panel("stress", ["max_von_mises", "mean_von_mises"]),
     Panel("capped volume", ["capped_volume"], steps=True),
     Panel("iterations", ["contact_iterations", "linear_iterations"], steps=True),
-    Panel("step size", ["k", "step_limit"], logarithmic=True, steps=True),
-    Panel("cells", ["cells"], steps=True, changing=True),
+    STEP_SIZE,
+    CELLS,
     Panel("estimate\n" r"$(\sum\eta_K^2)^{1/2}$", ["estimator"]),
+    ERROR,
+    QUANTITY,
     Panel(
         "relative error",
         ["algebraic_error", "force_balance_defect"],
@@ -81,6 +113,17 @@ PANELS = (
 )
 
 NAMES = {
+    "error_energy": "true error",
+    "estimate_space": "mesh",
+    "estimate_time": "time steps",
+    "estimate_friction": "slip that turns",
+    "estimate_transfer": "new meshes",
+    "estimate_initial": "initial data",
+    "estimate_total": "all",
+    "quantity_correction": "with its sign",
+    "quantity_space": "mesh",
+    "quantity_time": "time steps",
+    "quantity_total": "all",
     "contact_iterations": "contact",
     "linear_iterations": "linear",
     "k": "step $k$",
@@ -133,8 +176,17 @@ def draw(results, options):
             results.column(name)
         panels = [(Panel(label(name), [name]), [name]) for name in options.columns]
     else:
-        panels = [(panel, panel.chosen(statistics)) for panel in PANELS]
-        panels = [(panel, names) for panel, names in panels if names]
+        panels = those_with_something(PANELS, statistics)
+    return draw_panels(results, panels, statistics)
+
+
+def those_with_something(panels, statistics):
+    """Panels with the columns that they show."""
+    chosen = [(panel, panel.chosen(statistics)) for panel in panels]
+    return [(panel, names) for panel, names in chosen if names]
+
+
+def draw_panels(results, panels, statistics):
     columns = 1 if len(panels) < 3 else 2
     rows = -(-len(panels) // columns)
     figure = plt.figure(
@@ -164,8 +216,11 @@ def padded(t):
 def draw_panel(axes, panel, names, statistics):
     t = statistics["t"]
     few = len(t) < 12
+    scale = 1.0
+    if panel.share_of in statistics:
+        scale = 100.0 / max(finite(statistics[panel.share_of]).max(), 1e-300)
     for i, name in enumerate(names):
-        values = statistics[name].astype(float)
+        values = scale * statistics[name].astype(float)
         colour, dashes = style.SERIES[i % 7], ("-", "--", ":", "-.")[i // 7 % 4]
         if panel.logarithmic:
             values = np.where(np.isfinite(values) & (values > 0.0), values, np.nan)

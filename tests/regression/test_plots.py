@@ -21,7 +21,17 @@ import matplotlib
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-from plotting import contact, fields, geometry, hysteresis, overview, stick_slip, style
+from plotting import (
+    contact,
+    errors,
+    fields,
+    geometry,
+    history,
+    hysteresis,
+    overview,
+    stick_slip,
+    style,
+)
 from matplotlib.quiver import Quiver, QuiverKey
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d
@@ -486,6 +496,33 @@ class Numbers(TestCase):
         self.assertClose(record["u"], 1, absolute=0)
         with self.assertRaisesRegex(NoPicture, '"v" in .* not finite'):
             record["v"]
+
+    def test_parts_of_the_error_over_time(self):
+        """In per cent of the largest norm, without those that nobody sees."""
+        t = np.linspace(0.0, 1.0, 5)
+        statistics = {
+            "t": t,
+            "energy_norm": 2.0 * t,
+            "estimate_space": 0.06 * t,
+            "estimate_time": 0.02 * t,
+            "estimate_initial": 1e-9 + 0 * t,
+            "estimate_total": 0.08 * t,
+        }
+        chosen = {
+            panel.label: (panel, panel.chosen(statistics))
+            for panel in errors.PANELS
+            if panel.chosen(statistics)
+        }
+        self.assertEqual(list(chosen), ["error in the\nenergy norm, %"])
+        panel, names = chosen["error in the\nenergy norm, %"]
+        self.assertEqual(
+            names, ["estimate_space", "estimate_time", "estimate_total"]
+        )
+        figure, axes = plt.subplots()
+        history.draw_panel(axes, panel, names, statistics)
+        tops = [line.get_ydata().max() for line in axes.get_lines()[:3]]
+        self.assertClose(np.array(tops), np.array([3.0, 1.0, 4.0]), 1e-12)
+        plt.close(figure)
 
     def test_magnification(self):
         for largest, expected in ((0.0, 1), (0.5, 1), (1e-3, 50), (4e-6, 1e4),

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from . import rates, style
 from .results import NoPicture
-from .study import LADDERS, error_label
+from .study import LADDERS, TOLERANCE, error_label
 
 # What is refined along each axis; "both" belongs to both.
 AXES = {
@@ -26,6 +26,8 @@ def draw(study, error):
             ladder
             for ladder in study.ladders()
             if ladder.name in (alone, "both")
+            # steps to a tolerance are of all sizes
+            and (axis == "h" or ladder.variant[0] != TOLERANCE)
             and rates.known(ladder.sizes(axis), study[error][ladder.rows]).any()
         ]
         if ladders:

@@ -6,6 +6,7 @@ import numpy as np
 
 from . import rates, style
 from .results import NoPicture
+from .study import TOLERANCE
 
 # Columns in the order of a step: what they are, and their colours.  Those that
 # are not here are drawn, too, under their own names.
@@ -162,16 +163,22 @@ def positions(study, rows):
         variant = tuple(study[name][row] for name in ("strategy", "scheme", "history"))
         group = variant, study["ladder"][row]
         if group != before:
-            ladder = names.get(group[1], group[1])
-            heads.append((at, f"{study.variant_label(variant)}: {ladder}"))
+            ladder = f": {names.get(group[1], group[1])}"
+            if variant[0] == TOLERANCE:
+                ladder = ""
+            heads.append((at, study.variant_label(variant) + ladder))
             at += 1.0
             before = group
         place.append(at)
-        labels.append(
-            f"$h$ = {style.short(study['h'][row])}, $k$ = {style.short(study['k'][row])}"
-        )
+        labels.append(size(study, row))
         at += 1.0
     return np.array(place), heads, labels
+
+
+def size(study, row):
+    if study["strategy"][row] == TOLERANCE:
+        return f"{100 * study['tolerance'][row]:.3g} %"
+    return f"$h$ = {style.short(study['h'][row])}, $k$ = {style.short(study['k'][row])}"
 
 
 def facts(study, row):

@@ -13,6 +13,7 @@ from .results import UserError
 
 VARIANT = ("strategy", "scheme", "history")  # what tells one variant of the method
 TEXT = ("run", *VARIANT, "solver", "ladder")
+TOLERANCE = "tolerance"  # the strategy of runs that choose meshes and steps
 LEVELS = ("mesh_level", "time_level")
 NEEDED = (*VARIANT, "ladder", *LEVELS, "h", "k", "seconds_total")
 COEFFICIENTS = ("C_h", "p", "C_k", "q", "m")  # of a fit
@@ -24,6 +25,7 @@ ERRORS = {
     "error_stress": r"error of $\sigma$ in $L^2$",
     "error_multiplier": r"error of $\lambda$ on $\Gamma_3$",
     "estimate_total": r"estimated error of $u$ in the energy norm",
+    "estimate_quantity": "estimated error of the quantity of interest",
     "quantities": "error of the worst quantity of interest",
 }
 

@@ -422,13 +422,15 @@ namespace Viscoplastic
                       Patterns::List(Patterns::Selection("space|time|both"),
                                      1,
                                      3));
-    prm.add_parameter("Strategies",
-                      strategies,
-                      "Uniform refinement, or adaptive refinement by the "
-                      "residual estimator with as many cells.",
-                      Patterns::List(Patterns::Selection("uniform|adaptive"),
-                                     1,
-                                     2));
+    prm.add_parameter(
+      "Strategies",
+      strategies,
+      "Uniform refinement, adaptive refinement by the residual "
+      "estimator with as many cells, or, of a scene with "
+      "`Error control/Tolerance', runs to tolerances that "
+      "halve down to this one. If empty, the last for scenes "
+      "with a tolerance and the first for others.",
+      Patterns::List(Patterns::Selection("uniform|adaptive|tolerance"), 0, 3));
     prm.add_parameter("Time schemes",
                       time_schemes,
                       "Values of `Time/Scheme' to compare, separated by "

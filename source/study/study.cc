@@ -13,123 +13,6 @@
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    std::vector<std::string>
-    items(const std::string &text, const std::string &otherwise)
-    {
-      const auto found = Utilities::split_string_list(text, ',');
-      return found.empty() ? std::vector<std::string>{otherwise} : found;
-    }
-  } // namespace
-
-
-
-  std::string
-  to_string(const Ladder ladder)
-  {
-    return ladder == Ladder::space ? "space" :
-           ladder == Ladder::time  ? "time" :
-                                     "both";
-  }
-
-
-
-  Study::Study(const std::vector<std::string> &files,
-               const std::vector<std::string> &overrides,
-               Console                        &console)
-    : runs(files, overrides, MPI_COMM_WORLD)
-    , parameters(runs.scene.study)
-    , has_exact_solution(!runs.scene.exact_solution.displacement.empty() ||
-                         !runs.scene.exact_solution.reference_directory.empty())
-    , console(console)
-    , out(console.stream(),
-          Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-  {
-    AssertThrow(has_exact_solution || parameters.levels >= 3,
-                ExcMessage(
-                  "'Study/Levels' = " + std::to_string(parameters.levels) +
-                  " is too few for a scene without an exact solution: whether "
-                  "its finest run can serve as a reference shows only in three "
-                  "levels; take at least 3, or give 'Exact solution'."));
-    make_plan();
-  }
-
-
-
-  void
-  Study::make_plan()
-  {
-    const int  finest     = static_cast<int>(parameters.levels) - 1;
-    const auto ladders    = items(parameters.ladders, "both"),
-               strategies = items(parameters.strategies, "uniform"),
-               schemes    = items(parameters.time_schemes,
-                               name_of(runs.scene.time.scheme)),
-               histories  = items(parameters.stress_histories,
-                                 name_of(runs.scene.stress.stress_history));
-
-    const auto add = [&](const MethodVariant &variant,
-                         const int            mesh_level,
-                         const int            time_level,
-                         const Ladder         ladder) -> PlannedRun & {
-      PlannedRun run;
-      run.key = {variant, mesh_level, time_level};
-      auto known =
-        std::find_if(plan.begin(), plan.end(), [&](const auto &other) {
-          return other.key == run.key;
-        });
-      if (known == plan.end())
-        known = plan.insert(plan.end(), run);
-      known->ladders.insert(ladder);
-      return *known;
-    };
-
-    for (const std::string &strategy : strategies)
-      for (const std::string &scheme : schemes)
-        for (const std::string &history : histories)
-          {
-            const MethodVariant variant{to_mesh_strategy(strategy),
-                                        scheme,
-                                        history};
-            // Names of schemes and histories are checked here, once.
-            Parameters(runs.files, runs.overrides_of({variant}));
-            for (const Ladder ladder : all_ladders)
-              if (std::count(ladders.begin(),
-                             ladders.end(),
-                             to_string(ladder)) > 0)
-                for (int level = 0; level <= finest; ++level)
-                  add(variant,
-                      ladder == Ladder::time ? finest : level,
-                      ladder == Ladder::space ? finest : level,
-                      ladder);
-          }
-    if (!has_exact_solution)
-      {
-        const MethodVariant first{MeshStrategy::uniform,
-                                  schemes[0],
-                                  histories[0]};
-        for (int level = finest - 1; level <= finest; ++level)
-          add(first, level, level, Ladder::both);
-        add(first, finest + 1, finest + 1, Ladder::both).is_reference = true;
-      }
-
-    // The cheapest first: what is known early predicts the rest.
-    const auto work = [&](const PlannedRun &run) {
-      return (run.key.variant.strategy == MeshStrategy::uniform ? 1. : 1.5) *
-             std::pow(2.,
-                      static_cast<double>(runs.scene.dimension) *
-                          run.key.mesh_level +
-                        run.key.time_level);
-    };
-    std::stable_sort(plan.begin(),
-                     plan.end(),
-                     [&](const PlannedRun &a, const PlannedRun &b) {
-                       return work(a) < work(b);
-                     });
-  }
-
-
-
   Records
   Study::records() const
   {
@@ -163,7 +46,7 @@ namespace Viscoplastic
       {
         if (run.is_reference && run.record)
           return &*run.record;
-        if (run.record && run.key.variant.strategy == MeshStrategy::uniform &&
+        if (run.record && run.key.variant.strategy == reference_strategy &&
             run.ladders.count(Ladder::both) > 0)
           finest = &*run.record;
       }
@@ -195,10 +78,17 @@ namespace Viscoplastic
       for (const RunRecord *record : records())
         if (record->key.variant.strategy == key.variant.strategy)
           known.push_back(record);
-    if (known.empty())
-      known = records();
+    const bool to_tolerance = key.variant.strategy == MeshStrategy::tolerance;
+    if (known.empty() && !to_tolerance)
+      for (const RunRecord *record : records())
+        if (record->key.variant.strategy != MeshStrategy::tolerance)
+          known.push_back(record);
     if (known.empty())
       return std::numeric_limits<double>::quiet_NaN();
+    if (to_tolerance)
+      return fit_tolerance_runs(runs, known, "estimate_total", nullptr)
+        .predict(runs.tolerance(key))
+        .seconds;
     const double      dim  = runs.scene.dimension;
     const std::string name = key.variant.name();
     if (costs.count(name) == 0)
@@ -239,7 +129,8 @@ namespace Viscoplastic
     for (const auto &[column, word] :
          {std::make_pair("error_energy", "error "),
           std::make_pair("error_stress", "of the stress "),
-          std::make_pair("estimate_total", "estimate ")})
+          std::make_pair("estimate_total", "estimate "),
+          std::make_pair("estimate_quantity", "of the quantity ")})
       if (std::isfinite(record.number(column)))
         text << ", " << word << record.number(column);
     text << ", " << seconds_in_words(record.number("seconds_total"));
@@ -255,7 +146,9 @@ namespace Viscoplastic
     if (n_left > 0)
       {
         const double in_budget = std::max(0., parameters.budget - elapsed());
-        text << "; " << n_left << " left, about " << seconds_in_words(seconds);
+        text << "; " << n_left << " left";
+        if (std::isfinite(seconds)) // otherwise some are of an unknown kind
+          text << ", about " << seconds_in_words(seconds);
         if (seconds > in_budget)
           text << " of which " << seconds_in_words(in_budget)
                << " are in the budget";
@@ -337,6 +230,8 @@ namespace Viscoplastic
   {
     for (const VariantResult &result : analyze(*this))
       {
+        if (result.variant.strategy == MeshStrategy::tolerance)
+          continue;
         const std::string name       = result.variant.name();
         int               mesh_level = 0;
         double            spent = 0., largest = 0.;

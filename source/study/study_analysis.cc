@@ -10,6 +10,15 @@ namespace Viscoplastic
 {
   namespace
   {
+    bool
+    is_norm(const std::string &measure)
+    {
+      return std::find(field_errors.begin(), field_errors.end(), measure) !=
+             field_errors.end();
+    }
+
+
+
     /// "friction_force_x" as "friction_force" and 'x'; others are scalars.
     bool
     is_component(const std::string &quantity)
@@ -100,15 +109,17 @@ namespace Viscoplastic
 
 
   std::string
-  best_measure(const Records &records, const RunRecord *reference)
+  best_measure(const Records     &records,
+               const RunRecord   *reference,
+               const unsigned int n_least)
   {
     for (const std::string measure :
-         {"error_energy", "estimate_total", "quantities"})
+         {"estimate_quantity", "error_energy", "estimate_total", "quantities"})
       if (std::count_if(
             records.begin(), records.end(), [&](const RunRecord *record) {
               const double error = error_of(*record, measure, reference);
               return std::isfinite(error) && error > 0.;
-            }) >= 3)
+            }) >= static_cast<long>(n_least))
         return measure;
     return "";
   }
@@ -119,6 +130,7 @@ namespace Viscoplastic
   measure_in_words(const std::string &measure)
   {
     static const std::map<std::string, std::string> words{
+      {"estimate_quantity", "estimated error of the quantity of interest"},
       {"error_energy", "error of u in the energy norm"},
       {"estimate_total", "estimated error of u in the energy norm"},
       {"quantities", "largest error of all quantities of interest"}};
@@ -159,15 +171,12 @@ namespace Viscoplastic
       }
     if (measure == "estimate_total")
       return fit_error_parts(samples, space, time);
-    const bool is_norm =
-      std::find(field_errors.begin(), field_errors.end(), measure) !=
-      field_errors.end();
-    if (reference == nullptr || (is_norm && !are_differences))
+    if (reference == nullptr || (is_norm(measure) && !are_differences))
       return fit_error(samples);
     return fit_error(samples,
                      Finer{reference->number("h"),
                            reference->number("k"),
-                           is_norm ? 2. : 1.,
+                           is_norm(measure) ? 2. : 1.,
                            1.});
   }
 
@@ -232,6 +241,59 @@ namespace Viscoplastic
       [&runs, strategy = records[0]->key.variant.strategy](const double steps) {
         return runs.n_set_ups(strategy, steps);
       };
+    return model;
+  }
+
+
+
+  ToleranceModel
+  fit_tolerance_runs(const StudyRuns   &runs,
+                     const Records     &records,
+                     const std::string &measure,
+                     const RunRecord   *reference)
+  {
+    // Where the first mesh is better than a tolerance asks for, the error does
+    // not depend on it. Otherwise a run keeps the estimate near three quarters
+    // of the tolerance.
+    const bool of_quantity    = !runs.scene.error_control.quantity.empty();
+    const auto has_first_mesh = [&](const RunRecord *record) {
+      return record->number(of_quantity ? "estimate_quantity" :
+                                          "estimate_total") <
+               0.6 * record->number("tolerance") ||
+             std::abs(record->number("cells") / runs.n_cells - 1.) < 1e-3;
+    };
+    const bool have_others =
+      !std::all_of(records.begin(), records.end(), has_first_mesh);
+    std::vector<ToleranceSample> samples;
+    bool                         are_differences = !is_norm(measure);
+    for (const RunRecord *record : records)
+      {
+        samples.push_back({record->number("tolerance"),
+                           have_others && has_first_mesh(record) ?
+                             not_a_number :
+                             error_of(*record, measure, reference),
+                           record->number("seconds_total"),
+                           record->number("cells"),
+                           record->number("dofs"),
+                           record->number("steps"),
+                           record->number("peak_memory_MB")});
+        are_differences |= record->numbers.count("is_difference") > 0;
+      }
+    const bool is_estimate =
+      measure == (of_quantity ? "estimate_quantity" : "estimate_total");
+    std::optional<double> finer;
+    if (are_differences && !is_estimate && reference != nullptr &&
+        reference->numbers.count("tolerance") > 0)
+      finer = reference->number("tolerance");
+    // Schemes may differ from run to run, but not in one method variant.
+    const Parameters of_variant(runs.files,
+                                runs.overrides_of(records.front()->key));
+    ToleranceModel   model = fit_tolerance(samples,
+                                         runs.scene.dimension,
+                                         order_of(of_variant.time.scheme),
+                                         finer,
+                                         is_norm(measure) ? 2. : 1.);
+    model.is_kept          = is_estimate;
     return model;
   }
 

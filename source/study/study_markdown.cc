@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/study/markdown_table.h>
 #include <viscoplastic_contact/study/study_report.h>
 
 #include <algorithm>
@@ -10,26 +11,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    std::string
-    table_row(const std::vector<std::string> &cells)
-    {
-      std::string row = "|";
-      for (const std::string &cell : cells)
-        row += ' ' + cell + " |";
-      return row + '\n';
-    }
-
-
-
-    std::string
-    table_head(const std::vector<std::string> &cells)
-    {
-      return table_row(cells) +
-             table_row(std::vector<std::string>(cells.size(), "---"));
-    }
-
-
-
     /// Errors to show: those of the fields or estimates that are known, or
     /// else quantities.
     std::vector<std::string>
@@ -45,8 +26,9 @@ namespace Viscoplastic
       for (const std::string &measure : field_errors)
         if (is_known(measure))
           result.push_back(measure);
-      if (is_known("estimate_total"))
-        result.push_back("estimate_total");
+      for (const std::string measure : {"estimate_total", "estimate_quantity"})
+        if (is_known(measure))
+          result.push_back(measure);
       if (result.empty() || !study.has_exact_solution)
         result.push_back("quantities");
       return result;
@@ -55,20 +37,25 @@ namespace Viscoplastic
 
 
     std::string
-    number_or_dash(const double value, const unsigned int n = 3)
-    {
-      return std::isfinite(value) ? digits(value, n) : "-";
-    }
-
-
-
-    std::string
     runs_table(const Study &study, const VariantResult &result)
     {
-      std::vector<std::string> columns{
-        "h", "k", "cells", "dofs", "steps", "seconds_total", "peak_memory_MB"},
-        head{"run", "h", "k", "cells", "unknowns", "steps", "seconds", "MB"},
+      std::vector<std::string> columns{"h", "k"}, head{"run", "h", "k"},
         more = shown_measures(study);
+      if (result.variant.strategy == MeshStrategy::tolerance)
+        {
+          columns = {"tolerance"};
+          head    = {"run", "tolerance"};
+        }
+      for (const auto &[column, title] :
+           {std::make_pair("cells", "cells"),
+            std::make_pair("dofs", "unknowns"),
+            std::make_pair("steps", "steps"),
+            std::make_pair("seconds_total", "seconds"),
+            std::make_pair("peak_memory_MB", "MB")})
+        {
+          columns.push_back(column);
+          head.push_back(title);
+        }
       if (std::isfinite(result.records[0]->number("effectivity")))
         more.push_back("effectivity");
       columns.insert(columns.end(), more.begin(), more.end());
@@ -280,6 +267,11 @@ namespace Viscoplastic
              << study.runs.name(*study.runs.reference)
              << "` at the ends of the phases of time; its own error, unknown, "
                 "is part of them. ";
+      if (!study.has_exact_solution && study.runs.reference &&
+          reference != nullptr &&
+          study.reference_strategy == MeshStrategy::tolerance)
+        text << "The error bar of that run itself is "
+             << number_or_dash(reference->number("estimate_total")) << ". ";
       if (reference != nullptr)
         text << "Quantities of interest are compared with those of the run `"
              << reference->name << "`.\n";
@@ -289,6 +281,10 @@ namespace Viscoplastic
                << "` is missing: " << run.skipped
                << ". The finest run there is has taken its place, and errors "
                   "near it are too small.\n";
+
+      // Halved tolerances leave the order of neighbors to chance.
+      if (study.reference_strategy == MeshStrategy::tolerance)
+        return text.str();
 
       // The finest three of those with equal levels.
       const MethodVariant &last = study.plan.back().key.variant;
@@ -341,17 +337,21 @@ namespace Viscoplastic
             "alone is as good as the study has it, and its part of the error "
             "is named below. Errors are relative to the largest norm over "
             "all times. In adaptive runs, h is the width of a uniform mesh "
-            "with as many cells.\n";
+            "with as many cells. Runs to a tolerance choose meshes and steps "
+            "themselves: their cells and unknowns are means over the steps.\n";
     for (const VariantResult &result : results)
       {
         text << "\n## " << result.variant.name() << "\n\n"
-             << runs_table(study, result)
-             << "\nObserved orders between neighbours:\n\n"
-             << orders_table(study, result) << '\n';
+             << runs_table(study, result) << '\n';
+        if (result.variant.strategy == MeshStrategy::tolerance)
+          text << tolerance_results_as_markdown(study, result);
+        else
+          text << "Observed orders between neighbours:\n\n"
+               << orders_table(study, result) << '\n';
         if (result.model)
           text << fits_in_words(study, result) << "\n### Price list\n\n"
                << prices_table(study, result);
-        else
+        else if (!result.tolerance_model)
           text << "No price list: the error is known of fewer than three "
                   "runs.\n";
       }

@@ -116,7 +116,9 @@ namespace Viscoplastic
   std::string
   to_string(const MeshStrategy strategy)
   {
-    return strategy == MeshStrategy::uniform ? "uniform" : "adaptive";
+    return strategy == MeshStrategy::uniform  ? "uniform" :
+           strategy == MeshStrategy::adaptive ? "adaptive" :
+                                                "tolerance";
   }
 
 
@@ -124,12 +126,15 @@ namespace Viscoplastic
   MeshStrategy
   to_mesh_strategy(const std::string &name)
   {
-    for (const auto strategy : {MeshStrategy::uniform, MeshStrategy::adaptive})
+    for (const auto strategy : {MeshStrategy::uniform,
+                                MeshStrategy::adaptive,
+                                MeshStrategy::tolerance})
       if (name == to_string(strategy))
         return strategy;
     AssertThrow(false,
                 ExcMessage("'" + name +
-                           "' is no strategy; it is uniform or adaptive."));
+                           "' is no strategy; it is uniform, adaptive or "
+                           "tolerance."));
     return {};
   }
 
@@ -194,7 +199,8 @@ namespace Viscoplastic
   make_record(const RunKey          &key,
               const Table           &statistics,
               const RunMeasurements &measurements,
-              const bool             is_difference)
+              const bool             is_difference,
+              const std::string     &quantity)
   {
     RunRecord record;
     record.key         = key;
@@ -265,6 +271,10 @@ namespace Viscoplastic
         relative(largest(statistics, name), largest(statistics, "energy_norm"));
     number["effectivity"] = relative(largest(statistics, "estimate_total"),
                                      largest(statistics, "error_energy"));
+    if (!quantity.empty())
+      number["estimate_quantity"] =
+        relative(largest(statistics, "quantity_total"),
+                 largest(statistics, quantity));
 
     for (const std::string &name : statistics.names)
       if (is_quantity(name))

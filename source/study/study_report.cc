@@ -52,11 +52,13 @@ namespace Viscoplastic
     {
       std::ostringstream       text;
       std::vector<std::string> columns = number_columns();
-      for (const auto &more : {field_errors,
-                               estimate_parts,
-                               std::vector<std::string>{"effectivity"}})
+      for (const auto &more :
+           {field_errors,
+            estimate_parts,
+            std::vector<std::string>{"effectivity", "estimate_quantity"}})
         columns.insert(columns.end(), more.begin(), more.end());
-      text << "run,strategy,scheme,history,solver,ladder,mesh_level,time_level";
+      text << "run,strategy,scheme,history,solver,ladder,mesh_level,time_level,"
+              "tolerance";
       for (const std::string &column : columns)
         text << ',' << column;
       for (const std::string &name : quantities(study))
@@ -72,7 +74,8 @@ namespace Viscoplastic
                    << variant.scheme << ',' << variant.history << ','
                    << to_string(choose_bulk_solver(record.solver_demand)) << ','
                    << to_string(ladder) << ',' << record.key.mesh_level << ','
-                   << record.key.time_level;
+                   << record.key.time_level << ','
+                   << record.number("tolerance");
               for (const std::string &column : columns)
                 text << ',' << record.number(column);
               for (const std::string &name : quantities(study))
@@ -106,7 +109,7 @@ namespace Viscoplastic
     add_fits(const Study &study, const VariantResult &result, Json &fits)
     {
       std::vector<std::string> measures = field_errors;
-      measures.push_back("estimate_total");
+      measures.insert(measures.end(), {"estimate_total", "estimate_quantity"});
       for (const std::string &name : quantities(study))
         measures.push_back(name + "_error");
       for (const std::string &measure : measures)
@@ -158,9 +161,50 @@ namespace Viscoplastic
 
 
 
+    /// c_1 TOL^p for errors, c_1 TOL^-p + c_2 for costs.
+    void
+    add_tolerance_fit(const VariantResult &result, Json &fits)
+    {
+      const ToleranceModel &model = *result.tolerance_model;
+      Json                  fit   = entry(result.variant,
+                       {{"error", result.measure},
+                                           {"C", model.error.c_1},
+                                           {"s", model.error.p},
+                                           {"s_is_fitted", model.error.p_is_fitted},
+                                           {"rms_of_log", model.error.misfit.rms}});
+      for (const auto &[name, cost] :
+           {std::make_pair("seconds", &model.seconds),
+            std::make_pair("cells", &model.cells),
+            std::make_pair("dofs", &model.dofs),
+            std::make_pair("steps", &model.steps),
+            std::make_pair("memory_MB", &model.memory)})
+        fit[name] = {{"c", cost->c_1},
+                     {"q", cost->p},
+                     {"q_is_fitted", cost->p_is_fitted},
+                     {"constant", cost->c_2},
+                     {"exponent_against_error", model.exponent(*cost)},
+                     {"rms_of_log", cost->misfit.rms}};
+      fits.push_back(fit);
+    }
+
+
+
     void
     add_prices(const VariantResult &result, Json &prices)
     {
+      for (const TolerancePrice &price : result.tolerance_prices)
+        prices.push_back(entry(result.variant,
+                               {{"error", result.measure},
+                                {"tolerance", price.error},
+                                {"in_budget", price.is_in_budget},
+                                {"run_tolerance", price.run.tolerance},
+                                {"cells", price.run.cells},
+                                {"steps", price.run.steps},
+                                {"dofs", price.run.dofs},
+                                {"predicted_error", price.run.error},
+                                {"seconds", price.run.seconds},
+                                {"memory_MB", price.run.memory},
+                                {"halving_factor", price.halving}}));
       for (const Price &price : result.prices)
         {
           prices.push_back(entry(result.variant,
@@ -191,11 +235,17 @@ namespace Viscoplastic
     {
       const std::filesystem::path scene     = study.runs.scene.file;
       const RunRecord            *reference = study.reference();
-      Json fits = Json::array(), costs = fits, prices = fits;
+      Json fits = Json::array(), tolerance_fits = fits, costs = fits,
+           prices = fits;
       for (const VariantResult &result : results)
         {
-          add_fits(study, result, fits);
-          add_cost(study, result, costs);
+          if (result.tolerance_model)
+            add_tolerance_fit(result, tolerance_fits);
+          else if (result.variant.strategy != MeshStrategy::tolerance)
+            {
+              add_fits(study, result, fits);
+              add_cost(study, result, costs);
+            }
           add_prices(result, prices);
         }
       return {{"scene", scene.stem().string()},
@@ -209,6 +259,7 @@ namespace Viscoplastic
               {"reference_run", reference == nullptr ? "" : reference->name},
               {"budget", study.parameters.budget},
               {"fits", fits},
+              {"tolerance_fits", tolerance_fits},
               {"costs", costs},
               {"prices", prices}};
     }

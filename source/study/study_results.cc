@@ -22,7 +22,19 @@ namespace Viscoplastic
         result.variant = variant;
         result.records = of_variant(study.records(), variant);
         result.measure = best_measure(result.records, study.reference());
-        if (!result.measure.empty())
+        if (result.measure.empty())
+          {}
+        else if (variant.strategy == MeshStrategy::tolerance)
+          {
+            result.tolerance_model = fit_tolerance_runs(study.runs,
+                                                        result.records,
+                                                        result.measure,
+                                                        study.reference());
+            for (const double error : tolerances)
+              result.tolerance_prices.push_back(price_of(
+                *result.tolerance_model, error, study.parameters.budget));
+          }
+        else
           {
             result.model = fit_work_precision(study.runs,
                                               result.records,
@@ -42,16 +54,18 @@ namespace Viscoplastic
   std::string
   prices_in_words(const Study &study)
   {
-    std::string text;
+    const double budget = study.parameters.budget;
+    std::string  text;
     for (const VariantResult &result : analyze(study))
-      if (result.model)
+      if (!result.measure.empty())
         {
           text += "Prices (" + result.variant.name() + "), by the " +
                   measure_in_words(result.measure) + ":\n";
           for (const Price &price : result.prices)
-            text += "  " +
-                    in_words(*result.model, price, study.parameters.budget) +
-                    '\n';
+            text += "  " + in_words(*result.model, price, budget) + '\n';
+          for (const TolerancePrice &price : result.tolerance_prices)
+            text +=
+              "  " + in_words(*result.tolerance_model, price, budget) + '\n';
         }
     return text;
   }

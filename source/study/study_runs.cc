@@ -22,11 +22,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    const std::string generator_with_subdivisions =
-      "subdivided_hyper_rectangle";
-
-
-
     /// Do something on rank 0; all ranks learn whether it worked.
     void
     on_first_rank(const MPI_Comm               communicator,
@@ -36,38 +31,6 @@ namespace Viscoplastic
         if (Utilities::MPI::this_mpi_process(communicator) == 0)
           function();
       });
-    }
-
-
-
-    bool
-    is_adaptive(const Parameters &scene)
-    {
-      return scene.refinement.strategy != RefinementStrategy::none;
-    }
-
-
-
-    /// Numbers of cells by direction, from the arguments of a mesh generator.
-    std::vector<int>
-    subdivisions(const std::string &arguments)
-    {
-      return Utilities::string_to_int(
-        Utilities::split_string_list(arguments.substr(0, arguments.find(':')),
-                                     ','));
-    }
-
-
-
-    /// The arguments with @p factor times as many cells in each direction.
-    std::string
-    scale_subdivisions(const std::string &arguments, const double factor)
-    {
-      std::string result;
-      for (const int n : subdivisions(arguments))
-        result += (result.empty() ? "" : ", ") +
-                  std::to_string(std::max<long>(1, std::lround(factor * n)));
-      return result + ' ' + arguments.substr(arguments.find(':'));
     }
 
 
@@ -195,9 +158,6 @@ namespace Viscoplastic
                 ExcMessage("A study compares runs with the steps of "
                            "'Time/Phases'; set 'Step control/Tolerance' = 0 "
                            "for it."));
-    AssertThrow(!scene.error_control.has_tolerance(),
-                ExcMessage("A study compares runs with given meshes and steps; "
-                           "set 'Error control/Tolerance' = 0 for it."));
     int ierr = MPI_Comm_dup(communicator, &agreement);
     AssertThrowMPI(ierr);
     if (scene.dimension == 2)
@@ -222,164 +182,6 @@ namespace Viscoplastic
       make_results_directory(directory);
       lock.acquire(directory);
     });
-  }
-
-
-
-  RunKey
-  StudyRuns::scene_key() const
-  {
-    RunKey key;
-    key.variant = {is_adaptive(scene) ? MeshStrategy::adaptive :
-                                        MeshStrategy::uniform,
-                   name_of(scene.time.scheme),
-                   name_of(scene.stress.stress_history)};
-    return key;
-  }
-
-
-
-  unsigned int
-  StudyRuns::steps_per_mesh(const MeshStrategy strategy,
-                            const unsigned int n_steps) const
-  {
-    return strategy == MeshStrategy::uniform ? 0 :
-           is_adaptive(scene)                ? scene.refinement.every_n_steps :
-                                               std::max(1u, n_steps / 10);
-  }
-
-
-
-  double
-  StudyRuns::n_set_ups(const MeshStrategy strategy, const double n_steps) const
-  {
-    const double every =
-      steps_per_mesh(strategy, static_cast<unsigned int>(n_steps));
-    return every > 0. ? std::max(1., std::ceil(n_steps / every)) : 1.;
-  }
-
-
-
-  int
-  StudyRuns::n_coarser_meshes() const
-  {
-    int n = static_cast<int>(scene.geometry.global_refinements);
-    if (scene.geometry.file.empty() &&
-        scene.geometry.generator == generator_with_subdivisions)
-      {
-        const auto cells  = subdivisions(scene.geometry.arguments);
-        int        fewest = *std::min_element(cells.begin(), cells.end());
-        for (; fewest >= 2; fewest = (fewest + 1) / 2)
-          ++n;
-      }
-    return n;
-  }
-
-
-
-  std::string
-  StudyRuns::name(const RunKey &key) const
-  {
-    const auto add = [](const std::string &choice,
-                        const std::string &of_scene) {
-      std::string text = choice == of_scene ? "" : '_' + choice;
-      for (char &c : text)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0)
-          c = '_';
-      return text;
-    };
-    return to_string(key.variant.strategy) +
-           add(key.variant.scheme, name_of(scene.time.scheme)) +
-           add(key.variant.history, name_of(scene.stress.stress_history)) +
-           "_h" + std::to_string(key.mesh_level) + "_k" +
-           std::to_string(key.time_level) + (key.is_timing ? "_timing" : "");
-  }
-
-
-
-  std::vector<std::string>
-  StudyRuns::discretization(const RunKey                  &key,
-                            const std::vector<StepsUntil> &steps) const
-  {
-    const bool adaptive = key.variant.strategy == MeshStrategy::adaptive;
-    // Adaptive runs begin one level coarser: from a much coarser mesh,
-    // refinement at singular points would leave the rest too coarse.
-    const int level = adaptive && key.mesh_level > 0 ? key.mesh_level - 1 :
-                                                       key.mesh_level,
-              base  = static_cast<int>(scene.geometry.global_refinements),
-              refinements = std::max(0, base + level);
-    AssertThrow(-level <= n_coarser_meshes(),
-                ExcMessage("The mesh of the scene cannot be made coarser by " +
-                           std::to_string(-level) +
-                           " levels: 'Geometry/Global refinements' = " +
-                           std::to_string(base) + "."));
-    std::vector<std::string> result;
-    const auto set = [&result](const std::string &entry, const auto &value) {
-      std::ostringstream assignment;
-      assignment << entry << '=' << value;
-      result.push_back(assignment.str());
-    };
-    set("Geometry/Global refinements", refinements);
-    set("Time/Phases", write_phases(steps));
-    set("Time/Scheme", key.variant.scheme);
-    set("Material/Stress history", key.variant.history);
-    // Runs have the steps that the study says, or none.
-    if (scene.time.stiffness_policy == StiffnessPolicy::subdivide)
-      set("Time/Stiffness policy", "refuse");
-    if (base + level < 0)
-      set("Geometry/Arguments",
-          scale_subdivisions(scene.geometry.arguments,
-                             std::pow(2., base + level)));
-    if (!adaptive)
-      {
-        set("Mesh refinement/Strategy", "none");
-        return result;
-      }
-    if (!is_adaptive(scene))
-      {
-        set("Mesh refinement/Strategy", "residual");
-        set("Mesh refinement/Refinement fraction", 0.6);
-        set("Mesh refinement/Coarsening fraction", 0.05);
-        set("Mesh refinement/Every n steps",
-            steps_per_mesh(key.variant.strategy, n_steps(steps)));
-      }
-    const double cells =
-      n_cells *
-      std::pow(2., static_cast<double>(scene.dimension) * key.mesh_level);
-    set("Mesh refinement/Minimal level", std::min(refinements, base));
-    set("Mesh refinement/Maximal level",
-        std::max(refinements, base + key.mesh_level + 2));
-    set("Mesh refinement/Cell budget", std::max<long>(1, std::lround(cells)));
-    return result;
-  }
-
-
-
-  std::vector<std::string>
-  StudyRuns::overrides_of(const RunKey &key) const
-  {
-    std::vector<std::string> result       = overrides;
-    const std::string        place        = directory + name(key);
-    const bool               is_reference = reference && key == *reference;
-    for (const std::string &assignment :
-         discretization(key,
-                        scale_phases(phases, std::pow(2., key.time_level))))
-      result.push_back(assignment);
-    for (const std::string &assignment :
-         {"Output/Directory=" + place,
-          std::string("Output/Fields every=0"),
-          std::string("Output/Fields interval=0"),
-          std::string("Output/Reference fields=") +
-            (is_reference ? "true" : "false"),
-          std::string("Checkpoint/Every n steps=0"),
-          std::string("Checkpoint/Wall time interval=0"),
-          "Checkpoint/Directory=" + place + "/checkpoint",
-          std::string("Error control/Two-level comparison=false")})
-      result.push_back(assignment);
-    if (is_compared(key))
-      result.push_back("Exact solution/Reference directory=" + directory +
-                       name(*reference));
-    return result;
   }
 
 
@@ -436,7 +238,13 @@ namespace Viscoplastic
       {
         RunRecord record = from_json(text, file);
         record.stamp.erase("overrides");
-        if (record.key == key && record.stamp == expected)
+        // Levels count from a tolerance that may have changed, names do not.
+        const bool has_key =
+          key.variant.strategy == MeshStrategy::tolerance ?
+            record.key.variant == key.variant && record.name == name(key) :
+            record.key == key;
+        record.key = key;
+        if (has_key && record.stamp == expected)
           return record;
       }
     catch (const std::exception &)
@@ -491,16 +299,20 @@ namespace Viscoplastic
       return outcome;
     on_first_rank(communicator, [&] {
       console.check();
-      RunRecord record          = make_record(key,
+      RunRecord record    = make_record(key,
                                      read_table(place + "statistics.csv"),
                                      measurements,
-                                     is_compared(key));
-      record.name               = name(key);
-      record.stamp              = run_stamp;
-      record.numbers["h"]       = mesh_width(record.number("cells"));
-      const double steps        = record.number("steps");
-      record.numbers["set_ups"] = n_set_ups(key.variant.strategy, steps);
-      std::string &list         = record.stamp["overrides"];
+                                     is_compared(key),
+                                     scene.error_control.quantity);
+      record.name         = name(key);
+      record.stamp        = run_stamp;
+      record.numbers["h"] = mesh_width(record.number("cells"));
+      if (key.variant.strategy == MeshStrategy::tolerance)
+        record.numbers["tolerance"] = tolerance(key);
+      else
+        record.numbers["set_ups"] =
+          n_set_ups(key.variant.strategy, record.number("steps"));
+      std::string &list = record.stamp["overrides"];
       for (const std::string &assignment : all_overrides)
         list += (list.empty() ? "" : "; ") + assignment;
       replace_file(place + "result.json",

@@ -47,6 +47,7 @@ def run(variant, ladder, level, h, k, model, dimension=2, known=ERRORS, effectiv
         "history": history,
         "solver": "direct",
         "ladder": ladder,
+        "tolerance": 0.5**level if strategy == "tolerance" else 0.0,
         "mesh_level": level if ladder != "time" else 1,
         "time_level": level if ladder != "space" else 1,
         "h": h,

@@ -37,7 +37,7 @@ TEXTS = "run,strategy,scheme,history,solver,ladder".split(",")
 ERRORS = "error_energy,error_h1,error_stress,error_multiplier".split(",")
 ESTIMATES = (
     "estimate_space,estimate_time,estimate_algebraic,estimate_initial,"
-    "estimate_total,effectivity"
+    "estimate_total,effectivity,estimate_quantity"
 ).split(",")
 
 
@@ -119,9 +119,8 @@ class Ladders(TestCase):
             self.assertEqual(process.returncode, 0, process.stderr)
             rows = folder.rows()
             names = list(rows[0])
-            expected = (
-                TEXTS + ["mesh_level", "time_level"] + NUMBERS + ERRORS + ESTIMATES
-            )
+            levels = ["mesh_level", "time_level", "tolerance"]
+            expected = TEXTS + levels + NUMBERS + ERRORS + ESTIMATES
             self.assertEqual(names[: len(expected)], expected)
             for quantity in names[len(expected) :: 2]:
                 self.assertIn(quantity + "_error", names)
@@ -133,7 +132,7 @@ class Ladders(TestCase):
             self.assertEqual(len({row["run"] for row in rows}), 7)
             self.assertEqual(sorted(announced(process.stdout)), sorted(folder.finished()))
             for row in rows:
-                for name in NUMBERS + ERRORS + ESTIMATES[:1] + ESTIMATES[-2:]:
+                for name in NUMBERS + ERRORS + ["estimate_space", "effectivity"]:
                     self.assertTrue(np.isfinite(row[name]), (row["run"], name))
                 self.assertEqual(row["cells"], 64 * 4 ** row["mesh_level"])
                 self.assertEqual(row["steps"], 8 * 2 ** row["time_level"])
@@ -263,6 +262,55 @@ class Ladders(TestCase):
             before = folder.finished()
             folder.run("study")
             self.assertEqual(folder.finished(), before)
+
+    def test_tolerances(self):
+        """Halved down to that of the scene, beside uniform meshes; errors are
+        differences to a run of half the last."""
+        with Folder(
+            VERIFICATION / "slab.prm",
+            Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
+            Time__Phases="1: 4, 2: 4",
+            Error_control__Tolerance=0.05,
+            Study__Levels=3,
+            Study__Ladders="both",
+            Study__Strategies="tolerance, uniform",
+            Study__Target_errors="0.1, 0.05, 1e-5",
+            Study__Budget=60,
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            rows = folder.ladder("both", strategy="tolerance")
+            self.assertEqual(
+                [row["tolerance"] for row in rows], [0.2, 0.1, 0.05, 0.025]
+            )
+            self.assertEqual(rows[-1]["run"], "tolerance_0.025")
+            self.assertTrue(np.isnan(rows[-1]["error_energy"]))
+            for row in rows[:-1]:
+                self.assertLess(row["error_energy"], row["tolerance"])
+                self.assertLess(row["estimate_total"], row["tolerance"])
+            self.assertLess(rows[2]["error_energy"], 0.6 * rows[1]["error_energy"])
+            about = json.loads((folder.study / "study.json").read_text())
+            self.assertEqual(about["reference_run"], "tolerance_0.025")
+            (fit,) = about["tolerance_fits"]
+            self.assertGreater(fit["cells"]["exponent_against_error"], 1.0)
+            prices = [p for p in about["prices"] if p["strategy"] == "tolerance"]
+            self.assertEqual([p["in_budget"] for p in prices], [True, True, False])
+            for price in prices[:2]:
+                self.assertClose(price["predicted_error"], price["tolerance"], 1e-2)
+            text = (folder.study / "study.md").read_text()
+            self.assertIn("Observed exponents against 1/error", text)
+            # With a smaller tolerance those of before are there already.
+            before = folder.finished()
+            folder.set(Error_control__Tolerance=0.025, Study__Strategies="tolerance")
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            after = folder.finished()
+            # (Errors of the others are differences to another run now.)
+            self.assertIn("tolerance_0.0125", after)
+            self.assertEqual(
+                folder.ladder("both")[-1]["run"], "tolerance_0.0125", list(after)
+            )
+            self.assertTrue(set(before) <= set(after))
 
     def test_reference_run_and_richardson(self):
         with Folder(
@@ -402,18 +450,19 @@ class Refused(TestCase):
             self.assertIn("'Study/Levels' = 2 is too few", self.refuse(folder, "study"))
             self.assertFalse(folder.results.exists())
 
-    def test_tolerances(self):
-        for section, words in ("Step control", "Time/Phases"), (
-            "Error control",
-            "given meshes and steps",
-        ):
-            with Folder(
-                MANUFACTURED / "tresca_2d.prm",
-                **{section.replace(" ", "_") + "__Tolerance": 0.1},
-            ) as folder:
-                refusal = self.refuse(folder, "study")
-                self.assertIn(words, refusal)
-                self.assertIn(f"'{section}/Tolerance' = 0", refusal)
+    def test_tolerance_of_the_steps_alone(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm", Step_control__Tolerance=0.1
+        ) as folder:
+            refusal = self.refuse(folder, "study")
+            self.assertIn("Time/Phases", refusal)
+            self.assertIn("'Step control/Tolerance' = 0", refusal)
+
+    def test_runs_to_no_tolerance(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm", Study__Strategies="tolerance"
+        ) as folder:
+            self.assertIn("'Error control/Tolerance'", self.refuse(folder, "study"))
 
     def test_unknown_scheme(self):
         with Folder(
@@ -507,6 +556,43 @@ class Price(TestCase):
             before = folder.finished()
             self.assertEqual(folder.run("--price=0.05", "--check").returncode, 0)
             self.assertEqual(folder.finished(), before)
+
+    def test_of_a_tolerance_beside_one_mesh(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm", Error_control__Tolerance=0.1, **self.SCENE
+        ) as folder:
+            process = folder.run("--price=0.04")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertRegex(process.stdout, r"Error 0\.04: tolerance 0\.\d+, on average")
+            self.assertRegex(
+                process.stdout, r"With one uniform mesh and equal steps, .* times as long"
+            )
+            table = read_statistics(folder.results / "statistics.csv")
+            error = table["error_energy"].max() / table["exact_energy"].max()
+            print("error asked for and found: 0.04", error)
+            self.assertLess(error, 1.2 * 0.04)
+            self.assertGreater(error, 0.04 / 3)
+
+    def test_of_a_quantity(self):
+        """The measure is the quantity's, far below that of the energy norm."""
+        with Folder(
+            VERIFICATION / "slab.prm",
+            Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
+            Time__Phases="1: 4, 2: 4",
+            Error_control__Tolerance=0.05,
+            Error_control__Quantity="friction_force_x",
+        ) as folder:
+            process = folder.run("--price=0.01")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertIn("estimated error of the quantity of interest", process.stdout)
+            table = read_statistics(folder.results / "statistics.csv")
+            self.assertLess(
+                table["quantity_total"].max(),
+                0.01 * np.abs(table["friction_force_x"]).max(),
+            )
+            self.assertGreater(
+                table["estimate_total"].max(), 0.05 * table["energy_norm"].max()
+            )
 
     def test_beyond_the_budget(self):
         with Folder(

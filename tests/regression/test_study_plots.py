@@ -307,6 +307,26 @@ class Pictures(Folder):
         for words in ("work-precision", "error_multiplier", "peak_memory_MB"):
             self.assertIn(words, listed)
 
+    def test_runs_to_a_tolerance(self):
+        """They have no time steps to speak of, and tolerances for names."""
+        rows = synthetic.rows(variants=(UNIFORM,))
+        rows += synthetic.rows(
+            variants=(("tolerance", *UNIFORM[1:]),), ladders=("both",)
+        )
+        synthetic.write(self.folder, rows)
+        self.assertEqual(self.draw(), list(self.NAMES))
+        study = Study(self.folder)
+        figure = convergence.draw(study, "error_energy")
+        lines = [
+            sum(line.get_marker() in ("o", "s") for line in axes.get_lines())
+            for axes in figure.axes
+        ]
+        self.assertEqual(lines, [3, 2], "ladders in the panels of h and k")
+        rows, _ = cost.chosen(study)
+        _, heads, labels = cost.positions(study, rows)
+        self.assertEqual(labels[-2:], ["25 %", "12.5 %"])
+        self.assertEqual(heads[-1][1], "tolerance")
+
     def test_one_run_and_no_json(self):
         synthetic.write(self.folder, synthetic.rows(levels=1, ladders=("both",)))
         self.assertEqual(self.draw(), list(self.NAMES))

@@ -173,9 +173,9 @@ namespace Viscoplastic
   /// Of the ladders of runs of the study mode.
   struct StudyParameters
   {
-    unsigned int levels     = 4;
-    std::string  ladders    = "space, time, both";
-    std::string  strategies = "uniform";
+    unsigned int levels  = 4;
+    std::string  ladders = "space, time, both";
+    std::string  strategies;
     std::string  time_schemes;
     std::string  stress_histories;
     std::string  target_errors = "0.1, 0.03, 0.01, 0.003";

@@ -49,9 +49,12 @@ namespace Viscoplastic
    * The ladder `space' refines the mesh with the steps of the finest level of
    * the study, `time' the steps on its finest mesh, `both' both; so that the
    * part of the error that a ladder leaves alone is the smallest that the study
-   * has, and they share the finest run. A scene without an exact solution gets
-   * a reference run one level finer in both, which comes before those that are
-   * compared with it; a few coarse runs tell whether it fits into the budget.
+   * has, and they share the finest run. Runs to a tolerance, which choose
+   * meshes and steps themselves, are a ladder `both' that halves the tolerance
+   * down to that of the scene. A scene without an exact solution gets a
+   * reference run one level finer in both (with runs to a tolerance: to half of
+   * the scene's), which comes before those that are compared with it; a few
+   * coarse runs tell whether it fits into the budget.
    */
   class Study
   {
@@ -72,6 +75,10 @@ namespace Viscoplastic
     /// Whether the scene knows what errors are, from an exact solution or the
     /// fields of a reference of the user's.
     const bool has_exact_solution;
+    /// Values of `Study/Strategies', or what belongs to the scene.
+    const std::vector<std::string> strategies;
+    /// That of the run that others are compared with.
+    const MeshStrategy reference_strategy;
 
     /// All runs, the cheapest first.
     std::vector<PlannedRun> plan;
@@ -99,6 +106,10 @@ namespace Viscoplastic
     /// Decide which runs there are. Throws ExcMessage.
     void
     make_plan();
+
+    /// The runs of a method variant in a ladder, as levels of mesh and time.
+    std::vector<std::pair<int, int>>
+    levels_of(const MeshStrategy strategy, const Ladder ladder) const;
 
     /// Make a run unless it takes too long. Returns the sentence of a signal.
     std::string

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/study/study_runs.h>
+#include <viscoplastic_contact/study/tolerance_model.h>
 
 #include <array>
 
@@ -29,11 +30,14 @@ namespace Viscoplastic
            const RunRecord   *reference);
 
   /**
-   * The best measure that at least three of the runs have: the error in the
-   * energy norm, the estimate of it, the quantities of interest. Empty if none.
+   * The best measure that at least @p n_least of the runs have: the estimated
+   * error of `Error control/Quantity', the error in the energy norm, the
+   * estimate of it, the quantities of interest. Empty if none.
    */
   std::string
-  best_measure(const Records &records, const RunRecord *reference);
+  best_measure(const Records     &records,
+               const RunRecord   *reference,
+               const unsigned int n_least = 3);
 
   /// A measure in words.
   std::string
@@ -59,6 +63,13 @@ namespace Viscoplastic
   fit_work_precision(const StudyRuns   &runs,
                      const Records     &records,
                      const Records     &timed,
+                     const std::string &measure,
+                     const RunRecord   *reference);
+
+  /// The same of runs to a tolerance.
+  ToleranceModel
+  fit_tolerance_runs(const StudyRuns   &runs,
+                     const Records     &records,
                      const std::string &measure,
                      const RunRecord   *reference);
 

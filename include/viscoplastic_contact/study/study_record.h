@@ -16,11 +16,13 @@ namespace Viscoplastic
 
 
   /// How the mesh of a run comes about: it is refined everywhere, or where the
-  /// error estimator says.
+  /// error estimator says, with given numbers of cells and steps or with as
+  /// many as a tolerance needs.
   enum class MeshStrategy
   {
     uniform,
-    adaptive
+    adaptive,
+    tolerance
   };
 
   /// As `Study/Strategies' and the files of a study have it.
@@ -59,7 +61,8 @@ namespace Viscoplastic
   struct RunKey
   {
     MethodVariant variant;
-    /// Halvings of h and k from those of the scene; negative: doublings.
+    /// Halvings of h and k from those of the scene, or both those of its
+    /// tolerance; negative: doublings.
     int mesh_level = 0, time_level = 0;
     /// Whether it only tells what it costs, and is compared with nothing.
     bool is_timing = false;
@@ -132,13 +135,16 @@ namespace Viscoplastic
    * steps over the largest norm of the exact solution; estimates are relative
    * to the largest energy norm. With @p is_difference errors are differences to
    * another run, at few times: then the largest norms of the run itself count,
-   * too. Numbers of unknowns and cells are means over the steps.
+   * too. The estimated error of a @p quantity of interest, if there is one, is
+   * relative to its largest value. Numbers of unknowns and cells are means over
+   * the steps.
    */
   RunRecord
   make_record(const RunKey          &key,
               const Table           &statistics,
               const RunMeasurements &measurements,
-              const bool             is_difference = false);
+              const bool             is_difference = false,
+              const std::string     &quantity      = "");
 
 
   /// The columns of errors of fields, relative to the largest norms.

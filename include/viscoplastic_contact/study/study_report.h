@@ -20,8 +20,9 @@ namespace Viscoplastic
 
   // The parts of write_report():
 
-  /// What the finished runs of a method variant say; without a known error
-  /// there is neither a model nor a price.
+  /// What the finished runs of a method variant say: models and prices of
+  /// given meshes and steps, or of tolerances. Without a known error there is
+  /// neither a model nor a price.
   struct VariantResult
   {
     MethodVariant                     variant;
@@ -29,6 +30,8 @@ namespace Viscoplastic
     std::string                       measure;
     std::optional<WorkPrecisionModel> model;
     std::vector<Price>                prices;
+    std::optional<ToleranceModel>     tolerance_model;
+    std::vector<TolerancePrice>       tolerance_prices;
   };
 
   /// The results of all method variants.
@@ -47,6 +50,12 @@ namespace Viscoplastic
   Origin
   origin();
 
+
+  /// The section of study.md on runs to a tolerance: exponents, fits, prices.
+  /// Empty without a known error.
+  std::string
+  tolerance_results_as_markdown(const Study         &study,
+                                const VariantResult &result);
 
   /// The contents of study.md.
   std::string

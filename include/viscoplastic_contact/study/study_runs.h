@@ -40,6 +40,8 @@ namespace Viscoplastic
     const Parameters               scene;
     /// `study/' in the directory of results.
     const std::string directory;
+    /// Runs with larger tolerances have hardly an error that obeys a law.
+    static constexpr double largest_tolerance = 0.5;
     /// The time steps of the scene.
     const std::vector<StepsUntil> phases;
 
@@ -70,6 +72,16 @@ namespace Viscoplastic
     /// How often a run of so many steps is set up, once for each of its meshes.
     double
     n_set_ups(const MeshStrategy strategy, const double n_steps) const;
+
+    /// The tolerance of a run that chooses meshes and steps itself: that of the
+    /// scene, halved level by level. 0 of other runs.
+    double
+    tolerance(const RunKey &key) const;
+
+    /// Of a scene with a tolerance: the level of the largest one that still
+    /// asks for something.
+    int
+    coarsest_tolerance_level() const;
 
     /// How often the mesh can be made coarser by halving.
     int

@@ -517,13 +517,13 @@ namespace Viscoplastic
         std::ostringstream text;
         text << std::setprecision(3)
              << "Warning: changes of the mesh have added "
-             << balance.adaptation_energy() << " to the stored energy, beside "
+             << balance.adaptation_energy()
+             << " to the stored energy beyond the work of the loads, beside "
              << balance.scale()
-             << " of the loads and the initial state: energies, and forces "
-                "after a change of the mesh, are not to be trusted. A fixed "
-                "mesh ('Mesh refinement/Strategy' = none) is free of it, and "
-                "fewer changes ('Every n steps') add less; bodies next to "
-                "incompressible are prone to it.";
+             << " of the loads and the initial state: some meshes were so "
+                "coarse that energies, and what flowed on them, are not to be "
+                "trusted. Begin with a finer mesh ('Geometry/Global "
+                "refinements').";
         result.push_back(text.str());
       }
 

@@ -121,12 +121,14 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  stored_energy(const Discretization<dim> &discretization,
-                const EvaluatedState<dim> &of)
+  EnergiesOnMesh
+  energies_on_mesh(const Discretization<dim> &discretization,
+                   const EvaluatedState<dim> &of)
   {
-    return stored_energy(
-      of.forces, summarize_stress(discretization.laws, of.state, of.state));
+    return {
+      stored_energy(of.forces,
+                    summarize_stress(discretization.laws, of.state, of.state)),
+      of.forces.u * of.forces.load.values};
   }
 
 
@@ -139,8 +141,8 @@ namespace Viscoplastic
   measure_step(const Discretization<3> &,
                const EvaluatedState<3> &,
                const AcceptedStep<3> &);
-  template double
-  stored_energy(const Discretization<2> &, const EvaluatedState<2> &);
-  template double
-  stored_energy(const Discretization<3> &, const EvaluatedState<3> &);
+  template EnergiesOnMesh
+  energies_on_mesh(const Discretization<2> &, const EvaluatedState<2> &);
+  template EnergiesOnMesh
+  energies_on_mesh(const Discretization<3> &, const EvaluatedState<3> &);
 } // namespace Viscoplastic

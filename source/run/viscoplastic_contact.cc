@@ -464,8 +464,8 @@ namespace Viscoplastic
       error_estimator ?
         memory_loss(triangulation, discretization->stress_space, state.z) :
         0.;
-    const double       energy = stored_energy(*discretization, accepted);
-    StateTransfer<dim> transfer(triangulation,
+    const EnergiesOnMesh before = energies_on_mesh(*discretization, accepted);
+    StateTransfer<dim>   transfer(triangulation,
                                 discretization->stress_space,
                                 state,
                                 discretization->face ? &density : nullptr);
@@ -478,14 +478,11 @@ namespace Viscoplastic
     if (d.face)
       state.friction =
         friction_on_new_mesh(d, state, result.multiplier_density);
-    accepted.forces = evaluate_forces(d.stress_space,
-                                      d.matrix,
-                                      d.loads.assemble(state.t),
-                                      state);
+    time_stepper->settle(accepted);
     accepted.rate.reset();
     if (error_estimator)
       error_estimator->change_mesh(d.space, d.matrix, loss, accepted);
-    recorder.record_mesh_change(stored_energy(d, accepted) - energy);
+    recorder.record_mesh_change(before, energies_on_mesh(d, accepted));
   }
 
 

@@ -39,7 +39,7 @@ namespace Viscoplastic
         return explicit_step.equilibrate(problem);
       }
 
-      BulkSolver *
+      StepSolver<dim> *
       elastic_solver() override
       {
         return explicit_step.elastic_solver();

@@ -255,6 +255,47 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  StepSolver<dim>::solve_with_held_friction(const DistributedVector &right_side,
+                                            const double             tolerance,
+                                            FrictionState            friction,
+                                            DistributedVector       &u)
+  {
+    const Discretization<dim> &d = discretization;
+    const DistributedVector    start(u);
+    const Vector<double>       no_step;
+    const Data                 data{start, right_side, right_side, no_step};
+    // Squares of others would leave the range of numbers; the next step solves
+    // for all of u.
+    if (const double size = size_of(data, u);
+        !(size >= 1e-100 && size <= largest_size))
+      return;
+    bulk_solver->set_rounding_error(rounding_error(data, u));
+    if (!d.slipping_face())
+      {
+        bulk_solver->solve(right_side, u, tolerance);
+        return;
+      }
+    const FrictionFace  &face = d.face->layout();
+    const Vector<double> no_force(face.n_dofs());
+    Vector<double>       change(face.n_dofs());
+    for (unsigned int p = 0; p < friction.n_points(); ++p)
+      // Nothing holds a point without friction.
+      friction.sticks[p] = friction.bound[p] > 0.;
+    bulk_solver->begin(right_side, u);
+    bulk_solver->set_truncation(make_truncation(face, friction, {}));
+    // As a rule the change is less than a hundredth of u.
+    bulk_solver->correct(no_force,
+                         std::clamp(100. * tolerance, 1e-10, 1e-4),
+                         change);
+    bulk_solver->search_terms(change);
+    bulk_solver->take_step(1.);
+    bulk_solver->finish();
+  }
+
+
+
+  template <int dim>
+  void
   StepSolver<dim>::set_displacement(const StepProblem<dim>  &problem,
                                     const DistributedVector &u,
                                     State<dim>              &state) const

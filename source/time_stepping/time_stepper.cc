@@ -254,21 +254,25 @@ namespace Viscoplastic
   void
   TimeStepper<dim>::assess_quantity(EvaluatedState<dim> &end)
   {
-    if (!quantity_estimator)
-      return;
-    BulkSolver *solver = step_method->elastic_solver();
-    if (solver == nullptr)
+    if (quantity_estimator)
+      quantity_estimator->assess(solver_of_elasticity().bulk(), end);
+  }
+
+
+
+  template <int dim>
+  StepSolver<dim> &
+  TimeStepper<dim>::solver_of_elasticity()
+  {
+    if (StepSolver<dim> *of_steps = step_method->elastic_solver())
+      return *of_steps;
+    if (!elastic_solver)
       {
-        if (!elastic_solver)
-          {
-            elastic_solver = std::make_unique<StepSolver<dim>>(discretization);
-            elastic_solver->set_matrix(
-              discretization.matrix,
-              discretization.moduli.max_poissons_ratio());
-          }
-        solver = &elastic_solver->bulk();
+        elastic_solver = std::make_unique<StepSolver<dim>>(discretization);
+        elastic_solver->set_matrix(discretization.matrix,
+                                   discretization.moduli.max_poissons_ratio());
       }
-    quantity_estimator->assess(*solver, end);
+    return *elastic_solver;
   }
 
 
@@ -293,6 +297,33 @@ namespace Viscoplastic
     initial.forces =
       evaluate_forces(d.stress_space, d.matrix, problem.load, initial.state);
     return solution.report;
+  }
+
+
+
+  template <int dim>
+  void
+  TimeStepper<dim>::settle(EvaluatedState<dim> &carried)
+  {
+    const Discretization<dim> &d     = discretization;
+    State<dim>                &state = carried.state;
+    const Load<dim>            load  = d.loads.assemble(state.t);
+    DistributedVector          right_side(load.values), u(load.values);
+    if (scene.has_irreversible_stress())
+      add_irreversible_load(d.stress_space, state.z, right_side);
+    d.space.to_frames(state.u, u);
+    d.space.set_prescribed(state.t, u);
+    as_part_of_step(state.n + 1, state.t, [&] {
+      solver_of_elasticity().solve_with_held_friction(right_side,
+                                                      tolerance(carried),
+                                                      state.friction,
+                                                      u);
+      return 0;
+    });
+    d.space.to_cartesian(u, state.u);
+    carried.forces = evaluate_forces(d.stress_space, d.matrix, load, state);
+    if (!quantity_estimator)
+      elastic_solver.reset();
   }
 
 

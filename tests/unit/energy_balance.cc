@@ -28,7 +28,7 @@ namespace
   balance_of(SteppingBody<dim> &body)
   {
     EnergyBalance balance;
-    balance.begin(stored_energy(*body.discretization, body.accepted));
+    balance.begin(energies_on_mesh(*body.discretization, body.accepted).stored);
     while (body.accepted.state.t < 1.)
       {
         const AcceptedStep<dim>   step = body.stepper->next(body.accepted);
@@ -104,10 +104,12 @@ namespace
     balance.begin(1.);
     balance.add_step({3., 2.5, 0.25, 0.25});
     EXPECT_EQ(balance.defect(), 0.);
-    balance.add_mesh_change(0.5);
-    balance.add_step({3.5, -1., 0., 0.});
+    // Of 1.5 more, 1 is work of the loads.
+    balance.add_mesh_change({3., 4.}, {4.5, 5.});
+    EXPECT_EQ(balance.adaptation_energy(), 0.5);
+    balance.add_step({4.5, -1., 0., 0.});
     EXPECT_EQ(balance.defect(), -1.);
-    EXPECT_EQ(balance.external_work(), 1.5);
-    EXPECT_EQ(balance.scale(), 3.5);
+    EXPECT_EQ(balance.external_work(), 2.5);
+    EXPECT_EQ(balance.scale(), 4.5);
   }
 } // namespace

@@ -79,8 +79,9 @@ namespace
                     0u);
 
           const DualProblem<dim> dual(d, *body.scene.quantity);
-          const auto w = dual.solve(*body.stepper->method().elastic_solver(),
-                                    state.friction);
+          const auto             w =
+            dual.solve(body.stepper->method().elastic_solver()->bulk(),
+                       state.friction);
           // Not the same everywhere, or nothing would move.
           IrreversibleStress dz(state.z.size());
           std::size_t        i = 0;

@@ -18,6 +18,17 @@ namespace Viscoplastic
 
 
 
+  /// The energies of a state that a change of the mesh changes.
+  struct EnergiesOnMesh
+  {
+    /// 1/2 int E^-1 sigma : sigma, and what laws store beyond it.
+    double stored = 0.;
+    /// The work of the present loads on the way from zero to u.
+    double of_loads = 0.;
+  };
+
+
+
   /**
    * The balance of energy over a run,
    *
@@ -27,8 +38,9 @@ namespace Viscoplastic
    * The time integration keeps that of the bulk exactly, whatever the step
    * size, so that the defect is that of friction: sum lambda . s takes the
    * multiplier at the end of each step, the work of the loads the mean. It
-   * vanishes with the step size. What changes of the mesh do to the stored
-   * energy is no physics and counts apart.
+   * vanishes with the step size. A body gives way when its mesh is refined,
+   * and the loads do work; what changes of the mesh do to the stored energy
+   * beyond that is no physics and counts apart.
    */
   class EnergyBalance
   {
@@ -50,11 +62,15 @@ namespace Viscoplastic
       friction += step.friction_dissipation;
     }
 
-    /// A change of the mesh has added to the stored energy.
+    /// Add a change of the mesh. What it does to the stored energy beyond the
+    /// work of the loads comes from the mesh alone.
     void
-    add_mesh_change(const double change)
+    add_mesh_change(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
     {
-      adaptation += change;
+      const double of_loads = after.of_loads - before.of_loads;
+      work += of_loads;
+      largest_work = std::max(largest_work, std::abs(work));
+      adaptation += after.stored - before.stored - of_loads;
     }
 
     double

@@ -61,11 +61,12 @@ namespace Viscoplastic
            const AcceptedStep<dim>   &step,
            const SolutionErrors      &errors);
 
-    /// A change of the mesh has added to the stored energy.
+    /// Record a change of the mesh.
     void
-    record_mesh_change(const double energy)
+    record_mesh_change(const EnergiesOnMesh &before,
+                       const EnergiesOnMesh &after)
     {
-      balance.add_mesh_change(energy);
+      balance.add_mesh_change(before, after);
     }
 
     /// Go on from a state that an earlier part of the run has reached in

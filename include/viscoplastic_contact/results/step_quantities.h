@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/discretization/energy.h>
+#include <viscoplastic_contact/results/energy_balance.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <map>
@@ -49,9 +50,9 @@ namespace Viscoplastic
                const EvaluatedState<dim> &old,
                const AcceptedStep<dim>   &step);
 
-  /// 1/2 int E^-1 sigma : sigma, and what laws store beyond it. Collective.
+  /// Collective.
   template <int dim>
-  double
-  stored_energy(const Discretization<dim> &discretization,
-                const EvaluatedState<dim> &of);
+  EnergiesOnMesh
+  energies_on_mesh(const Discretization<dim> &discretization,
+                   const EvaluatedState<dim> &of);
 } // namespace Viscoplastic

@@ -24,10 +24,10 @@ namespace Viscoplastic
     StepSolution<dim>
     equilibrate(const StepProblem<dim> &problem) override;
 
-    BulkSolver *
+    StepSolver<dim> *
     elastic_solver() override
     {
-      return &solver.bulk();
+      return &solver;
     }
 
     std::optional<PreconditionerState>

@@ -42,7 +42,7 @@ namespace Viscoplastic
     StepSolution<dim>
     equilibrate(const StepProblem<dim> &problem) override;
 
-    BulkSolver *
+    StepSolver<dim> *
     elastic_solver() override
     {
       return nullptr;

@@ -5,6 +5,7 @@
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/time_stepping/step_problem.h>
+#include <viscoplastic_contact/time_stepping/step_solver.h>
 
 #include <memory>
 #include <optional>
@@ -46,7 +47,7 @@ namespace Viscoplastic
             const std::optional<PreconditionerState> &preconditioner) = 0;
 
     /// The solver for the matrix of a(.,.); null if steps have another matrix.
-    virtual BulkSolver *
+    virtual StepSolver<dim> *
     elastic_solver() = 0;
 
     /// The linear solver in use; empty before there is one.

@@ -74,6 +74,17 @@ namespace Viscoplastic
           DistributedVector       &u,
           FrictionState           &friction);
 
+    /**
+     * Move @p u, in frames, into equilibrium with @p right_side while all
+     * points with friction stay where they are. One linear solve to the
+     * relative error @p tolerance. Throws ExcMessage. Collective.
+     */
+    void
+    solve_with_held_friction(const DistributedVector &right_side,
+                             const double             tolerance,
+                             FrictionState            friction,
+                             DistributedVector       &u);
+
     /// Displacement and velocity of the end of a step from u in frames.
     void
     set_displacement(const StepProblem<dim>  &problem,

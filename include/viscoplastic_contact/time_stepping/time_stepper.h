@@ -74,6 +74,15 @@ namespace Viscoplastic
     ContactReport
     equilibrate(EvaluatedState<dim> &initial);
 
+    /**
+     * Bring a state that came from another mesh into equilibrium with the
+     * loads at its time; points with friction stay where they are, and the next
+     * step lets them slip. A displacement that is only interpolated would flow,
+     * and store energy, by stresses that nothing balances. Collective.
+     */
+    void
+    settle(EvaluatedState<dim> &carried);
+
     /// Complete the space estimate of a state. Collective.
     void
     estimate(EvaluatedState<dim> &evaluated) const;
@@ -112,6 +121,10 @@ namespace Viscoplastic
                  const FlowRate            *old_rate,
                  const TimeStep            &time_step) const;
 
+    /// The solver for the matrix of a(.,.). Collective.
+    StepSolver<dim> &
+    solver_of_elasticity();
+
     /// Add the error of the quantity of interest, if there is one. Collective.
     void
     assess_quantity(EvaluatedState<dim> &end);
@@ -126,8 +139,7 @@ namespace Viscoplastic
     std::unique_ptr<StepMethod<dim>>     step_method;
     /// Null where a scene asks for no quantity.
     std::unique_ptr<QuantityEstimator<dim>> quantity_estimator;
-    /// For its dual problems, if the steps have other matrices; made when it
-    /// is needed.
+    /// If the steps have other matrices; made when it is needed.
     std::unique_ptr<StepSolver<dim>> elastic_solver;
   };
 } // namespace Viscoplastic

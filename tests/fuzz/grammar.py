@@ -476,6 +476,7 @@ class Scene:
             times = sorted(pick((0.1, 0.25, 0.4, 0.7)) for _ in range(pick((1, 2))))
             times = [self.duration(value * end) for value in sorted(set(times))]
             self.maybe(0.4, control("Landing times"), ", ".join(times))
+            self.maybe(0.2, control("Land on kinks"), "false")
             self.maybe(0.4, control("Resolve events"), "true", "false")
             self.set(control("Event tolerance"), pick((0.02, 0.1, 0.5)))
             self.maybe(0.4, control("Largest step"), self.duration(pick((0.1, 0.3))))
@@ -490,9 +491,20 @@ class Scene:
         self.maybe(0.15, "Error control/Algebraic fraction", "0.5", "0.001")
         if self.refinements > 0 and self.chance(0.12):
             self.set("Error control/Two-level comparison", "true")
+        entry = lambda name: f"Mesh refinement/{name}"
+        if self.chance(0.15):
+            id = self.random.randrange(2 * self.dim)
+            self.set(
+                "Error control/Quantity",
+                self.random.choice(("friction_force_x", f"reaction_{id}_y")),
+            )
+        if self.chance(0.15) and "Step control/Tolerance" not in self.entries:
+            self.set("Error control/Tolerance", self.random.choice((0.1, 0.3, 0.9)))
+            self.set("Step control/Smallest step", self.duration(0.005))
+            self.set(entry("Cell budget"), 200 if self.dim == 2 else 60)
+            return
         if not self.chance(0.25):
             return
-        entry = lambda name: f"Mesh refinement/{name}"
         self.set(entry("Strategy"), self.random.choice(("residual", "kelly")))
         self.maybe(0.5, entry("Every n steps"), 1, 2, 3)
         self.set(entry("Maximal level"), min(self.refinements + 1, 3))

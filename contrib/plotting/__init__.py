@@ -6,7 +6,7 @@ geometry    welding, boundary faces, edges: meshes without physics
 faces       the contact boundary in flat pieces with coordinates of their own
 style       colours, labels and numbers, the same in all pictures
 body        a field on the deformed body, in two and in three dimensions
-overview, fields, contact, history, errors, hysteresis, stick_slip
+overview, fields, contact, history, errors, efficiency, hysteresis, stick_slip
             one kind of picture each: draw(...) returns a figure
 animation   a picture over time
 command     the command line

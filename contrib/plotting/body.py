@@ -30,7 +30,7 @@ VIEW = (22.0, -55.0)  # elevation and azimuth in degrees
 BOX = list(itertools.product((False, True), repeat=3))  # corners of a box
 
 CELL_DATA = ("stress_", "irreversible_stress_", "von_mises", "pressure", "estimator",
-             "subdomain")
+             "error_energy", "recovery", "subdomain")
 
 
 def available_fields(body):

@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 from . import (
     animation,
     contact,
+    efficiency,
     errors,
     fields,
     history,
@@ -42,6 +43,8 @@ pictures:
   history     the main columns of statistics.csv over time, or --columns
   errors      the estimated error by its causes over time, with cells and
               time steps
+  efficiency  estimated over true errors of the cells of one output, where the
+              scene has an exact solution
   hysteresis  force over displacement, with the area of the loop
   stick-slip  map of stick and slip over arc length and time (2D)
 All but the overview go to RESULTS/pictures/.  Numbers are in the units of
@@ -72,6 +75,7 @@ AT_A_TIME = {"overview": overview, "contact": contact}  # and fields
 OVER_TIME = {
     "history": history,
     "errors": errors,
+    "efficiency": efficiency,
     "hysteresis": hysteresis,
     "stick-slip": stick_slip,
 }

@@ -36,6 +36,8 @@ SCALARS = {
     "von_mises": r"von Mises stress $\sigma_\mathrm{vM}$",
     "pressure": r"pressure $-\mathrm{tr}\,\sigma/3$",
     "estimator": r"error estimator $\eta_K$",
+    "error_energy": r"true error $\Vert u-u_h\Vert_{a,K}$",
+    "recovery": "error by recovered strain",
     "subdomain": "MPI rank",
 }
 VECTORS = {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/known_solution.h>
+#include <viscoplastic_contact/error/recovery_estimate.h>
 #include <viscoplastic_contact/error/reference_fields.h>
 
 #include <cmath>
@@ -59,15 +61,23 @@ namespace Viscoplastic
     SolutionErrors result;
     result.error.fill(std::numeric_limits<double>::quiet_NaN());
     result.exact  = result.error;
-    result.memory = result.error.energy;
+    result.memory = result.recovery = result.error.energy;
     if (!scene.exact_solution && !has_reference)
       return result;
 
     TimerOutput::Scope scope(timer, "errors");
     const auto         multipliers = multiplier_density(discretization, state);
     const DistributedVector *density = multipliers ? &*multipliers : nullptr;
+    const double             recovery =
+      total_estimate(squared_recovery_estimate(discretization.stress_space,
+                                               state),
+                     discretization.space.dof_handler.get_triangulation());
     if (scene.exact_solution)
-      return solution_errors(discretization.stress_space, state, density);
+      {
+        result = solution_errors(discretization.stress_space, state, density);
+        result.recovery = recovery;
+        return result;
+      }
     const FieldSamples<dim> reference =
       read_samples<dim>(samples_file(reference_directory, phase),
                         discretization.space.communicator);
@@ -81,7 +91,8 @@ namespace Viscoplastic
     const double unknown = result.memory;
     result =
       differences(reference, discretization.stress_space, state, density);
-    result.memory = unknown;
+    result.memory   = unknown;
+    result.recovery = recovery;
     return result;
   }
 

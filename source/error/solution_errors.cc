@@ -23,7 +23,8 @@ namespace Viscoplastic
     add_cells(const StressSpace<dim> &stress_space,
               const State<dim>       &state,
               Squares                &error,
-              Squares                &exact)
+              Squares                &exact,
+              Vector<double>         &energy_by_cell)
     {
       const FEValuesExtractors::Vector displacement(0);
       const auto               &dof_handler = stress_space.space.dof_handler;
@@ -53,7 +54,8 @@ namespace Viscoplastic
             strains[q] = reduced_strain(gradients[q],
                                         stress_space.mean_dilatation,
                                         dilatation);
-          const Stiffness &stiffness = stress_space.moduli(index);
+          const Stiffness &stiffness   = stress_space.moduli(index);
+          const double     other_cells = error.energy;
           for (unsigned int q = 0; q < n; ++q)
             {
               const Point<dim>    &x = fe_values.quadrature_point(q);
@@ -80,6 +82,8 @@ namespace Viscoplastic
                     }
                 }
             }
+          energy_by_cell[cell->active_cell_index()] =
+            error.energy - other_cells;
           ++index;
         }
     }
@@ -177,11 +181,13 @@ namespace Viscoplastic
     const Scene<dim> &scene = stress_space.space.scene;
     const MPI_Comm    comm  = stress_space.space.communicator;
     Squares           error, exact;
-    add_cells(stress_space, state, error, exact);
+    SolutionErrors    result;
+    result.squared_energy_by_cell.reinit(
+      stress_space.space.dof_handler.get_triangulation().n_active_cells());
+    add_cells(stress_space, state, error, exact, result.squared_energy_by_cell);
     if (multiplier_density && scene.exact_solution->has_stress())
       add_contact_faces(
         stress_space.space, state.t, *multiplier_density, error, exact);
-    SolutionErrors result;
     result.error = square_roots(error, comm);
     result.exact = square_roots(exact, comm);
     if (stress_space.n_samples > 1 && scene.has_irreversible_stress() &&

@@ -8,6 +8,8 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/error/recovery_estimate.h>
+#include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/results/output.h>
 
 #include <nlohmann/json.hpp>
@@ -528,13 +530,24 @@ namespace Viscoplastic
       }
     data_out.add_data_vector(mises, "von_mises");
     data_out.add_data_vector(subdomain, "subdomain");
-    Vector<double> estimator;
+    const auto square_roots = [](Vector<double> squares) {
+      for (double &value : squares)
+        value = std::sqrt(value);
+      return squares;
+    };
+    Vector<double> estimator, error, recovery;
     if (squared_estimate != nullptr)
       {
-        estimator = *squared_estimate;
-        for (double &value : estimator)
-          value = std::sqrt(value);
+        estimator = square_roots(*squared_estimate);
         data_out.add_data_vector(estimator, "estimator");
+      }
+    if (stress_space.space.scene.exact_solution)
+      {
+        error = square_roots(
+          solution_errors(stress_space, state, nullptr).squared_energy_by_cell);
+        recovery = square_roots(squared_recovery_estimate(stress_space, state));
+        data_out.add_data_vector(error, "error_energy");
+        data_out.add_data_vector(recovery, "recovery");
       }
     data_out.set_flags(vtk_flags());
     data_out.build_patches();

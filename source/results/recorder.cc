@@ -26,6 +26,7 @@ namespace Viscoplastic
       };
       add("error_", errors.error);
       row.add("error_memory", errors.memory);
+      row.add("estimate_recovery", errors.recovery);
       add("exact_", errors.exact);
     }
 

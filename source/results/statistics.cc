@@ -94,8 +94,9 @@ namespace Viscoplastic
       {
         const bool is_limit = column == "step_limit" && value > 0.;
         // Not known between the times of a reference.
-        const bool is_unknown =
-          column.rfind("error_", 0) == 0 || column.rfind("exact_", 0) == 0;
+        const bool is_unknown = column.rfind("error_", 0) == 0 ||
+                                column.rfind("exact_", 0) == 0 ||
+                                column == "estimate_recovery";
         if (std::isfinite(value) || is_limit || is_unknown)
           continue;
         std::ostringstream message;

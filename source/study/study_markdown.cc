@@ -56,8 +56,9 @@ namespace Viscoplastic
           columns.push_back(column);
           head.push_back(title);
         }
-      if (std::isfinite(result.records[0]->number("effectivity")))
-        more.push_back("effectivity");
+      for (const char *column : {"effectivity", "effectivity_recovery"})
+        if (std::isfinite(result.records[0]->number(column)))
+          more.push_back(column);
       columns.insert(columns.end(), more.begin(), more.end());
       head.insert(head.end(), more.begin(), more.end());
       std::string text = table_head(head);

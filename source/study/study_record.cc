@@ -271,6 +271,9 @@ namespace Viscoplastic
         relative(largest(statistics, name), largest(statistics, "energy_norm"));
     number["effectivity"] = relative(largest(statistics, "estimate_total"),
                                      largest(statistics, "error_energy"));
+    number["effectivity_recovery"] =
+      relative(largest(statistics, "estimate_recovery"),
+               largest(statistics, "error_energy"));
     if (!quantity.empty())
       number["estimate_quantity"] =
         relative(largest(statistics, "quantity_total"),

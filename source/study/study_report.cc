@@ -52,10 +52,11 @@ namespace Viscoplastic
     {
       std::ostringstream       text;
       std::vector<std::string> columns = number_columns();
-      for (const auto &more :
-           {field_errors,
-            estimate_parts,
-            std::vector<std::string>{"effectivity", "estimate_quantity"}})
+      for (const auto &more : {field_errors,
+                               estimate_parts,
+                               std::vector<std::string>{"effectivity",
+                                                        "effectivity_recovery",
+                                                        "estimate_quantity"}})
         columns.insert(columns.end(), more.begin(), more.end());
       text << "run,strategy,scheme,history,solver,ladder,mesh_level,time_level,"
               "tolerance";

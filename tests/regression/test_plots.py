@@ -23,6 +23,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from plotting import (
     contact,
+    efficiency,
     errors,
     fields,
     geometry,
@@ -46,6 +47,8 @@ from plotting.results import (
     read_parameters,
     read_statistics,
 )
+
+MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
 
 
 class Mesh:
@@ -573,7 +576,8 @@ class Pictures(TestCase):
 
     def test_everything_in_two_dimensions(self):
         result = run("slab", {**SMALL_SLAB, "Output/Fields every": 4})
-        names = self.draw(result, "--all", "--dpi", 60)
+        reason = "^Not drawn: efficiency: there is no exact solution.*$"
+        names = self.draw(result, "--all", "--dpi", 60, reason=reason)
         self.assertLessEqual(
             {"overview.png", "von_mises.png", "displacement_x.png", "stress_xy.png",
              "pressure.png", "contact.png", "history.png", "hysteresis.png",
@@ -673,6 +677,32 @@ class Pictures(TestCase):
         self.assertIn("without contact", self.refuse(result, "stick-slip"))
         result = run("slab", {**SMALL_SLAB, "Output/Fields every": 0})
         self.assertIn("'Output/Fields every = 1'", self.refuse(result, "stick-slip"))
+
+    def test_efficiency(self):
+        """Its numbers are those of the statistics."""
+        result = run(
+            "tresca_2d",
+            {
+                "Geometry/Global refinements": 1,
+                "Error control/Tolerance": 0.1,
+                "Output/Fields every": 100,
+            },
+            text=(MANUFACTURED / "tresca_2d.prm").read_text(),
+        )
+        self.draw(result, "efficiency")
+        results = Results(result.directory)
+        last = results.index()
+        body = results.body(last)
+        for field, column in (
+            ("error_energy", "error_energy"),
+            ("recovery", "estimate_recovery"),
+        ):
+            of_cells = efficiency.of_cells(body, field)
+            self.assertClose(np.linalg.norm(of_cells), result[column][-1], 1e-6)
+        time = results.solution[last][0]
+        self.assertClose(efficiency.constant(results, time), 0.3, 1e-9)
+        quotient = result["estimate_recovery"].max() / result["error_energy"].max()
+        self.assertClose(quotient, 1, absolute=0.2)
 
     def test_what_is_wrong(self):
         result = run("slab", {**SMALL_SLAB, "Output/Fields every": 0})

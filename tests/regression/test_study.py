@@ -37,7 +37,7 @@ TEXTS = "run,strategy,scheme,history,solver,ladder".split(",")
 ERRORS = "error_energy,error_h1,error_stress,error_multiplier".split(",")
 ESTIMATES = (
     "estimate_space,estimate_time,estimate_algebraic,estimate_initial,"
-    "estimate_total,effectivity,estimate_quantity"
+    "estimate_total,effectivity,effectivity_recovery,estimate_quantity"
 ).split(",")
 
 

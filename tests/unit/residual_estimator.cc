@@ -4,6 +4,7 @@
 
 #include "sampled_body.h"
 #include <viscoplastic_contact/error/kelly_estimator.h>
+#include <viscoplastic_contact/error/recovery_estimate.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 
 #include <cmath>
@@ -177,6 +178,72 @@ namespace
                          0.25 / (2. * mu);
         EXPECT_NEAR(estimate[cell->active_cell_index()], expected, 1e-14);
       }
+  }
+
+
+
+  /// A kink where the materials meet is no error.
+  TYPED_TEST(Estimate, RecoveredStrainOfTwoMaterialsIsThatOfEach)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const bool has_two : {false, true})
+      for (const bool at_quadrature_points : {false, true})
+        {
+          SampledBody<dim> body(box_with<dim>("set Role = clamped\n") +
+                                  "subsection Material 0\nend\n"
+                                  "subsection Material 3\n"
+                                  "set Young's modulus = 7\nend\n",
+                                at_quadrature_points);
+          for (const auto &cell : body.triangulation.active_cell_iterators())
+            cell->set_material_id(has_two && cell->center()[0] > 1. ? 3 : 0);
+          body.refine_where(
+            [](const Point<dim> &x) { return x[0] > 0.7 && x[dim - 1] < 0.5; });
+          body.set_up();
+          const auto field = [](const Point<dim> &x) {
+            Tensor<1, dim> u = linear_displacement(x);
+            u[1] += 0.7 * std::max(0., x[0] - 1.);
+            return u;
+          };
+          State<dim> state;
+          state.u = body.interpolate(field);
+          const double estimate =
+            total_estimate(squared_recovery_estimate(*body.stress_space, state),
+                           body.triangulation);
+          if (has_two)
+            EXPECT_LT(estimate, 1e-13);
+          else
+            EXPECT_GT(estimate, 0.01);
+        }
+  }
+
+
+
+  /// Of a quadratic displacement the recovered strain is that of the function
+  /// inside, and as far from it as that of the cells at the boundary.
+  TYPED_TEST(Estimate, RecoveredStrainTellsTheError)
+  {
+    constexpr int    dim = TypeParam::value;
+    SampledBody<dim> body(box_with<dim>("set Role = clamped\n"));
+    body.refine_where([](const Point<dim> &) { return true; });
+    body.set_up();
+    State<dim> state;
+    state.u = body.interpolate([](const Point<dim> &x) {
+      Tensor<1, dim> u;
+      u[0] = x[0] * x[0];
+      return u;
+    });
+    const Vector<double> estimate =
+      squared_recovery_estimate(*body.stress_space, state);
+    const double lambda = 0.3 / (1.3 * 0.4);
+    for (const auto &cell : body.triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const double h        = cell->extent_in_direction(0);
+          const double expected = (lambda + 2. * mu) * h * h / 3.;
+          EXPECT_NEAR(estimate[cell->active_cell_index()],
+                      expected * cell->measure(),
+                      1e-14);
+        }
   }
 
 

@@ -18,6 +18,10 @@ namespace Viscoplastic
     /// have left, and what cell means cannot hold. A history at quadrature
     /// points is compared at these points only.
     double memory = 0.;
+    /// What squared_recovery_estimate() makes of the error in the energy norm.
+    double recovery = 0.;
+    /// The squared error in the energy norm by active cell, of owned cells.
+    Vector<double> squared_energy_by_cell;
   };
 
   /// The norms whose squares are the sums of @p squares over all ranks.
@@ -26,8 +30,9 @@ namespace Viscoplastic
   square_roots(const SolutionNorms &squares, const MPI_Comm communicator);
 
   /**
-   * The errors by quadrature with three points in each direction. Norms of
-   * stress, multiplier and memory stay zero where the solution has no stress.
+   * The errors by quadrature with three points in each direction, without any
+   * estimate. Norms of stress, multiplier and memory stay zero where the
+   * solution has no stress.
    * @p multiplier_density is null without friction. Collective.
    */
   template <int dim>

@@ -500,6 +500,12 @@ namespace Viscoplastic
                       "Number of cells beyond which refinement only keeps pace "
                       "with coarsening.",
                       Patterns::Integer(1));
+    prm.add_parameter("Memory budget",
+                      memory_budget,
+                      "Gigabytes that all ranks together may be expected to "
+                      "take, as --check does, good to a factor of 1.5; another "
+                      "bound on the number of cells. 0: none.",
+                      Patterns::Double(0.));
   }
 
 

@@ -2,12 +2,14 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/discretization/energy.h>
+#include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/results/run_phases.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -449,7 +451,11 @@ namespace Viscoplastic
     const auto n_cells = discretization->space.dof_handler.get_triangulation()
                            .n_global_active_cells();
     const RefinementParameters &refinement = scene.parameters.refinement;
-    std::ostringstream          text;
+    const unsigned int          n_in_memory =
+      refinement.memory_budget > 0. ?
+                 cells_in_memory(*discretization, 1e9 * refinement.memory_budget) :
+                 std::numeric_limits<unsigned int>::max();
+    std::ostringstream text;
     text << std::setprecision(3)
          << "Warning: 'Error control/Tolerance' = " << budget->tolerance
          << " has not been kept: at t = " << summary.t
@@ -463,6 +469,10 @@ namespace Viscoplastic
               "or 'Step control/Smallest step' is too large.";
     else if (!scene.is_adaptive())
       text << "the mesh is fixed by 'Mesh refinement/Strategy'.";
+    else if (n_in_memory < refinement.cell_budget &&
+             n_cells > 0.8 * n_in_memory)
+      text << "it takes more memory than 'Mesh refinement/Memory budget' = "
+           << refinement.memory_budget << " GB.";
     else if (n_cells > 0.8 * refinement.cell_budget)
       text << "it takes more cells than 'Mesh refinement/Cell budget' = "
            << refinement.cell_budget << '.';

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
+#include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/error/memory_loss.h>
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/error/solution_errors.h>
@@ -333,6 +334,20 @@ namespace Viscoplastic
 
 
   template <int dim>
+  RefinementParameters
+  ViscoplasticContact<dim>::refinement_limits() const
+  {
+    RefinementParameters limits = parameters.refinement;
+    if (limits.memory_budget > 0.)
+      limits.cell_budget =
+        std::min(limits.cell_budget,
+                 cells_in_memory(*discretization, 1e9 * limits.memory_budget));
+    return limits;
+  }
+
+
+
+  template <int dim>
   void
   ViscoplasticContact<dim>::adapt_mesh()
   {
@@ -343,7 +358,7 @@ namespace Viscoplastic
       {
         if (mark_cells_to_tolerance(triangulation,
                                     squared_indicators,
-                                    parameters.refinement,
+                                    refinement_limits(),
                                     space_ratio(accepted.errors),
                                     keep_memory()))
           change_mesh();
@@ -356,7 +371,7 @@ namespace Viscoplastic
           10. * std::max(1e-10, time_stepper->tolerance(accepted)) *
             std::sqrt(2. * std::max(0., accepted.forces.strain_energy)))
       return;
-    if (mark_cells(triangulation, squared_indicators, parameters.refinement))
+    if (mark_cells(triangulation, squared_indicators, refinement_limits()))
       change_mesh();
   }
 
@@ -414,7 +429,7 @@ namespace Viscoplastic
     if (ratio <= 1. ||
         !mark_cells_to_tolerance(triangulation,
                                  step.end.space_estimate.squared_indicators,
-                                 parameters.refinement,
+                                 refinement_limits(),
                                  ratio,
                                  n_refinements == 0 ? keep_memory() :
                                                       std::function<void()>()))
@@ -442,7 +457,7 @@ namespace Viscoplastic
     if (!scene.is_adaptive() || allowed == 0. || estimate <= allowed ||
         !mark_cells_to_tolerance(triangulation,
                                  squared_indicators,
-                                 parameters.refinement,
+                                 refinement_limits(),
                                  estimate / allowed))
       return false;
     triangulation.execute_coarsening_and_refinement();

@@ -209,6 +209,14 @@ class Missed(TestCase):
         )
         self.assertLess(result["cells"].max(), 260)
 
+    def test_for_memory(self):
+        result = self.check(
+            "'Mesh refinement/Memory budget' = 0.193 GB",
+            **{"Mesh refinement/Memory budget": 0.193},
+        )
+        self.assertGreater(result["cells"].max(), 200)
+        self.assertLess(result["cells"].max(), 1500)
+
     def test_for_levels(self):
         self.check(
             "'Mesh refinement/Maximal level' = 2",

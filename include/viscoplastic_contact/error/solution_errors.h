@@ -30,10 +30,10 @@ namespace Viscoplastic
   square_roots(const SolutionNorms &squares, const MPI_Comm communicator);
 
   /**
-   * The errors by quadrature with three points in each direction, without any
-   * estimate. Norms of stress, multiplier and memory stay zero where the
-   * solution has no stress.
-   * @p multiplier_density is null without friction. Collective.
+   * The errors by quadrature with three points in each direction, without the
+   * recovery's. Norms of stress, multiplier and memory stay zero where the
+   * solution has no stress. @p multiplier_density is null without friction.
+   * Collective.
    */
   template <int dim>
   SolutionErrors

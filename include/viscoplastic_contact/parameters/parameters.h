@@ -195,6 +195,7 @@ namespace Viscoplastic
     unsigned int       minimal_level       = 0;
     unsigned int       maximal_level       = 15;
     unsigned int       cell_budget         = 100000;
+    double             memory_budget       = 0.; // GB; 0: no bound
 
     void
     declare(ParameterHandler &prm);

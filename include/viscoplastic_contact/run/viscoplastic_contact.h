@@ -136,6 +136,11 @@ namespace Viscoplastic
     void
     check_compatibility(const Load<dim> &load);
 
+    /// Those of the scene, with the number of cells that its bound on memory
+    /// allows. Collective.
+    RefinementParameters
+    refinement_limits() const;
+
     /// Change the mesh, between two steps, if the estimate says so.
     void
     adapt_mesh();

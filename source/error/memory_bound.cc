@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/memory_bound.h>
+#include <viscoplastic_contact/linear_solvers/solver_choice.h>
+
+#include <cmath>
+#include <limits>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Of the program on each rank, most of it for its libraries; of mesh,
+    /// spaces and states by unknown. Measured, see doc/solvers.md.
+    constexpr double bytes_of_rank = 0.19e9, bytes_of_unknown = 700.;
+  } // namespace
+
+
+
+  template <int dim>
+  unsigned int
+  cells_in_memory(const Discretization<dim> &present, const double bytes)
+  {
+    const SolverDemand demand = present.solver_demand();
+    const double       n_cells =
+      present.space.dof_handler.get_triangulation().n_global_active_cells();
+    const auto fits = [&](const double factor) {
+      SolverDemand finer = demand;
+      finer.n_dofs       = std::llround(factor * demand.n_dofs);
+      finer.n_face_dofs =
+        std::llround(std::pow(factor, (dim - 1.) / dim) * demand.n_face_dofs);
+      return bytes_of_rank * demand.n_ranks + bytes_of_unknown * finer.n_dofs +
+               expected_memory(choose_bulk_solver(finer), finer) <=
+             bytes;
+    };
+    // A solver that takes over may need less again: the first one that does not
+    // fit counts.
+    double factor = 1. / n_cells;
+    while (fits(1.05 * factor) &&
+           1.05 * factor * n_cells < std::numeric_limits<int>::max())
+      factor *= 1.05;
+    return static_cast<unsigned int>(factor * n_cells);
+  }
+
+
+
+  template unsigned int
+  cells_in_memory<2>(const Discretization<2> &, const double);
+  template unsigned int
+  cells_in_memory<3>(const Discretization<3> &, const double);
+} // namespace Viscoplastic

@@ -65,15 +65,17 @@ namespace Viscoplastic
 
   SignalRequests::Request
   SignalRequests::agree(const MPI_Comm communicator,
-                        const bool     checkpoint) const
+                        const bool     checkpoint,
+                        const bool     is_late) const
   {
     // A signal between these lines asks for the checkpoint that comes anyway.
     const bool requested = checkpoint_requested != 0;
     if (requested)
       checkpoint_requested = 0;
-    const std::array<int, 2> mine{
-      {checkpoint || requested ? 1 : 0, static_cast<int>(stop_signal)}};
-    std::array<int, 2> all = mine;
+    const std::array<int, 3> mine{{checkpoint || requested ? 1 : 0,
+                                   static_cast<int>(stop_signal),
+                                   is_late ? 1 : 0}};
+    std::array<int, 3>       all = mine;
     dealii::Utilities::MPI::max(dealii::ArrayView<const int>(mine.data(),
                                                              mine.size()),
                                 communicator,
@@ -82,6 +84,8 @@ namespace Viscoplastic
     request.checkpoint = all[0] != 0;
     if (all[1] != 0)
       request.stop = all[1] == SIGINT ? "SIGINT" : "SIGTERM";
+    else if (all[2] != 0)
+      request.stop = "'Checkpoint/Wall time limit'";
     return request;
   }
 

@@ -429,7 +429,9 @@ namespace Viscoplastic
       "estimator with as many cells, or, of a scene with "
       "`Error control/Tolerance', runs to tolerances that "
       "halve down to this one. If empty, the last for scenes "
-      "with a tolerance and the first for others.",
+      "with a tolerance and the first for others. Where no exact solution is "
+      "known, a scene with a tolerance has a run to half of it as reference, "
+      "others one of the finest uniform mesh.",
       Patterns::List(Patterns::Selection("uniform|adaptive|tolerance"), 0, 3));
     prm.add_parameter("Time schemes",
                       time_schemes,
@@ -568,6 +570,15 @@ namespace Viscoplastic
                       wall_time_interval,
                       "Time between checkpoints by the clock on the wall; they "
                       "are written at the end of a step. 0 for none. Unit: "
+                      "seconds.",
+                      Patterns::Double(0.));
+    prm.add_parameter("Wall time limit",
+                      wall_time_limit,
+                      "How long the run may take, counted from the start of "
+                      "the program. It ends after the last step beyond which "
+                      "another, as long as that one, would pass the limit: "
+                      "with a checkpoint, the estimated error so far, and "
+                      "exit code 3; --restart goes on. 0 for no limit. Unit: "
                       "seconds.",
                       Patterns::Double(0.));
     prm.add_parameter("Directory",

@@ -350,6 +350,21 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::optional<double>
+  Recorder<dim>::relative_error(const ErrorEstimate &errors) const
+  {
+    if (!has_error_estimate)
+      return {};
+    const double size =
+      budget ? budget->size(run.controlled_errors().size) : errors.energy_norm;
+    if (size <= 0.)
+      return {};
+    return (budget ? budget->errors(errors) : errors).total() / size;
+  }
+
+
+
+  template <int dim>
   void
   Recorder<dim>::report_progress(const AcceptedStep<dim>   &step,
                                  const StepQuantities<dim> &quantities)
@@ -371,16 +386,7 @@ namespace Viscoplastic
       }
     if (scene.is_adaptive() && !has_error_estimate)
       present.error_estimate = quantities.refinement_estimate;
-    if (has_error_estimate)
-      {
-        const ErrorEstimate &estimate = step.end.errors;
-        const double         size     = budget ?
-                                          budget->size(run.controlled_errors().size) :
-                                          estimate.energy_norm;
-        if (size > 0.)
-          present.relative_error =
-            (budget ? budget->errors(estimate) : estimate).total() / size;
-      }
+    present.relative_error = relative_error(step.end.errors);
     if (control.may_reject())
       {
         present.expected_steps =

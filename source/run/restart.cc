@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
+#include <iomanip>
 #include <sstream>
 
 namespace Viscoplastic
@@ -152,13 +153,21 @@ namespace Viscoplastic
     is_due |=
       is_last && (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.);
     // The clock of one rank counts.
+    bool         is_late = false;
+    const double now     = recorder.elapsed();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      is_due |=
-        wanted.wall_time_interval > 0. &&
-        recorder.elapsed() - last_checkpoint >= wanted.wall_time_interval;
+      {
+        is_due |= wanted.wall_time_interval > 0. &&
+                  now - last_checkpoint >= wanted.wall_time_interval;
+        // Would another step as long as this one end in time?
+        is_late = wanted.wall_time_limit > 0. &&
+                  now + (now - last_step) >= wanted.wall_time_limit;
+      }
+    last_step = now;
 
-    const SignalRequests::Request request = signals.agree(communicator, is_due);
-    const bool                    stops   = request.stop != nullptr && !is_last;
+    const SignalRequests::Request request =
+      signals.agree(communicator, is_due, is_late);
+    const bool stops = !request.stop.empty() && !is_last;
     if (!request.checkpoint && !stops)
       return "";
     write_checkpoint();
@@ -173,10 +182,15 @@ namespace Viscoplastic
           out << "Checkpoint of " << text.str() << std::endl;
         return "";
       }
-    const std::string interruption = std::string(request.stop) +
+    std::ostringstream error;
+    if (const auto relative = recorder.relative_error(accepted.errors))
+      error << " The error up to there is estimated as " << std::setprecision(2)
+            << 100. * *relative << " %.";
+    const std::string interruption = request.stop +
                                      " has ended the run after the checkpoint "
                                      "of " +
-                                     text.str() + "; --restart goes on.";
+                                     text.str() + "; --restart goes on." +
+                                     error.str();
     console.log() << interruption << std::endl;
     return interruption;
   }

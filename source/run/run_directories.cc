@@ -71,7 +71,8 @@ namespace Viscoplastic
   RunDirectories::begin_checkpoints()
   {
     const CheckpointParameters &wanted = parameters.checkpoint;
-    if (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.)
+    if (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0. ||
+        wanted.wall_time_limit > 0.)
       {
         checkpoints.make_directory();
         lock();

@@ -94,6 +94,7 @@ namespace Viscoplastic
   std::string
   ViscoplasticContact<dim>::make_steps(const SignalRequests *signals)
   {
+    last_step = recorder.elapsed();
     while (!is_finished())
       {
         if (adaptation_is_due())

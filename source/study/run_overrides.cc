@@ -232,6 +232,7 @@ namespace Viscoplastic
             (is_reference ? "true" : "false"),
           std::string("Checkpoint/Every n steps=0"),
           std::string("Checkpoint/Wall time interval=0"),
+          std::string("Checkpoint/Wall time limit=0"),
           "Checkpoint/Directory=" + place + "/checkpoint",
           std::string("Error control/Two-level comparison=false")})
       result.push_back(assignment);

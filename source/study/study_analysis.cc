@@ -171,7 +171,9 @@ namespace Viscoplastic
       }
     if (measure == "estimate_total")
       return fit_error_parts(samples, space, time);
-    if (reference == nullptr || (is_norm(measure) && !are_differences))
+    // A reference with meshes of its own is on no ladder of h and k.
+    if (reference == nullptr || reference->numbers.count("tolerance") > 0 ||
+        (is_norm(measure) && !are_differences))
       return fit_error(samples);
     return fit_error(samples,
                      Finer{reference->number("h"),

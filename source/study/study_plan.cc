@@ -48,7 +48,7 @@ namespace Viscoplastic
     , strategies(items(parameters.strategies,
                        runs.scene.error_control.has_tolerance() ? "tolerance" :
                                                                   "uniform"))
-    , reference_strategy(contains(strategies, "tolerance") ?
+    , reference_strategy(runs.scene.error_control.has_tolerance() ?
                            MeshStrategy::tolerance :
                            MeshStrategy::uniform)
     , console(console)
@@ -61,12 +61,15 @@ namespace Viscoplastic
                   "'Study/Strategies' has tolerance, but the scene has "
                   "none to begin with; set 'Error control/Tolerance', "
                   "or take uniform or adaptive."));
-    AssertThrow(has_exact_solution || parameters.levels >= 3,
+    AssertThrow(has_exact_solution ||
+                  reference_strategy == MeshStrategy::tolerance ||
+                  parameters.levels >= 3,
                 ExcMessage(
                   "'Study/Levels' = " + std::to_string(parameters.levels) +
                   " is too few for a scene without an exact solution: whether "
                   "its finest run can serve as a reference shows only in three "
-                  "levels; take at least 3, or give 'Exact solution'."));
+                  "levels; take at least 3, or give 'Exact solution' or "
+                  "'Error control/Tolerance'."));
     make_plan();
   }
 
@@ -140,6 +143,11 @@ namespace Viscoplastic
         if (is_uniform)
           for (int level = last - 1; level <= last; ++level)
             add(first, level, level, Ladder::both);
+        else if (!contains(strategies, "tolerance"))
+          // Two that tell how long it will take.
+          for (int level = last - 3; level <= last - 2; ++level)
+            if (level >= runs.coarsest_tolerance_level())
+              add(first, level, level, Ladder::both);
         add(first, last + 1, last + 1, Ladder::both).is_reference = true;
       }
 

@@ -53,6 +53,7 @@ NONSENSE = {
     "Output/Fields every": "-1 x",
     "Checkpoint/Keep": "-1 0 x",
     "Checkpoint/Wall time interval": "-1 nan",
+    "Checkpoint/Wall time limit": "-1 nan",
     "Loads/Body force": "1 nan;0 q;q",
     "Initial state/Stress": "1 nan;0;0;0 q;0;0;0",
     "Initial state/Equilibrate": "maybe",

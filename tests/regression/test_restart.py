@@ -494,6 +494,26 @@ class Triggers(RestartCase):
             job.run()
             self.assertEqual(job.steps(), [15, 16])
 
+    def test_wall_time_limit(self):
+        """Ended before the step that would pass it, with the error so far."""
+        bars = {**SLAB, "Error control/Error bar": "true"}
+        with Job("slab", bars) as reference, Job("slab", bars) as job:
+            reference.run()
+            job.overrides["Checkpoint/Wall time limit"] = 1e-6
+            message = job.run(code=3).stderr
+            self.assertEqual(job.steps(), [1])
+            self.assertRegex(
+                message,
+                r"'Checkpoint/Wall time limit' has ended the run after the checkpoint "
+                r"of step 1 .*; --restart goes on\. The error up to there is "
+                r"estimated as [0-9.]+ %\.",
+            )
+            job.run("--restart", code=3)
+            self.assertEqual(job.steps(), [1, 2])
+            job.overrides["Checkpoint/Wall time limit"] = 1000
+            job.run("--restart")
+            self.assertIdentical(job.results, reference.results)
+
     def test_no_traces_without_checkpoints(self):
         with Job("slab", SLAB) as job:
             job.run()

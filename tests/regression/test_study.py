@@ -299,6 +299,19 @@ class Ladders(TestCase):
                 self.assertClose(price["predicted_error"], price["tolerance"], 1e-2)
             text = (folder.study / "study.md").read_text()
             self.assertIn("Observed exponents against 1/error", text)
+            # The same reference for given meshes, down to the finest of them.
+            folder.set(Study__Strategies="uniform, adaptive")
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            about = json.loads((folder.study / "study.json").read_text())
+            self.assertEqual(about["reference_run"], "tolerance_0.025")
+            errors = [
+                row["error_energy"]
+                for strategy in ("uniform", "adaptive")
+                for row in folder.ladder("both", strategy=strategy)
+            ]
+            self.assertEqual(len(errors), 6)
+            self.assertTrue(all(0.01 < error < 0.4 for error in errors), errors)
             # With a smaller tolerance those of before are there already.
             before = folder.finished()
             folder.set(Error_control__Tolerance=0.025, Study__Strategies="tolerance")

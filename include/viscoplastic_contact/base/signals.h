@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include <string>
+
 namespace Viscoplastic
 {
   /**
@@ -23,16 +25,20 @@ namespace Viscoplastic
     struct Request
     {
       bool checkpoint = false;
-      /// Null unless the run is to end: "SIGTERM" or "SIGINT".
-      const char *stop = nullptr;
+      /// What ends the run, if it is to end: "SIGTERM", "SIGINT" or the limit
+      /// on time.
+      std::string stop;
     };
 
     /**
      * What has been asked of any rank since the last call, the same on all of
-     * them; @p checkpoint adds a wish of this rank. Collective.
+     * them; @p checkpoint and @p is_late, that there is no time for another
+     * step, add what this rank knows. Collective.
      */
     Request
-    agree(const MPI_Comm communicator, const bool checkpoint) const;
+    agree(const MPI_Comm communicator,
+          const bool     checkpoint,
+          const bool     is_late) const;
   };
 
 

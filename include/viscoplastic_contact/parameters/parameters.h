@@ -208,6 +208,7 @@ namespace Viscoplastic
   {
     unsigned int every_n_steps      = 0;
     double       wall_time_interval = 0.;
+    double       wall_time_limit    = 0.; // s; 0: none
     std::string  directory;
     unsigned int keep = 2;
 

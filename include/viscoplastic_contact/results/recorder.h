@@ -115,6 +115,12 @@ namespace Viscoplastic
       return earlier_seconds + elapsed();
     }
 
+    /// The error bar up to here as the progress shows it: over the energy norm,
+    /// or, in runs to a tolerance, over what that is relative to. Nothing
+    /// where there is none.
+    std::optional<double>
+    relative_error(const ErrorEstimate &errors) const;
+
     /// Write to, or read from, an archive what adds up over the run.
     template <typename Archive>
     void

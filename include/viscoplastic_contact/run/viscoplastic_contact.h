@@ -226,7 +226,8 @@ namespace Viscoplastic
     TimerOutput                timer;  // wall time by phase
     KnownSolution<dim>         known_solution;
     Recorder<dim>              recorder;
-    /// When the last checkpoint was written, as the recorder's clock has it.
-    double last_checkpoint = 0.;
+    /// When the last checkpoint was written and the last step ended, as the
+    /// recorder's clock has it.
+    double last_checkpoint = 0., last_step = 0.;
   };
 } // namespace Viscoplastic

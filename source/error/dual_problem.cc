@@ -19,7 +19,7 @@ namespace Viscoplastic
                                 const QuantityOfInterest  &quantity)
     : discretization(discretization)
     , quantity(quantity)
-    , load(discretization.space.owned_vector())
+    , point_load(discretization.space.owned_vector())
   {
     if (quantity.kind != QuantityOfInterest::Kind::displacement)
       return;
@@ -27,7 +27,7 @@ namespace Viscoplastic
     probe.emplace(space, space.scene.output_points[quantity.number]);
     std::vector<double> cartesian(space.relevant.n_elements());
     probe->add_force(Point<dim>::unit_vector(quantity.component), cartesian);
-    space.add_cartesian_load(cartesian, load);
+    space.add_cartesian_load(cartesian, point_load);
   }
 
 
@@ -42,11 +42,48 @@ namespace Viscoplastic
       {
         case QuantityOfInterest::Kind::friction_force:
           return discretization.face->resultant(state.friction)[d];
+        case QuantityOfInterest::Kind::friction_dissipation:
+          {
+            const FrictionState &friction = state.friction;
+            double               work     = 0.;
+            for (unsigned int p = 0; p < friction.n_points(); ++p)
+              if (!friction.sticks[p])
+                work += friction.multiplier[p] * friction.slip[p];
+            return discretization.face->layout().sum(work);
+          }
         case QuantityOfInterest::Kind::reaction:
           return reactions(discretization.space, forces).at(quantity.number)[d];
         default:
           return probe->value(state.u)[d];
       }
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  DualProblem<dim>::right_side(const FrictionState &friction) const
+  {
+    DistributedVector       result = point_load;
+    const ContactFace<dim> *face   = discretization.slipping_face();
+    if (quantity.kind == QuantityOfInterest::Kind::friction_dissipation &&
+        face != nullptr)
+      {
+        const FrictionFace &layout = face->layout();
+        Vector<double>      force(layout.n_dofs());
+        for (unsigned int p = 0; p < friction.n_points(); ++p)
+          if (!friction.sticks[p])
+            {
+              const FrictionFace::Point &point = layout.points[p];
+              layout.set_node_values(layout.node_values(force, point.node) +
+                                       node_force(point,
+                                                  friction.multiplier[p]),
+                                     point.node,
+                                     force);
+            }
+        face->restriction().add(1., force, result);
+      }
+    return result;
   }
 
 
@@ -120,12 +157,14 @@ namespace Viscoplastic
     const Discretization<dim>  &d     = discretization;
     const AdmissibleSpace<dim> &space = d.space;
     DualSolution<dim>           dual;
-    dual.w = prescribed();
+    dual.w                       = prescribed();
+    const DistributedVector load = right_side(friction);
+    const bool is_zero = load.l2_norm() == 0. && dual.w.l2_norm() == 0.;
     // Rounding of the step that has been solved is not that of w.
     solver.set_rounding_error(0.);
-    if (d.slipping_face() == nullptr)
+    if (d.slipping_face() == nullptr && !is_zero)
       solver.solve(load, dual.w, dual_tolerance);
-    else
+    else if (!is_zero)
       {
         const FrictionFace &face   = d.face->layout();
         FrictionState       linear = friction;
@@ -154,7 +193,8 @@ namespace Viscoplastic
     space.to_cartesian(dual.w, dual.cartesian);
     if (d.face)
       {
-        DistributedVector force = load;
+        // The load of a point does not hold w, that of friction does.
+        DistributedVector force = point_load;
         force -= elastic;
         dual.density = density(d.face->restriction().gather(force));
       }

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/error/error_estimator.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Viscoplastic
@@ -21,48 +22,105 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  QuantityEstimator<dim>::assess(BulkSolver          &solver,
-                                 EvaluatedState<dim> &end) const
+  QuantityEstimator<dim>::settle(const EvaluatedState<dim> &accepted,
+                                 const FrictionState       &friction,
+                                 QuantityEstimate          &estimate) const
   {
-    const StressSpace<dim> &stress_space = discretization.stress_space;
-    const State<dim>       &state        = end.state;
-    const DualSolution<dim> dual = dual_problem.solve(solver, state.friction);
-    const auto              products = space_estimator.multiply(state, dual);
-
+    const FrictionState &old = accepted.state.friction;
+    // Bounds of what has slipped and of what of it does no more, and the
+    // quadrature.
     std::vector<double> sums(3, 0.);
-    Vector<double>      indicators(products.of_both);
-    for (unsigned int c = 0; c < indicators.size(); ++c)
+    for (unsigned int p = 0; p < friction.n_points(); ++p)
       {
-        sums[0] += products.of_both[c];
-        sums[1] += products.of_dual[c];
-        indicators[c] = std::abs(indicators[c]);
-        sums[2] += indicators[c];
+        if (!old.sticks[p])
+          {
+            sums[0] += old.bound[p];
+            if (friction.sticks[p] ||
+                friction.multiplier[p] * old.multiplier[p] < 0.)
+              sums[1] += old.bound[p];
+          }
+        if (!friction.sticks[p])
+          sums[2] -=
+            0.5 * (friction.bound[p] - old.bound[p]) * friction.slip[p].norm();
       }
     Utilities::MPI::sum(sums, discretization.space.communicator, sums);
-    double time = 0.;
-    if (discretization.scene().has_viscosity()) // collective
+    const QuantityEstimate &before = accepted.errors.quantity;
+    const double            share  = sums[0] > 0. ? sums[1] / sums[0] : 0.;
+    estimate.settled_space =
+      before.settled_space +
+      share * (before.space_correction - before.settled_space);
+    estimate.settled_time =
+      before.settled_time + sums[2] +
+      share * (before.time_correction - before.settled_time);
+  }
+
+
+
+  template <int dim>
+  void
+  QuantityEstimator<dim>::assess(BulkSolver                &solver,
+                                 const EvaluatedState<dim> &accepted,
+                                 EvaluatedState<dim>       &end) const
+  {
+    const Discretization<dim> &d        = discretization;
+    const State<dim>          &state    = end.state;
+    const ErrorEstimate       &errors   = end.errors;
+    const QuantityEstimate    &before   = accepted.errors.quantity;
+    QuantityEstimate          &estimate = end.errors.quantity;
+    const bool                 is_sum   = d.scene().quantity->is_sum();
+    estimate.value                      = dual_problem.value(state, end.forces);
+    if (is_sum)
       {
-        DistributedVector load = discretization.space.owned_vector();
-        add_irreversible_load(stress_space, state.time_error, load);
-        time = dual_problem.sign() * (load * dual.w);
+        estimate.value += before.value;
+        // Where nothing slips for a while, what the body will remember is
+        // judged by the last slip.
+        estimate.dual_norm  = before.dual_norm;
+        estimate.dual_error = before.dual_error;
+        settle(accepted, state.friction, estimate);
       }
 
-    const ErrorEstimate &errors   = end.errors;
-    QuantityEstimate    &estimate = end.errors.quantity;
-    const double         mesh     = dual_problem.sign() * sums[0];
-    estimate.value                = dual_problem.value(state, end.forces);
-    estimate.correction           = mesh + time;
-    estimate.unsigned_space       = safety * sums[2];
-    estimate.dual_norm            = dual.norm;
-    estimate.dual_error           = std::sqrt(sums[1]);
-    estimate.space                = safety * std::abs(mesh);
-    estimate.time                 = std::abs(time);
-    estimate.friction             = errors.friction * dual.norm;
-    estimate.transfer             = errors.transfer * estimate.dual_error;
-    estimate.algebraic            = errors.algebraic * dual.norm;
-    estimate.initial              = errors.initial * estimate.dual_error;
-    if (end.space_estimate.squared_indicators.size() > 0)
-      end.space_estimate.squared_indicators = std::move(indicators);
+    const DualSolution<dim> dual = dual_problem.solve(solver, state.friction);
+    double                  mesh = 0., time = 0.;
+    if (dual.norm > 0.)
+      {
+        const auto          products = space_estimator.multiply(state, dual);
+        std::vector<double> sums(3, 0.);
+        Vector<double>      indicators(products.of_both);
+        for (unsigned int c = 0; c < indicators.size(); ++c)
+          {
+            sums[0] += products.of_both[c];
+            sums[1] += products.of_dual[c];
+            indicators[c] = std::abs(indicators[c]);
+            sums[2] += indicators[c];
+          }
+        Utilities::MPI::sum(sums, d.space.communicator, sums);
+        mesh                    = dual_problem.sign() * sums[0];
+        estimate.dual_norm      = dual.norm;
+        estimate.dual_error     = std::sqrt(sums[1]);
+        estimate.unsigned_space = safety * sums[2];
+        if (d.scene().has_viscosity()) // collective
+          {
+            DistributedVector load = d.space.owned_vector();
+            add_irreversible_load(d.stress_space, state.time_error, load);
+            time = dual_problem.sign() * (load * dual.w);
+          }
+        if (end.space_estimate.squared_indicators.size() > 0)
+          end.space_estimate.squared_indicators = std::move(indicators);
+      }
+    estimate.space_correction = estimate.settled_space + mesh;
+    estimate.time_correction  = estimate.settled_time + time;
+    estimate.space            = safety * std::abs(estimate.space_correction);
+    estimate.time             = std::abs(estimate.time_correction);
+    estimate.friction         = errors.friction * estimate.dual_norm;
+    estimate.transfer         = errors.transfer * estimate.dual_error;
+    estimate.algebraic        = errors.algebraic * estimate.dual_norm;
+    estimate.initial          = errors.initial * estimate.dual_error;
+    if (is_sum)
+      for (const auto part : {&ErrorParts::friction,
+                              &ErrorParts::transfer,
+                              &ErrorParts::algebraic,
+                              &ErrorParts::initial})
+        estimate.*part = std::max(before.*part, estimate.*part);
   }
 
 

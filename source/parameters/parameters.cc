@@ -379,9 +379,10 @@ namespace Viscoplastic
     prm.add_parameter("Quantity",
                       quantity,
                       "A column of statistics.csv whose error is estimated by "
-                      "duality, too: a component of the friction force, of the "
-                      "reaction of a boundary, or of the displacement of one "
-                      "of `Output/Points', as in `friction_force_x', "
+                      "duality, too: the work of friction, or a component of "
+                      "the friction force, of the reaction of a boundary, or "
+                      "of the displacement of one of `Output/Points', as in "
+                      "`friction_dissipation', `friction_force_x', "
                       "`reaction_1_y', `point0_x'. `Tolerance' is that of this "
                       "quantity then, relative to its largest value, and "
                       "meshes are refined where it feels their errors. "

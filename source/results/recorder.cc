@@ -53,7 +53,8 @@ namespace Viscoplastic
       if (scene.quantity)
         {
           const QuantityEstimate &quantity = estimate.quantity;
-          row.add("quantity_correction", quantity.correction);
+          row.add("quantity_correction",
+                  quantity.space_correction + quantity.time_correction);
           row.add("quantity_space", quantity.space);
           row.add("quantity_time", quantity.time);
           row.add("quantity_other",

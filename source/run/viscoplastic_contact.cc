@@ -392,13 +392,23 @@ namespace Viscoplastic
       budget->space(budget->errors(errors), size, scene.has_time_error());
     if (!scene.quantity)
       return errors.space / allowed;
-    // Quantities behave like squares of the energy norm. Where contributions
-    // happen to cancel, none of them may become larger.
     const QuantityEstimate &quantity = errors.quantity;
-    return std::sqrt(
-      std::max(quantity.space,
-               std::min(quantity.unsigned_space, 0.9 * allowed)) /
-      allowed);
+    if (quantity.unsigned_space == 0.) // nor does friction that cannot change
+      return 1.;
+    // Quantities behave like squares of the energy norm. Where contributions
+    // happen to cancel, none of them may become larger. What is settled stays
+    // as it is on any mesh.
+    constexpr double safety  = QuantityEstimator<dim>::safety;
+    const double     settled = safety * std::abs(quantity.settled_space),
+                 open        = std::max(0.1 * allowed, allowed - settled),
+                 of_mesh     = safety * std::abs(quantity.space_correction -
+                                             quantity.settled_space),
+                 ratio       = std::sqrt(
+                   std::max(of_mesh,
+                            std::min(quantity.unsigned_space, 0.9 * open)) /
+                   open);
+    // A face that hardly slips for a while will slip again.
+    return scene.quantity->is_sum() ? std::max(1., ratio) : ratio;
   }
 
 

@@ -24,7 +24,11 @@ namespace Viscoplastic
     for (const auto &[id, condition] : boundary)
       has_friction |= condition.has_friction();
     if (has_friction)
-      add(Kind::friction_force, 0, "friction_force");
+      {
+        add(Kind::friction_force, 0, "friction_force");
+        known.push_back(
+          {Kind::friction_dissipation, 0, 0, "friction_dissipation"});
+      }
     for (const auto &[id, condition] : boundary)
       if (condition.constrains())
         add(Kind::reaction, id, "reaction_" + std::to_string(id));

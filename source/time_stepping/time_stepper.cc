@@ -222,7 +222,8 @@ namespace Viscoplastic
                             accepted,
                             old_rate,
                             end);
-    assess_quantity(end);
+    if (quantity_estimator)
+      quantity_estimator->assess(solver_of_elasticity().bulk(), accepted, end);
     const ErrorEstimate &estimate = end.errors;
     StepErrors           errors;
     errors.indicator =
@@ -246,16 +247,6 @@ namespace Viscoplastic
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
       throw StepFailure(state.n, state.t, "the solution is not finite.");
     return errors;
-  }
-
-
-
-  template <int dim>
-  void
-  TimeStepper<dim>::assess_quantity(EvaluatedState<dim> &end)
-  {
-    if (quantity_estimator)
-      quantity_estimator->assess(solver_of_elasticity().bulk(), end);
   }
 
 

@@ -49,6 +49,7 @@ namespace
     constexpr int                  dim = TypeParam::value;
     const std::vector<std::string> columns{
       "friction_force_x",
+      "friction_dissipation",
       "reaction_" + std::to_string(2 * dim - 1) + "_x",
       "reaction_" + std::to_string(2 * dim - 2) + "_" + "xyz"[dim - 1],
       "point0_x",
@@ -183,7 +184,7 @@ namespace
     const std::string known =
       "'Error control/Quantity': 'friction_force_z' is none of the quantities "
       "of this scene whose error can be estimated: friction_force_x, "
-      "friction_force_y, reaction_2_x, reaction_2_y, reaction_3_x, "
+      "friction_force_y, friction_dissipation, reaction_2_x, reaction_2_y, reaction_3_x, "
       "reaction_3_y.";
     expect_refusal([] { SteppingBody<2> body(quantity("friction_force_z")); },
                    known);

@@ -45,7 +45,9 @@ namespace Viscoplastic
    *   of zero: sign = -1;
    * - of the friction force, l = 0, w is the unit direction at points that
    *   stick, and w_c less this direction takes the place of w_c at those that
-   *   slip: sign = 1.
+   *   slip: sign = 1;
+   * - of the work of friction in all steps, as long as what slips goes on in
+   * the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
    */
   template <int dim>
   class DualProblem
@@ -55,12 +57,13 @@ namespace Viscoplastic
     DualProblem(const Discretization<dim> &discretization,
                 const QuantityOfInterest  &quantity);
 
-    /// J of a state. Collective.
+    /// J of a state; the work of friction is that of its step alone.
+    /// Collective.
     double
     value(const State<dim> &state, const Forces<dim> &forces) const;
 
-    /// Solve with a solver for the matrix of a(.,.). Collective. Throws
-    /// ExcMessage.
+    /// Solve with a solver for the matrix of a(.,.). Zero for the work of
+    /// friction where nothing slips. Collective. Throws ExcMessage.
     DualSolution<dim>
     solve(BulkSolver &solver, const FrictionState &friction) const;
 
@@ -71,6 +74,10 @@ namespace Viscoplastic
     }
 
   private:
+    /// l, in frames.
+    DistributedVector
+    right_side(const FrictionState &friction) const;
+
     /// The prescribed values of w, in frames.
     DistributedVector
     prescribed() const;
@@ -82,6 +89,6 @@ namespace Viscoplastic
     const Discretization<dim>     &discretization;
     const QuantityOfInterest      &quantity;
     std::optional<PointProbe<dim>> probe;
-    DistributedVector              load; // l
+    DistributedVector              point_load; // l of a displacement
   };
 } // namespace Viscoplastic

@@ -49,9 +49,12 @@ namespace Viscoplastic
   struct QuantityEstimate : public ErrorParts
   {
     double value = 0.;
-    /// What is to be added to the value: the error of mesh and time steps with
-    /// its sign, as far as it is known.
-    double correction = 0.;
+    /// What is to be added to the value: the errors of mesh and time steps with
+    /// their signs, as far as they are known.
+    double space_correction = 0., time_correction = 0.;
+    /// Of a sum over the steps: the parts of these that later steps can no
+    /// longer change.
+    double settled_space = 0., settled_time = 0.;
     /// The sum of what the cells contribute to the error of the mesh, without
     /// signs.
     double unsigned_space = 0.;
@@ -64,7 +67,8 @@ namespace Viscoplastic
     exchange(Archive &archive)
     {
       ErrorParts::exchange(archive);
-      archive &value &correction &unsigned_space &dual_norm &dual_error;
+      archive &value &space_correction &time_correction &settled_space
+        &settled_time &unsigned_space &dual_norm &dual_error;
     }
   };
 

@@ -24,6 +24,13 @@ namespace Viscoplastic
    * - everything else is known by its norm: slip that turns and the iterations
    *   by a(w, w)^{1/2}, initial data and changes of the mesh, which are
    *   orthogonal to what is constant in cells, by the error of w.
+   *
+   * The work of friction, int rho |s'|, is sum rho_c |s_c| with s_c the slip
+   * since point c has begun to slip: its error is that of J(u) at the end of a
+   * step, and what it was, for points that have come to rest since, when they
+   * did. That share of it is settled (settled_space, settled_time). The bounds
+   * at the ends of steps, in place of those in between, make a quadrature error
+   * -1/2 (rho_n - rho_{n-1}) |s| of known sign, settled at once.
    */
   template <int dim>
   class QuantityEstimator
@@ -38,13 +45,21 @@ namespace Viscoplastic
     QuantityEstimator(const Discretization<dim> &discretization,
                       const SpaceEstimator<dim> &space_estimator);
 
-    /// Add the quantity, its errors and the indicators to a state whose
-    /// estimate in the energy norm is complete. @p solver: for the matrix of
-    /// a(.,.). Collective. Throws ExcMessage.
+    /// Add the quantity, its errors and the indicators to the state at the end
+    /// of a step, whose estimate in the energy norm is complete. @p solver: for
+    /// the matrix of a(.,.). Collective. Throws ExcMessage.
     void
-    assess(BulkSolver &solver, EvaluatedState<dim> &end) const;
+    assess(BulkSolver                &solver,
+           const EvaluatedState<dim> &accepted,
+           EvaluatedState<dim>       &end) const;
 
   private:
+    /// Settle what later steps will not change in the error of a sum.
+    void
+    settle(const EvaluatedState<dim> &accepted,
+           const FrictionState       &friction,
+           QuantityEstimate          &estimate) const;
+
     const Discretization<dim> &discretization;
     const SpaceEstimator<dim> &space_estimator;
     const DualProblem<dim>     dual_problem;

@@ -10,13 +10,15 @@ namespace Viscoplastic
 {
   /**
    * A number whose error is estimated by duality: a column of statistics.csv
-   * that is linear in the displacement and the forces at the end of a step.
+   * that is linear in the displacement and the forces at the end of a step, or
+   * the work of friction, which adds up over the steps.
    */
   struct QuantityOfInterest
   {
     enum class Kind
     {
       friction_force,
+      friction_dissipation,
       reaction,
       displacement // of a point of `Output/Points'
     };
@@ -26,6 +28,12 @@ namespace Viscoplastic
     unsigned int number = 0, component = 0;
     /// The column.
     std::string name;
+
+    bool
+    is_sum() const
+    {
+      return kind == Kind::friction_dissipation;
+    }
   };
 
   /// The quantity that @p column names. Throws ExcMessage if there is none in

@@ -125,10 +125,6 @@ namespace Viscoplastic
     StepSolver<dim> &
     solver_of_elasticity();
 
-    /// Add the error of the quantity of interest, if there is one. Collective.
-    void
-    assess_quantity(EvaluatedState<dim> &end);
-
     const Discretization<dim> &discretization;
     const Scene<dim>          &scene;
     const ErrorEstimator<dim> *error_estimator;

@@ -106,8 +106,8 @@ elements can do, with any mesh.
 {low_regularity}
 ## What an error costs
 
-Three scenes without known solutions; each picture names the error that it
-shows. Below each are the fits $C_h h^p+C_k k^q$ and the factor by which they miss
+Three scenes without known solutions, whose errors are differences to a run to a
+tolerance. Below each are the fits $C_h h^p+C_k k^q$ and the factor by which they miss
 the runs, as root mean square and at worst. The price list of all three:
 
 {prices}
@@ -119,11 +119,13 @@ With `Error control/Tolerance` the run chooses meshes and steps by itself
 error in the energy norm of all steps, estimated and true, over the largest norm.
 
 {known_to_tolerance}
-The scenes of the pictures above, from their coarsest meshes. Errors are
-differences to a run with half of the smallest tolerance or less, as large as
-that run's own error allows, at the ends of phases. Beside each run is what
-uniform meshes take for the same error by the price list (between its errors by a
-power of the error), where that goes so far.
+The scenes of the pictures above and others, from their coarsest meshes, with
+Heun's scheme. Errors are differences to a run to half of the smallest tolerance
+at the ends of phases; cells are means over the steps, and the rate is the power
+of their number by which the error has fallen from the line above: with smooth
+solutions it would be 1/2 in the plane and 1/3 in space. Beside each run is what
+uniform meshes take for the same error: between the best uniform runs of the
+study, and beyond them by its predictions.
 
 {to_tolerance}
 ## What the tolerance of the solver is worth

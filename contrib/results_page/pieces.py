@@ -215,22 +215,6 @@ def prices(runner):
     )
 
 
-def run_to(tolerance, name, files, runner, overrides=None):
-    """The columns of a run to a tolerance, and where its results are."""
-    name = f"to_tolerance/{name}_{tolerance}"
-    columns = runner.run(
-        name,
-        files,
-        {
-            **(overrides or {}),
-            "Error control/Tolerance": tolerance,
-            "Mesh refinement/Cell budget": plan.CELL_BUDGET,
-            "Output/Fields every": "0",
-        },
-    )
-    return columns, runner.directory / name
-
-
 def known_to_tolerance(runner):
     folder = SCENES / "manufactured"
     rows = []
@@ -238,8 +222,16 @@ def known_to_tolerance(runner):
         files = [folder / f"{scene}.prm", *([folder / f"{law}.prm"] if law else [])]
         facts_of = facts(files[0], files[1] if law else None, "")
         for eps in tolerances:
-            name = "_".join([scene, *([law] if law else [])])
-            columns, _ = run_to(eps, name, files, runner)
+            name = "_".join([scene, *([law] if law else []), str(eps)])
+            columns = runner.run(
+                f"to_tolerance/{name}",
+                files,
+                {
+                    "Error control/Tolerance": eps,
+                    "Mesh refinement/Cell budget": plan.CELL_BUDGET,
+                    "Output/Fields every": "0",
+                },
+            )
             rows.append(
                 tables.known_to_tolerance_row(
                     facts_of["scene"], facts_of["law"], eps, columns
@@ -249,36 +241,25 @@ def known_to_tolerance(runner):
 
 
 def to_tolerance(runner):
-    """Errors are differences to a run with a smaller tolerance."""
-    rows = []
-    for name, (tolerances, finest) in plan.TO_TOLERANCE.items():
-        study = diagram_study(name, runner)
-        files = [SCENES / f"{name}.prm"]
-        overrides = {
-            entry: value
-            for entry, value in plan.DIAGRAMS[name][1].items()
-            if not entry.startswith("Study/")
-        }
-        _, reference = run_to(
-            finest, name, files, runner, {**overrides, "Output/Reference fields": "true"}
+    rows, about = [], None
+    for name in (*plan.DIAGRAMS, *plan.TO_TOLERANCE):
+        if name in plan.DIAGRAMS:
+            study = diagram_study(name, runner)
+        else:
+            study = runner.study(
+                f"to_tolerance/{name}",
+                [SCENES / f"{name}.prm"],
+                {**plan.COUPLED, **plan.TO_TOLERANCE[name]},
+            )
+        about = about or study.about
+        rows += tables.to_tolerance_rows(
+            f"`{name}`",
+            study,
+            plan.TARGETS,
+            study.error(),
+            plan.TO_TOLERANCE_SCHEME,
         )
-        for eps in tolerances:
-            columns, _ = run_to(eps, name, files, runner, overrides)
-            # The comparison takes its time: it is made in a run of its own.
-            compared, _ = run_to(
-                eps,
-                f"{name}_compared",
-                files,
-                runner,
-                {**overrides, "Exact solution/Reference directory": reference},
-            )
-            uniform = tables.uniform_seconds(
-                tables.error_of(compared), study, plan.TOLERANCES, study.error()
-            )
-            rows.append(
-                tables.to_tolerance_row(f"`{name}`", eps, columns, compared, uniform)
-            )
-    return tables.table(tables.TO_TOLERANCE_HEADER, rows) + stamp(runner)
+    return tables.table(tables.TO_TOLERANCE_HEADER, rows) + stamp(runner, about)
 
 
 def tolerance(runner):

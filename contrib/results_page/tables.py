@@ -195,7 +195,7 @@ def price(study, variant, tolerance, error):
     return {
         "seconds": offered["seconds"],
         "cells": round((offered.get("dofs") or np.nan) * cells_per_dof, -1),
-        "steps": offered.get("steps"),
+        "steps": round(offered.get("steps") or 0) or None,
         "memory": offered.get("memory_MB"),
         "measured": False,
     }
@@ -334,6 +334,7 @@ TO_TOLERANCE_HEADER = (
     "estimated",
     "error",
     "cells",
+    "rate",
     "steps",
     "seconds",
     "uniform meshes",
@@ -341,39 +342,65 @@ TO_TOLERANCE_HEADER = (
 )
 
 
-def uniform_seconds(reached, study, tolerances, error):
-    """What an error costs on uniform meshes: between the prices of two
-    tolerances by a power of the error, None beyond them."""
-    prices = []
-    for eps in tolerances:
-        found = [
-            price(study, variant, eps, error)
-            for variant in study.variants()
-            if variant[0] == "uniform"
-        ]
-        best = best_seconds(found)
-        if best is not None:
-            prices.append((eps, best))
-    prices.sort()
-    if not prices or not prices[0][0] <= reached <= prices[-1][0]:
-        return None
-    errors, times = np.log(np.array(prices)).T
-    return float(np.exp(np.interp(np.log(reached), errors, times)))
+def uniform_seconds(reached, study, targets, error):
+    """What an error costs on uniform meshes: between the best runs of the study,
+    and beyond them what it predicts for the errors `targets`, by a power of the
+    error; nan beyond all of these."""
+    variants = [variant for variant in study.variants() if variant[0] == "uniform"]
+    rows = np.concatenate([rows_of(study, variant) for variant in variants])
+    errors, times = study[error][rows], study["seconds_total"][rows]
+    best = rates.efficient_frontier(times, errors)
+    errors, times = list(errors[best]), list(times[best])
+    for eps in sorted(targets, reverse=True):
+        offers = [offer(study, variant, eps, error) for variant in variants]
+        if eps < min(errors) and any(offers):
+            errors.append(eps)
+            times.append(min(offered["seconds"] for offered in offers if offered))
+    return float(rates.at(reached, np.array(errors), np.array(times)))
 
 
-def to_tolerance_row(scene, tolerance, columns, compared, uniform):
-    """A run to a tolerance, the same compared with a reference, and the seconds
-    that uniform meshes take for its error."""
-    own = columns["wall_total"][-1]
-    return [
-        scene,
-        percent(tolerance),
-        percent(estimate_of(columns)),
-        percent(error_of(compared)),
-        *size_cells(columns),
-        UNKNOWN if uniform is None else seconds(uniform),
-        UNKNOWN if uniform is None else number(uniform / own, 2),
+def beside(own, other):
+    """Seconds of another method, and how many times one's own that is."""
+    if np.isnan(other):
+        return UNKNOWN, UNKNOWN
+    if other > LONGEST:
+        return f"over {LONGEST} s", f"over {number(LONGEST / own, 2)}"
+    return seconds(other), number(other / own, 2)
+
+
+def to_tolerance_rows(scene, study, targets, error, scheme):
+    """The runs to a tolerance of a study, from large to small ones; the rate is
+    that of the error in the number of cells, from the run before."""
+    rows, before = [], None
+    variants = [
+        variant
+        for variant in study.variants()
+        if variant[:2] == ("tolerance", scheme)
     ]
+    (of_runs,) = [rows_of(study, variant) for variant in variants]
+    for row in sorted(of_runs, key=lambda row: -study["tolerance"][row]):
+        reached, cells = study[error][row], study["cells"][row]
+        if not np.isfinite(reached):  # the reference
+            continue
+        own = study["seconds_total"][row]
+        rate = None
+        if before is not None and cells > before[0]:
+            rate = np.log(before[1] / reached) / np.log(cells / before[0])
+        rows.append(
+            [
+                scene,
+                percent(study["tolerance"][row]),
+                percent(study["estimate_total"][row]),
+                percent(reached),
+                number(round(cells), 9),
+                order(rate),
+                number(study["steps"][row], 9),
+                seconds(own),
+                *beside(own, uniform_seconds(reached, study, targets, error)),
+            ]
+        )
+        before = cells, reached
+    return rows
 
 
 REFERENCE_HEADER = (

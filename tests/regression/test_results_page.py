@@ -174,36 +174,43 @@ class Tables(Folder):
         )
         self.assertEqual(len(row), len(tables.KNOWN_TO_TOLERANCE_HEADER))
 
-        # Differences to a reference are known at some steps only.
-        compared = {
-            **columns,
-            "error_energy": np.array([np.nan, 0.02, np.nan, 0.04]),
-            "exact_energy": np.array([np.nan, 1.0, np.nan, 2.0]),
+    def test_runs_to_a_tolerance_beside_uniform_meshes(self):
+        variants = (("tolerance", *UNIFORM[1:]), UNIFORM)
+        offered = {
+            **dict(zip(("strategy", "scheme", "history"), UNIFORM)),
+            "error": "error_energy",
+            "tolerance": 1e-5,
+            "seconds": 2e5,
         }
-        row = tables.to_tolerance_row("x", 0.05, columns, compared, 1.5)
-        self.assertEqual(len(row), len(tables.TO_TOLERANCE_HEADER))
-        self.assertEqual(row[3], "2 %")
-        self.assertEqual(row[-2:], ["1.5 s", "3"])
-        row = tables.to_tolerance_row("x", 0.05, columns, compared, None)
-        self.assertEqual(row[-2:], ["–", "–"])
-
-    def test_prices_of_uniform_meshes_in_between(self):
-        study = self.study(variants=(UNIFORM, ADAPTIVE))
-
-        def measured(eps):
-            return tables.price(study, UNIFORM, eps, "error_energy")["seconds"]
+        study = self.study(
+            variants=variants, ladders=("both",), about={"prices": [offered]}
+        )
+        uniform = study["strategy"] == "uniform"
+        error, seconds = study["error_energy"][uniform], study["seconds_total"][uniform]
 
         def between(reached):
-            return tables.uniform_seconds(reached, study, (0.1, 0.03), "error_energy")
+            return tables.uniform_seconds(reached, study, (1e-5,), "error_energy")
 
-        self.assertClose(between(0.1), measured(0.1), 1e-12)
-        self.assertClose(between(0.03), measured(0.03), 1e-12)
-        middle = (0.1 * 0.03) ** 0.5
-        self.assertClose(
-            between(middle), (measured(0.1) * measured(0.03)) ** 0.5, 1e-12
+        for e, s in zip(error, seconds):
+            self.assertClose(between(e), s, 1e-12)
+        middle = (error[:-1] * error[1:]) ** 0.5
+        for e, s in zip(middle, (seconds[:-1] * seconds[1:]) ** 0.5):
+            self.assertClose(between(e), s, 1e-12)
+        self.assertTrue(np.isnan(between(2 * error.max())))
+        # beyond the runs, the price list
+        self.assertClose(between(1e-5), 2e5, 1e-12)
+        self.assertTrue(seconds.max() < between(1e-4) < 2e5)
+
+        rows = tables.to_tolerance_rows(
+            "x", study, (1e-5,), "error_energy", "forward Euler"
         )
-        self.assertIsNone(between(0.2))
-        self.assertIsNone(between(0.02))
+        self.assertEqual(len(rows), len(error))
+        for row in rows:
+            self.assertEqual(len(row), len(tables.TO_TOLERANCE_HEADER))
+            self.assertEqual(row[-1], "1")  # they are the same runs
+        self.assertEqual(rows[0][5], "–")
+        # first order in the width of the cells
+        self.assertEqual([row[5] for row in rows[1:]], ["0.50"] * (len(rows) - 1))
 
     def test_fits(self):
         study = self.study(variants=(UNIFORM, ADAPTIVE))
@@ -276,6 +283,7 @@ class Page(Folder):
         for name, (_, overrides) in (
             *plan.DIAGRAMS.items(),
             *plan.LOW_REGULARITY.items(),
+            *((name, ("", overrides)) for name, overrides in plan.TO_TOLERANCE.items()),
         ):
             scene = pieces.SCENES / f"{name}.prm"
             self.assertTrue(scene.exists(), scene)

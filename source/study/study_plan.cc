@@ -137,9 +137,15 @@ namespace Viscoplastic
           }
     if (!has_exact_solution)
       {
-        const MethodVariant first{reference_strategy, schemes[0], histories[0]};
-        const bool is_uniform = reference_strategy == MeshStrategy::uniform;
-        const int  last       = is_uniform ? finest : 0;
+        // A scene with a tolerance has the scheme that is the best for it.
+        const bool is_uniform   = reference_strategy == MeshStrategy::uniform;
+        const std::string   own = name_of(runs.scene.time.scheme);
+        const MethodVariant first{reference_strategy,
+                                  is_uniform || !contains(schemes, own) ?
+                                    schemes[0] :
+                                    own,
+                                  histories[0]};
+        const int           last = is_uniform ? finest : 0;
         if (is_uniform)
           for (int level = last - 1; level <= last; ++level)
             add(first, level, level, Ladder::both);

@@ -41,6 +41,7 @@ namespace Viscoplastic
   {
     if (reference_directory.empty())
       return;
+    TimerOutput::Scope scope(timer, "errors");
     AssertThrow(!scene.exact_solution,
                 ExcMessage("'Exact solution/Reference directory' and 'Exact "
                            "solution/Displacement' are both given; errors "

@@ -27,6 +27,7 @@ namespace Viscoplastic
       for (const std::string &assignment :
            {std::string("Error control/Tolerance=0"),
             std::string("Error control/Two-level comparison=false"),
+            std::string("Exact solution/Reference directory="),
             std::string("Mesh refinement/Strategy=none"),
             "Time/Phases=" + write_phases(phases),
             "Time/Scheme=" + name_of(parameters.time.scheme),

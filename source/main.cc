@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/run/command_line.h>
 #include <viscoplastic_contact/run/two_level.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
+#include <viscoplastic_contact/study/effects.h>
 #include <viscoplastic_contact/study/price_mode.h>
 #include <viscoplastic_contact/study/study.h>
 
@@ -53,6 +54,9 @@ namespace
   {
     if (command_line.task == CommandLine::Task::study)
       return Study(command_line.files, command_line.overrides, console).run();
+    if (command_line.task == CommandLine::Task::effects)
+      return EffectsStudy(command_line.files, command_line.overrides, console)
+        .run();
     if (command_line.price > 0.)
       return run_at_price(command_line, console);
     const Parameters parameters(command_line.files, command_line.overrides);

@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 from . import (
     animation,
     contact,
+    effects,
     efficiency,
     errors,
     fields,
@@ -55,6 +56,9 @@ pictures of a study (a directory with study.csv), which go to RESULTS/:
   work-precision  the error over seconds, with the efficient frontier
   cost            seconds of each run by phase
 Without a name all three; --error chooses another error.
+
+The directory of a study of effects (with effects.json) has one picture, what
+each effect changes and costs.
 """
 
 EXAMPLES = """\
@@ -330,6 +334,8 @@ def main(arguments=None):
     try:
         if is_study(options.results):
             return study_pictures.main(options)
+        if effects.is_there(options.results):
+            return effects.main(options)
         if options.error:
             raise UserError(
                 f"{options.results} holds no study.csv, so it has no errors to draw"

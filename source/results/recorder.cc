@@ -214,6 +214,7 @@ namespace Viscoplastic
             run.slip_area.value == 0.)
           run.friction_area = friction.slip_area + friction.stick_area;
         run.slip_area.update(friction.slip_area, t);
+        run.utilization.update(friction.max_utilization, t);
       }
     if (scene.is_adaptive())
       {
@@ -449,6 +450,29 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<std::string>
+  Recorder<dim>::effects_that_never_acted() const
+  {
+    std::vector<std::string> result;
+    if (run.viscous_dissipation && *run.viscous_dissipation == 0.)
+      result.push_back("viscoplastic flow has never acted: no material has "
+                       "flowed, and 'Law' = elastic gives the same for less.");
+    if (discretization->face && run.slip_area.value == 0.)
+      {
+        std::ostringstream text;
+        text << std::setprecision(3)
+             << "friction has never acted: nothing has slipped, and at most "
+             << 100. * run.utilization.value
+             << " % of a bound was needed; on bilateral contact 'Friction law' "
+                "= glued gives the same for less.";
+        result.push_back(text.str());
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
   std::string
   Recorder<dim>::remark_on_tolerance() const
   {
@@ -528,6 +552,9 @@ namespace Viscoplastic
 
     if (budget && run.controlled_errors().relative() > budget->tolerance)
       result.push_back(remark_on_tolerance());
+
+    for (const std::string &what : effects_that_never_acted())
+      result.push_back("Note: " + what);
 
     // What meshes do is no physics.
     if (std::abs(balance.adaptation_energy()) > 0.1 * balance.scale())

@@ -96,10 +96,11 @@ namespace Viscoplastic
       for (std::size_t i = 0; i < arguments.size(); ++i)
         {
           const std::string &argument = arguments[i];
-          if (!only_files && argument == "study" && result.files.empty())
+          if (!only_files && result.files.empty() && task_option.empty() &&
+              (argument == "study" || argument == "effects"))
             {
-              result.task = Task::study;
-              task_option = "study";
+              result.task = argument == "study" ? Task::study : Task::effects;
+              task_option = argument;
               continue;
             }
           if (only_files || argument.empty() || argument[0] != '-')
@@ -248,9 +249,9 @@ namespace Viscoplastic
     void
     Reader::check() const
     {
-      const bool reads_scene = result.task == Task::run ||
-                               result.task == Task::check ||
-                               result.task == Task::study;
+      const bool reads_scene =
+        result.task == Task::run || result.task == Task::check ||
+        result.task == Task::study || result.task == Task::effects;
       AssertThrow(result.price == 0. || result.task == Task::run ||
                     result.task == Task::check,
                   ExcMessage("The options " + task_option +
@@ -260,7 +261,8 @@ namespace Viscoplastic
                              "write viscoplastic_contact [options] "
                              "scene.prm."));
       AssertThrow(result.task == Task::run || result.restart == Restart::no,
-                  ExcMessage(result.task == Task::study ?
+                  ExcMessage(result.task == Task::study ||
+                                 result.task == Task::effects ?
                                "A study finds its finished runs without "
                                "--restart." :
                                "The options " + task_option +
@@ -288,13 +290,17 @@ namespace Viscoplastic
     return "Usage: viscoplastic_contact [options] scene.prm [more.prm ...]\n"
            "       viscoplastic_contact study [options] scene.prm [more.prm "
            "...]\n"
+           "       viscoplastic_contact effects [options] scene.prm [more.prm "
+           "...]\n"
            "\n"
            "Computes the scene that the parameter file describes. Further "
            "files override\n"
            "entries of the earlier ones. `study' computes it on several "
            "meshes and with\n"
            "several steps, as 'Study' describes, and says what accuracy costs. "
-           "What is\n"
+           "`effects'\n"
+           "leaves out one effect at a time and says what each changes and "
+           "costs. What is\n"
            "finished is not computed again.\n"
            "\n"
            "  --set 'SECTION/ENTRY=VALUE'  override an entry of the files; may "

@@ -131,6 +131,11 @@ namespace Viscoplastic
     std::string
     remark_on_tolerance() const;
 
+    /// Sentences on effects of the scene that have made no difference in the
+    /// whole run.
+    std::vector<std::string>
+    effects_that_never_acted() const;
+
     /// Warn of what makes the numbers of a step doubtful, once each.
     void
     judge(const AcceptedStep<dim> &step, const StepQuantities<dim> &quantities);
@@ -216,6 +221,7 @@ namespace Viscoplastic
                              &run.slip_area,
                              &run.capped_volume,
                              &run.tension_area,
+                             &run.utilization,
                              &run.stiffness})
       archive & largest->value & largest->t;
     archive &run.friction_area;

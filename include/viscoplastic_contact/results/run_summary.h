@@ -73,7 +73,7 @@ namespace Viscoplastic
     }
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,
-      tension_area;
+      tension_area, utilization;
     /// The area of all friction points on the mesh on which slip_area was
     /// reached.
     double friction_area = 0.;

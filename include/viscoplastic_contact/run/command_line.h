@@ -18,7 +18,8 @@ namespace Viscoplastic
       describe_as_markdown,
       check,
       run,
-      study
+      study,
+      effects
     };
 
     Task                     task = Task::run;

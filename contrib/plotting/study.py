@@ -126,7 +126,7 @@ class Study:
 
     def looks(self):
         """{variant: colour and dashes}: a colour each, or where they are many one
-        for each scheme and history, and dashes for the second strategy."""
+        for each scheme and history, and dashes for each further strategy."""
         variants = self.variants()
         if len(variants) <= len(style.SERIES):
             return {
@@ -135,10 +135,12 @@ class Study:
             }
         methods = list(dict.fromkeys(variant[1:] for variant in variants))
         strategies = list(dict.fromkeys(variant[0] for variant in variants))
+        # dotted lines are fits
+        dashes = ("-", (0, (4, 1.5)), (0, (7, 1.5, 1.5, 1.5)))
         return {
             variant: {
                 "color": style.SERIES[methods.index(variant[1:]) % len(style.SERIES)],
-                "ls": ("-", (0, (4, 1.5)))[strategies.index(variant[0]) % 2],
+                "ls": dashes[strategies.index(variant[0]) % len(dashes)],
             }
             for variant in variants
         }

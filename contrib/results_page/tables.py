@@ -48,7 +48,8 @@ def order(value):
 
 
 def percent(value):
-    return UNKNOWN if value is None else f"{number(100 * value, 2)} %"
+    known = value is not None and not np.isnan(value)
+    return f"{number(100 * value, 2)} %" if known else UNKNOWN
 
 
 def seconds(value):
@@ -336,10 +337,29 @@ TO_TOLERANCE_HEADER = (
     "cells",
     "rate",
     "steps",
+    "$\\lambda$",
+    "uniform",
+    "meshes",
     "seconds",
     "uniform meshes",
     "times as long",
 )
+
+
+def uniform_multiplier(cells, study):
+    """The error of the multiplier on uniform meshes of so many cells, where mesh
+    and steps are refined together; nan beyond them."""
+    rows = np.flatnonzero(
+        (study["strategy"] == "uniform") & (study["ladder"] == "both")
+    )
+    curve = {
+        study["cells"][row]: study["error_multiplier"][row]
+        for row in rows
+        if study["error_multiplier"][row] > 0
+    }
+    if not curve:
+        return np.nan
+    return float(rates.at(cells, np.array([*curve]), np.array([*curve.values()])))
 
 
 def uniform_seconds(reached, study, targets, error):
@@ -395,6 +415,12 @@ def to_tolerance_rows(scene, study, targets, error, scheme):
                 number(round(cells), 9),
                 order(rate),
                 number(study["steps"][row], 9),
+                percent(study["error_multiplier"][row]),
+                percent(uniform_multiplier(cells, study)),
+                percent(
+                    (study["seconds_set_up"][row] + study["seconds_estimate"][row])
+                    / own
+                ),
                 seconds(own),
                 *beside(own, uniform_seconds(reached, study, targets, error)),
             ]

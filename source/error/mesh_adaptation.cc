@@ -215,8 +215,9 @@ namespace Viscoplastic
           std::min(0.6, (1. - aim * aim / square) / 0.75);
         if (limit_coarsening)
           chosen.coarsening_fraction = 0.05 / (3. * square);
-        // Not for coarser cells alone.
-        chosen.smallest_share = 1e-6;
+        // Neither for coarser cells alone, nor for the few that bounds on the
+        // level or the number of cells have left of what was wanted.
+        chosen.smallest_share = 0.1;
       }
     else if (ratio < coarsen_below && limit_coarsening)
       {

@@ -45,8 +45,8 @@ namespace Viscoplastic
   {
     SolverDemand result = demand;
     result.n_dofs       = std::llround(dofs);
-    result.n_solves =
-      static_cast<unsigned int>(std::clamp(steps / n_set_ups, 1., 1e8));
+    result.n_solves     = static_cast<unsigned int>(
+      std::clamp(demand.solves_per_step * steps / n_set_ups, 1., 1e8));
     // What is finer than a mesh that is not refined is refined from it.
     if (demand.n_first_dofs == 0 && dofs > 1.5 * demand.n_dofs)
       result.n_first_dofs = demand.n_dofs;

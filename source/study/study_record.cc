@@ -88,6 +88,7 @@ namespace Viscoplastic
               {"ranks", demand.n_ranks},
               {"poissons_ratio", demand.max_poissons_ratio},
               {"solves", demand.n_solves},
+              {"solves_per_step", demand.solves_per_step},
               {"dofs", demand.n_dofs},
               {"face_dofs", demand.n_face_dofs},
               {"first_dofs", demand.n_first_dofs}};
@@ -104,6 +105,7 @@ namespace Viscoplastic
       json.at("ranks").get_to(demand.n_ranks);
       json.at("poissons_ratio").get_to(demand.max_poissons_ratio);
       json.at("solves").get_to(demand.n_solves);
+      json.at("solves_per_step").get_to(demand.solves_per_step);
       json.at("dofs").get_to(demand.n_dofs);
       json.at("face_dofs").get_to(demand.n_face_dofs);
       json.at("first_dofs").get_to(demand.n_first_dofs);

@@ -174,6 +174,17 @@ namespace
         EXPECT_LT(size_of(squared), larger);
       }
     EXPECT_LT(triangulation.n_global_active_cells(), 0.7 * fine);
+    // Where only a few cells may be refined the mesh stays.
+    const auto       n_cells = triangulation.n_global_active_cells();
+    constexpr double family  = GeometryInfo<dim>::max_children_per_cell;
+    parameters.cell_budget   = n_cells + family - 1;
+    EXPECT_FALSE(
+      mark_cells_to_tolerance(triangulation, squared, parameters, 2.));
+    parameters.cell_budget = family * n_cells;
+    EXPECT_TRUE(
+      mark_cells_to_tolerance(triangulation, squared, parameters, 2.));
+    for (const auto &cell : triangulation.active_cell_iterators())
+      cell->clear_refine_flag();
     // Where nothing can be refined, coarser cells alone are no help.
     parameters.maximal_level = 0;
     EXPECT_FALSE(

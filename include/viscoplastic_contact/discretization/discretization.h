@@ -68,8 +68,8 @@ namespace Viscoplastic
     std::unique_ptr<ContactTension<dim>> tension;
     /// The friction points; null without friction.
     std::unique_ptr<ContactFace<dim>> face;
-    /// How often a linear solver will be used on this mesh at least.
-    unsigned int n_solves;
+    /// How many steps there will be on this mesh at least.
+    unsigned int n_steps;
     /// The matrix of a(.,.) in nodal frames.
     DistributedMatrix matrix;
 

@@ -48,8 +48,10 @@ namespace Viscoplastic
    * below 0.85 of what it may be, halved cells having a quarter of the squared
    * estimate, but at most those with 0.6 of it: estimates of finer meshes know
    * better which cells to refine next. Cells that matter least are coarsened
-   * with them. Below 0.6, cells are coarsened up to that aim, if that removes a
-   * tenth of them. In between the mesh stays. Nothing is coarsened without
+   * with them. Where the bounds leave less than a tenth of the squared estimate
+   * to be refined, a new mesh is not worth its price. Below 0.6, cells are
+   * coarsened up to that aim, if that removes a tenth of them. In between the
+   * mesh stays. Nothing is coarsened without
    * @p limit_coarsening.
    *
    * Only levels and number of cells of @p parameters count. Collective.

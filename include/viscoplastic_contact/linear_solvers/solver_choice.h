@@ -30,8 +30,8 @@ namespace Viscoplastic
     unsigned int dim = 2, n_ranks = 1;
     /// The largest Poisson's ratio of the material that the matrix stands for.
     double max_poissons_ratio = 0.;
-    /// How often the solver will be used at least.
-    unsigned int n_solves = 1;
+    /// How often the solver will be used at least, and how often in a step.
+    unsigned int n_solves = 1, solves_per_step = 1;
     /// Degrees of freedom in all, and of these on the friction face. Prices are
     /// those of systems beyond dealii::types::global_dof_index, too.
     std::uint64_t n_dofs = 0, n_face_dofs = 0;

@@ -2,13 +2,11 @@
 """What each effect of a scene changes, beside the error of its discretization,
 and what it costs."""
 
-import json
-
 import matplotlib.pyplot as plt
 import numpy as np
 
 from . import style
-from .results import NoPicture, UserError
+from .results import NoPicture, read_effects
 
 VERDICTS = {
     "called for": style.SERIES[1],
@@ -25,11 +23,7 @@ def is_there(directory):
 
 def read(directory):
     """The contents of effects.json."""
-    file = directory / "effects.json"
-    try:
-        return json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise UserError(f"{file} cannot be read: {error}") from error
+    return read_effects(directory / "effects.json")
 
 
 def decisive(effect):

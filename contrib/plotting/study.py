@@ -1,22 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What a study wrote: study.csv, one row a run, and study.json."""
 
-import csv
-import json
 import re
 from pathlib import Path
 
 import numpy as np
 
 from . import rates, style
-from .results import UserError
+from .results import LEVELS, VARIANT, UserError, read_study_about, read_study_table
 
-VARIANT = ("strategy", "scheme", "history")  # what tells one variant of the method
-TEXT = ("run", *VARIANT, "solver", "ladder")
 TOLERANCE = "tolerance"  # the strategy of runs that choose meshes and steps
-LEVELS = ("mesh_level", "time_level")
-NEEDED = (*VARIANT, "ladder", *LEVELS, "h", "k", "seconds_total")
-COEFFICIENTS = ("C_h", "p", "C_k", "q", "m")  # of a fit
 
 LADDERS = {"space": "$h$ alone", "time": "$k$ alone", "both": "$h$ and $k$"}
 ERRORS = {
@@ -49,9 +42,9 @@ class Study:
 
     def __init__(self, directory):
         self.directory = Path(directory).resolve()
-        self.columns = read_table(self.directory / "study.csv")
+        self.columns = read_study_table(self.directory / "study.csv")
         self.columns = with_worst_quantity(self.columns)
-        self.about = read_about(self.directory / "study.json")
+        self.about = read_study_about(self.directory / "study.json")
         self.name = str(self.about.get("scene") or self.directory.name)
 
     def __len__(self):
@@ -180,67 +173,3 @@ def with_worst_quantity(columns):
     first = next(i for i, name in enumerate(columns) if name == names[0])
     items = list(columns.items())
     return dict([*items[: first - 1], ("quantities", worst), *items[first - 1 :]])
-
-
-def read_table(path):
-    """The columns of study.csv: texts, and numbers with nan for unknown."""
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = [row for row in csv.reader(file, skipinitialspace=True) if row]
-    except FileNotFoundError:
-        raise UserError(f"there is no file {path}") from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise UserError(f"{path} cannot be read: {error}") from error
-    if len(rows) < 2:
-        raise UserError(f"{path} has no runs")
-    names = [name.strip() for name in rows[0]]
-    missing = [name for name in NEEDED if name not in names]
-    if missing:
-        raise UserError(f"{path} lacks the columns " + ", ".join(missing))
-    if len(set(names)) < len(names):
-        raise UserError(f"{path} is damaged: two of its columns have the same name")
-    columns = {name: [] for name in names}
-    for number, row in enumerate(rows[1:], start=1):
-        if len(row) != len(names):
-            raise UserError(
-                f"{path} is damaged: its run {number} has {len(row)} values, "
-                f"where the first line names {len(names)}"
-            )
-        for name, text in zip(names, row):
-            columns[name].append(value(path, number, name, text.strip()))
-    return {name: np.array(column) for name, column in columns.items()}
-
-
-def value(path, number, name, text):
-    if name in TEXT:
-        return text
-    try:
-        return float(text) if text else np.nan
-    except ValueError:
-        raise UserError(
-            f'{path} is damaged: its run {number} has "{text}" for {name}, which '
-            "is no number"
-        ) from None
-
-
-def read_about(path):
-    """study.json; a study in progress has none yet."""
-    if not path.exists():
-        return {"fits": []}
-    try:
-        about = json.loads(path.read_text(encoding="utf-8"))
-    except (UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise UserError(f"{path} cannot be read: {error}") from error
-    if not isinstance(about, dict):
-        raise UserError(f"{path} cannot be read: it is no JSON object")
-    fits = about["fits"] = about.get("fits") or []
-    if not isinstance(fits, list) or not all(map(can_be_drawn, fits)):
-        raise UserError(f"{path} is damaged: its fits have no numbers")
-    return about
-
-
-def can_be_drawn(fit):
-    """Whether the coefficients of a fit are numbers, or not there."""
-    return not isinstance(fit, dict) or all(
-        isinstance(fit.get(name), (int, float, type(None))) for name in COEFFICIENTS
-    )

@@ -6,8 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-from plotting.results import UserError, read_statistics
+from plotting.results import UserError  # also makes the module below known
 from plotting.study import Study
+
+import viscoplastic_contact
+from viscoplastic_contact.program import RunError, set_options
 
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -39,54 +42,23 @@ def environment():
     return {name: value for name, _, value in lines}
 
 
-def set_options(overrides):
-    return [
-        word
-        for name, value in overrides.items()
-        for word in ("--set", f"{name}={value}")
-    ]
-
-
-class Program:
-    """The executable, and the directory below which its results go."""
+class Program(viscoplastic_contact.Program):
+    """The program, and the directory below which its results go."""
 
     def __init__(self, executable, directory):
-        self.executable = Path(executable).resolve()
+        super().__init__(executable, environment=environment())
         self.directory = Path(directory).resolve()
-        if not os.access(self.executable, os.X_OK):
-            raise UserError(f"there is no program {self.executable} to run")
-        self.environment = environment()
-
-    def version(self):
-        process = subprocess.run(
-            [self.executable, "--version"], stdout=subprocess.PIPE, text=True
-        )
-        return process.stdout.strip().splitlines()[0] if process.stdout else ""
 
     def run(self, name, files, overrides):
         """The columns of statistics.csv of a run."""
         results = self.directory / name
-        results.mkdir(parents=True, exist_ok=True)
         print(f"Run in {results}", file=sys.stderr, flush=True)
-        process = subprocess.run(
-            [
-                self.executable,
-                *files,
-                *set_options({**overrides, "Output/Directory": results}),
-            ],
-            cwd=self.directory,
-            env=self.environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        if process.returncode != 0:
+        try:
+            return super().run(files, results, overrides).statistics
+        except RunError as error:
             raise UserError(
-                f"the run in {results} ended with code {process.returncode}: "
-                f"{process.stderr.strip()}"
-            )
-        return read_statistics(results / "statistics.csv")
+                f"the run in {results} ended with code {error.code}: {error}"
+            ) from error
 
     def study(self, name, files, overrides):
         """The study of a scene, which may consist of several parameter files;
@@ -95,28 +67,14 @@ class Program:
         results.mkdir(parents=True, exist_ok=True)
         scene = " ".join(file.stem for file in files)
         print(f"Study of {scene} in {results}", file=sys.stderr, flush=True)
-        command = [
-            self.executable,
-            "study",
-            *files,
-            *set_options({**overrides, "Output/Directory": results}),
-        ]
         log = results / "study.log"
-        with open(log, "w") as file:
-            process = subprocess.run(
-                command,
-                cwd=self.directory,
-                env=self.environment,
-                stdin=subprocess.DEVNULL,
-                stdout=file,
-                stderr=subprocess.PIPE,
-                text=True,
-            )
-        if process.returncode != 0:
+        try:
+            super().study(files, results, overrides, log)
+        except RunError as error:
             raise UserError(
-                f"the study of {scene} ended with code {process.returncode}: "
-                f"{process.stderr.strip()} (its messages are in {log})"
-            )
+                f"the study of {scene} ended with code {error.code}: {error} "
+                f"(its messages are in {log})"
+            ) from error
         return Study(results / "study")
 
 

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Running the program and its studies."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from .results import Results
+from .scene import value_text, write_scene
+from .tables import (
+    UserError,
+    frame,
+    read_effects,
+    read_study_about,
+    read_study_table,
+)
+
+# contrib/python/viscoplastic_contact of the sources, or the same below
+# share/viscoplastic_contact of an installation.
+TOP = Path(__file__).resolve().parents[3]
+
+
+class RunError(UserError):
+    """The program has refused or ended a run: its sentence, and its code."""
+
+    def __init__(self, sentence, code):
+        super().__init__(sentence)
+        self.code = code
+
+
+class StudyResults:
+    """What a study found: columns over its runs, and study.json."""
+
+    def __init__(self, directory):
+        self.directory = Path(directory).resolve()
+        self.columns = read_study_table(self.directory / "study.csv")
+        self.about = read_study_about(self.directory / "study.json")
+
+    def __getitem__(self, name):
+        return self.columns[name]
+
+    def frame(self):
+        """One row a run, as a pandas.DataFrame."""
+        return frame(self.columns)
+
+
+def find_executable():
+    """That of the environment variable VISCOPLASTIC_CONTACT, of the build or
+    the installation that this module belongs to, or of the PATH."""
+    for found in (
+        os.environ.get("VISCOPLASTIC_CONTACT"),
+        TOP / "build" / "viscoplastic_contact",
+        TOP.parents[1] / "bin" / "viscoplastic_contact",
+        shutil.which("viscoplastic_contact"),
+    ):
+        if found and os.access(found, os.X_OK):
+            return Path(found)
+    raise UserError(
+        "there is no program viscoplastic_contact in the PATH; set the environment "
+        "variable VISCOPLASTIC_CONTACT to where it is"
+    )
+
+
+def set_options(overrides):
+    """{"Section/Entry": value} as options of the program."""
+    return [
+        word
+        for name, value in (overrides or {}).items()
+        for word in ("--set", f"{name}={value_text(value, name)}")
+    ]
+
+
+class Program:
+    """The program, run on so many ranks.
+
+    A scene is a parameter file, a list of them of which later ones override
+    earlier ones, or a dictionary as scene.py describes it; overrides are
+    {"Section/Entry": value}.
+    """
+
+    def __init__(self, executable=None, ranks=1, launcher=("mpirun",), environment=None):
+        self.executable = Path(executable or find_executable()).resolve()
+        if not os.access(self.executable, os.X_OK):
+            raise UserError(f"there is no program {self.executable} to run")
+        self.ranks = ranks
+        self.launcher = list(launcher)
+        # One thread a process: several would wait for each other.
+        self.environment = environment or {"OMP_NUM_THREADS": "1", **os.environ}
+
+    def call(self, *arguments, stdout=subprocess.PIPE):
+        """What the program prints; arguments are those of the command line."""
+        launcher = [*self.launcher, "-n", self.ranks] if self.ranks > 1 else []
+        process = subprocess.run(
+            list(map(str, [*launcher, self.executable, *arguments])),
+            env=self.environment,
+            stdin=subprocess.DEVNULL,
+            stdout=stdout,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        if process.returncode != 0:
+            code = process.returncode
+            raise RunError(sentence(process.stderr, code), code)
+        return process.stdout
+
+    def version(self):
+        """The line of --version."""
+        return self.call("--version").strip()
+
+    def check(self, scene, directory=".", overrides=None):
+        """What --check prints: effects, size, solver and memory."""
+        files = parameter_files(scene, directory)
+        return self.call("--check", *files, *set_options(overrides))
+
+    def run(self, scene, directory, overrides=None, restart=False, log=None):
+        """The Results of a run, which go to this directory. With restart it goes
+        on from a checkpoint if there is one; messages go to the file log."""
+        self.compute([], scene, directory, overrides, restart, log)
+        return Results(directory)
+
+    def study(self, scene, directory, overrides=None, log=None):
+        """The StudyResults of a scene; what is finished is not repeated."""
+        self.compute(["study"], scene, directory, overrides, False, log)
+        return StudyResults(Path(directory) / "study")
+
+    def effects(self, scene, directory, overrides=None, log=None):
+        """What leaving out each effect changes: effects.json."""
+        self.compute(["effects"], scene, directory, overrides, False, log)
+        return read_effects(Path(directory) / "effects" / "effects.json")
+
+    def compute(self, task, scene, directory, overrides, restart, log):
+        directory = Path(directory).resolve()
+        directory.mkdir(parents=True, exist_ok=True)
+        arguments = [
+            *task,
+            *parameter_files(scene, directory),
+            *set_options({**(overrides or {}), "Output/Directory": directory}),
+            *(["--restart=auto"] if restart else []),
+        ]
+        if log is None:
+            self.call("--quiet", *arguments, stdout=subprocess.DEVNULL)
+            return
+        with open(log, "w", encoding="utf-8") as file:
+            self.call(*arguments, stdout=file)
+
+
+def parameter_files(scene, directory):
+    """The files of a scene; that of a dictionary is written to the directory."""
+    if isinstance(scene, dict):
+        directory = Path(directory)
+        directory.mkdir(parents=True, exist_ok=True)
+        return [write_scene(scene, directory / "scene.prm")]
+    return [scene] if isinstance(scene, (str, Path)) else list(scene)
+
+
+def sentence(messages, code):
+    """What the program says of itself among the messages of a run."""
+    name = "viscoplastic_contact: "
+    said = [line[len(name) :] for line in messages.splitlines() if line.startswith(name)]
+    return said[-1] if said else messages.strip() or f"the program ended with code {code}"

@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a run wrote: records of a series, statistics, parameters."""
+
+import csv
+import json
+import re
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import numpy as np
+
+from .tables import UserError, frame
+
+
+class NotAvailable(UserError):
+    """What these results do not have; the text says why."""
+
+
+class Record:
+    """One time of a series: points, cells and point data of all its pieces.
+
+    deal.II writes each cell with vertices of its own, and a quantity constant
+    on a cell as point data with that value at all of them.
+    """
+
+    def __init__(self, path):
+        # Not needed by who reads numbers alone, and slow to start.
+        import meshio
+
+        points, cells, data = [], [], []
+        n_points = 0
+        for piece in pieces(path):
+            if is_empty(piece):
+                continue
+            try:
+                # meshio.read() would end the program where it cannot read.
+                mesh = meshio.vtu.read(piece)
+            except OSError:
+                raise
+            except Exception as error:  # whatever a damaged file provokes
+                raise UserError(f"{piece} cannot be read: {error!r}") from error
+            points.append(np.asarray(mesh.points, dtype=float))
+            for block in mesh.cells:
+                cells.append(np.asarray(block.data) + n_points)
+            data.append(mesh.point_data)
+            n_points += len(mesh.points)
+        if not points:
+            raise UserError(f"{path} contains no cells")
+        if len({block.shape[1] for block in cells}) > 1:
+            raise UserError(f"{path} mixes cells of different shapes")
+        self.path = path
+        self.points = np.concatenate(points)
+        self.cells = np.concatenate(cells)
+        if any(piece.keys() != data[0].keys() for piece in data):
+            raise UserError(f"the pieces of {path} have different fields")
+        self.data = {
+            name: np.concatenate([np.asarray(piece[name]) for piece in data])
+            for name in data[0]
+        }
+
+    def __contains__(self, name):
+        return name in self.data
+
+    def __getitem__(self, name):
+        if name not in self.data:
+            raise UserError(
+                f'{self.path} has no "{name}", only: ' + ", ".join(sorted(self.data))
+            )
+        values = self.data[name].astype(float)
+        if not np.isfinite(values).all():
+            raise NotAvailable(f'"{name}" in {self.path} has values that are not finite')
+        return values
+
+    @property
+    def size(self):
+        return np.ptp(self.points, axis=0).max()
+
+
+def parse_xml(path):
+    try:
+        return ElementTree.parse(path).getroot()
+    except (OSError, ElementTree.ParseError) as error:
+        raise UserError(f"{path} cannot be read: {error}") from error
+
+
+def pieces(path):
+    if path.suffix != ".pvtu":
+        return [path]
+    sources = [piece.get("Source") for piece in parse_xml(path).iter("Piece")]
+    if None in sources:
+        raise UserError(f"{path} is damaged: a piece has no file")
+    return [path.parent / source for source in sources]
+
+
+def is_empty(vtu):
+    """Whether a rank had nothing to write; meshio stumbles over such files."""
+    with open(vtu, "rb") as file:
+        start = file.read(4096)
+    return re.search(rb'<Piece [^>]*NumberOfCells="0"', start) is not None
+
+
+def series(path):
+    """The (time, file) pairs of a .pvd file."""
+    try:
+        found = [
+            (float(item.attrib["timestep"]), path.parent / item.attrib["file"])
+            for item in parse_xml(path).iter("DataSet")
+        ]
+    except (KeyError, ValueError) as error:
+        raise UserError(
+            f"{path} is damaged: an entry lacks its time or its file"
+        ) from error
+    if not np.isfinite([time for time, _ in found]).all():
+        raise UserError(f"{path} is damaged: it has times that are not finite")
+    if not found:
+        raise UserError(f"{path} lists no files")
+    return found
+
+
+def number(path):
+    """The number in solution_00012.pvtu."""
+    match = re.search(r"_(\d+)\.p?vtu$", path.name)
+    return int(match.group(1)) if match else None
+
+
+def read_statistics(path):
+    """The columns of statistics.csv that are numbers, by name.
+
+    The last row may be one that a run is just writing, or was when it ended.
+    """
+    if not path.exists():
+        return {}
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.reader(file, skipinitialspace=True) if row]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise UserError(f"{path} cannot be read: {error}") from error
+    if len(rows) > 1 and len(rows[-1]) < len(rows[0]):
+        del rows[-1]
+    columns = {}
+    if len(rows) < 2:
+        return columns
+    for number, row in enumerate(rows[1:], start=1):
+        if len(row) != len(rows[0]):
+            raise UserError(
+                f"{path} is damaged: its row {number} has {len(row)} values, where "
+                f"the first line names {len(rows[0])}"
+            )
+    for name, *values in zip(*rows):
+        try:
+            columns[name.strip()] = np.array([float(value) for value in values])
+        except ValueError:
+            continue
+    if not np.isfinite(columns.get("t", ())).all():
+        raise UserError(f"{path} is damaged: it has times that are not finite")
+    return columns
+
+
+def read_parameters(path):
+    """The entries of parameters.prm: {("Section", ..., "Entry"): value}."""
+    entries, sections = {}, []
+    if not path.exists():
+        return entries
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise UserError(f"{path} cannot be read: {error}") from error
+    for line in text.splitlines():
+        line = line.split("#")[0].strip()
+        if line.startswith("subsection "):
+            sections.append(line.split(None, 1)[1].strip())
+        elif line == "end":
+            del sections[-1:]
+        elif line.startswith("set ") and "=" in line:
+            name, value = line[4:].split("=", 1)
+            entries[(*sections, name.strip())] = value.strip()
+    return entries
+
+
+class Results:
+    """A directory of results: results["friction_force_x"] is a column of
+    statistics.csv, body() and face() are fields. What nobody asks for is not
+    read."""
+
+    def __init__(self, directory):
+        directory = Path(directory)
+        self.directory = directory.resolve()
+        self.name = self.directory.name
+        if not self.directory.is_dir():
+            raise UserError(f"there is no directory {directory}")
+        solution = self.directory / "solution.pvd"
+        self.statistics = read_statistics(self.directory / "statistics.csv")
+        if not solution.exists() and not self.statistics:
+            raise UserError(
+                f"{self.directory} holds neither a solution.pvd nor a "
+                "statistics.csv with rows, so it is no directory of results "
+                "(nor is it a study: there is no study.csv)"
+            )
+        self.solution = series(solution) if solution.exists() else []
+        contact = self.directory / "contact.pvd"
+        self.contact = series(contact) if contact.exists() else []
+        self.records = {}
+
+    def __getitem__(self, name):
+        return self.column(name)
+
+    def __contains__(self, name):
+        return name in self.statistics
+
+    @property
+    def parameters(self):
+        """{("Section", ..., "Entry"): value} of all entries, as texts."""
+        return read_parameters(self.directory / "parameters.prm")
+
+    @property
+    def info(self):
+        """What run.json says: version, ranks, effects, estimated errors."""
+        path = self.directory / "run.json"
+        try:
+            return json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise UserError(f"{path} cannot be read: {error}") from error
+
+    def vector(self, prefix):
+        """The columns prefix_x, prefix_y(, prefix_z) as one array (step, axis);
+        vector("point0") is the displacement of the first of `Output/Points'."""
+        names = [f"{prefix}_{axis}" for axis in "xyz"]
+        found = [name for name in names if name in self.statistics]
+        return np.stack([self.column(name) for name in found or names], axis=1)
+
+    def frame(self):
+        """The statistics as a pandas.DataFrame."""
+        return frame(self.statistics)
+
+    def read(self, path):
+        """A record; those read last are kept, for pictures of the same time."""
+        if path not in self.records:
+            while len(self.records) >= 4:
+                del self.records[next(iter(self.records))]
+            self.records[path] = Record(path)
+        return self.records[path]
+
+    def index(self, step=None, time=None):
+        """An output: the last, number `step`, the nearest to `time`."""
+        if not self.solution:
+            raise NotAvailable(f"{self.directory} has no solution.pvd: no fields")
+        if step is not None:
+            for i, (_, path) in enumerate(self.solution):
+                if number(path) == step:
+                    return i
+            numbers = ", ".join(str(number(path)) for _, path in self.solution)
+            raise UserError(f"there is no output number {step}; there are {numbers}")
+        if time is not None:
+            times = np.array([t for t, _ in self.solution])
+            return int(np.argmin(np.abs(times - time)))
+        return len(self.solution) - 1
+
+    def body(self, index=-1):
+        """Points, cells and fields of the body at an output, default the last."""
+        self.index()
+        record = self.read(self.solution[index][1])
+        if record.cells.shape[1] not in (4, 8):
+            raise UserError(
+                f"{record.path} has cells with {record.cells.shape[1]} vertices; "
+                "only quadrilaterals and hexahedra can be drawn"
+            )
+        return record
+
+    def face(self, index=-1):
+        """The contact boundary at the time of an output, or None."""
+        time, path = self.solution[index]
+        if not self.contact:
+            return None
+        # Several outputs may share a time in files of other programs.
+        nearest = min(
+            self.contact,
+            key=lambda item: (abs(item[0] - time), number(item[1]) != number(path)),
+        )
+        if abs(nearest[0] - time) > 1e-9 * max(abs(time), abs(nearest[0])):
+            return None
+        return self.read(nearest[1])
+
+    def dimension(self):
+        return 2 if self.body(0).cells.shape[1] == 4 else 3
+
+    def column(self, name):
+        if name not in self.statistics:
+            raise UserError(
+                f'statistics.csv has no column "{name}"; it has '
+                + ", ".join(self.statistics)
+            )
+        return self.statistics[name]

@@ -99,11 +99,11 @@ namespace
 
 
 
-  /// What a task prints that needs no scene.
+  /// What a task prints that computes nothing.
   std::string
-  text_of(const CommandLine::Task task)
+  text_of(const CommandLine &command_line)
   {
-    switch (task)
+    switch (command_line.task)
       {
         case CommandLine::Task::guide:
           return guide_text();
@@ -112,9 +112,11 @@ namespace
         case CommandLine::Task::version:
           return version_text();
         case CommandLine::Task::describe:
-          return describe_parameters();
+          return describe_parameters(command_line.files,
+                                     command_line.overrides);
         case CommandLine::Task::describe_as_markdown:
-          return describe_parameters_as_markdown();
+          return describe_parameters_as_markdown(command_line.files,
+                                                 command_line.overrides);
         default:
           return "";
       }
@@ -135,7 +137,7 @@ main(int argc, char *argv[])
   try
     {
       command_line = read_command_line(arguments);
-      text         = text_of(command_line.task);
+      text         = text_of(command_line);
     }
   catch (const std::exception &exception)
     {

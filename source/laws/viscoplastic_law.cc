@@ -29,18 +29,20 @@ namespace Viscoplastic
 
   namespace
   {
-    const std::vector<LawDescription> &
-    registered_laws()
-    {
-#define DESCRIBE_LAW(name) name##_description(),
-      static const std::vector<LawDescription> laws = {
-        VISCOPLASTIC_LAWS(DESCRIBE_LAW)};
-#undef DESCRIBE_LAW
-      return laws;
-    }
-
     const std::string elastic_name = "elastic";
   } // namespace
+
+
+
+  const std::vector<LawDescription> &
+  built_in_laws()
+  {
+#define DESCRIBE_LAW(name) name##_description(),
+    static const std::vector<LawDescription> laws = {
+      VISCOPLASTIC_LAWS(DESCRIBE_LAW)};
+#undef DESCRIBE_LAW
+    return laws;
+  }
 
 
 
@@ -182,10 +184,10 @@ namespace Viscoplastic
 
 
   std::string
-  viscoplastic_law_names()
+  viscoplastic_law_names(const std::vector<LawDescription> &laws)
   {
     std::string names = elastic_name;
-    for (const LawDescription &law : registered_laws())
+    for (const LawDescription &law : laws)
       names += "|" + law.name;
     return names;
   }
@@ -193,11 +195,11 @@ namespace Viscoplastic
 
 
   std::string
-  viscoplastic_law_help()
+  viscoplastic_law_help(const std::vector<LawDescription> &laws)
   {
     std::string help =
       elastic_name + ": G = 0, linear elasticity without viscosity.";
-    for (const LawDescription &law : registered_laws())
+    for (const LawDescription &law : laws)
       help += "\n\n" + law.name + ": " + law.help;
     return help;
   }
@@ -205,9 +207,10 @@ namespace Viscoplastic
 
 
   void
-  declare_viscoplastic_law_parameters(ParameterHandler &prm)
+  declare_viscoplastic_law_parameters(ParameterHandler                  &prm,
+                                      const std::vector<LawDescription> &laws)
   {
-    for (const LawDescription &law : registered_laws())
+    for (const LawDescription &law : laws)
       {
         const Subsection subsection(prm, law.name);
         law.declare(prm);
@@ -217,15 +220,16 @@ namespace Viscoplastic
 
 
   std::unique_ptr<ViscoplasticLaw>
-  make_viscoplastic_law(const std::string &name,
-                        ParameterHandler  &prm,
-                        const std::string &section,
-                        const unsigned int dim)
+  make_viscoplastic_law(const std::string                 &name,
+                        ParameterHandler                  &prm,
+                        const std::string                 &section,
+                        const unsigned int                 dim,
+                        const std::vector<LawDescription> &laws)
   {
     if (name == elastic_name)
       return nullptr;
 
-    for (const LawDescription &law : registered_laws())
+    for (const LawDescription &law : laws)
       if (law.name == name)
         {
           const Subsection subsection(prm, law.name);
@@ -234,7 +238,7 @@ namespace Viscoplastic
 
     AssertThrow(false,
                 ExcMessage("There is no viscoplastic law `" + name +
-                           "'; the laws are " + viscoplastic_law_names() +
+                           "'; the laws are " + viscoplastic_law_names(laws) +
                            "."));
     return nullptr;
   }

@@ -7,6 +7,7 @@
 
 #include <cctype>
 #include <map>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -212,6 +213,15 @@ namespace Viscoplastic
 
 
 
+    /// The name of a section without its number.
+    std::string
+    kind_of(const std::string &name)
+    {
+      return name.substr(0, name.find_last_not_of("0123456789") + 1);
+    }
+
+
+
     // ------------------------------------------------------------ markdown
 
     /// `text' in quotation marks as code, and the rest without markup.
@@ -292,17 +302,20 @@ namespace Viscoplastic
 
 
   std::string
-  describe_parameters()
+  describe_parameters(const std::vector<std::string> &files,
+                      const std::vector<std::string> &overrides)
   {
-    const Parameters   parameters({}, scene);
+    const Parameters   parameters(files, files.empty() ? scene : overrides);
     std::ostringstream out;
     out << "# All parameters of viscoplastic_contact "
         << VISCOPLASTIC_CONTACT_VERSION << "\n#\n"
         << wrap(introduction, "# ", "# ", 78) << "#\n"
         << wrap("`#' begins a comment, a backslash at the end of a line "
                 "continues it, `include other.prm' reads another file. This "
-                "file is itself a scene, a square at rest: change it, and "
-                "delete what should keep its default.",
+                "file is itself a scene, " +
+                  std::string(files.empty() ? "a square at rest" :
+                                              "the one that was given") +
+                  ": change it, and delete what should keep its default.",
                 "# ",
                 "# ",
                 78)
@@ -313,6 +326,7 @@ namespace Viscoplastic
       if (is_entry(child.second))
         top.push_back(child);
     print_section(out, top, "", true);
+    std::set<std::string> explained; // one of each kind of numbered sections
     for (const auto &[name, section] : tree)
       {
         if (is_entry(section))
@@ -321,7 +335,7 @@ namespace Viscoplastic
         const auto about = about_sections.find(name);
         if (about != about_sections.end())
           out << wrap(about->second, "# ", "# ", 78);
-        if (name == described_material)
+        if (files.empty() && name == described_material)
           {
             out << "#\n# subsection " << name << '\n';
             print_template(out, section, "#   ");
@@ -332,8 +346,7 @@ namespace Viscoplastic
         print_section(out,
                       section,
                       "  ",
-                      name.compare(0, 9, "Boundary ") != 0 ||
-                        name == described_boundary);
+                      explained.insert(kind_of(name)).second);
         out << "end\n";
       }
     return out.str();
@@ -342,11 +355,16 @@ namespace Viscoplastic
 
 
   std::string
-  describe_parameters_as_markdown()
+  describe_parameters_as_markdown(const std::vector<std::string> &files,
+                                  const std::vector<std::string> &overrides)
   {
-    const Parameters   parameters({},
-                                {described_boundary + "/Role=not given",
-                                   described_material + "/Law=elastic"});
+    std::vector<std::string> described{described_boundary + "/Role=not given",
+                                       described_material + "/Law=elastic"};
+    const std::string        libraries = "Additional shared libraries";
+    if (!files.empty())
+      described.push_back(libraries + "=" +
+                          Parameters(files, overrides).handler.get(libraries));
+    const Parameters   parameters({}, described);
     std::ostringstream out;
     out << "<!-- Made by `viscoplastic_contact --describe=markdown`; do not "
            "edit. -->\n\n# Parameters\n\n"

@@ -5,14 +5,15 @@
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/laws/law_library.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
 
 #include <boost/property_tree/json_parser.hpp>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <regex>
 #include <sstream>
@@ -22,6 +23,8 @@ namespace Viscoplastic
   namespace
   {
     using Tree = boost::property_tree::ptree;
+
+    const std::string shared_libraries_entry = "Additional shared libraries";
 
 
 
@@ -40,6 +43,17 @@ namespace Viscoplastic
           for (auto &entry : collect(below, path + name + '/'))
             entries.push_back(std::move(entry));
       return entries;
+    }
+
+
+
+    std::string
+    comma_separated(const Names &names)
+    {
+      std::string result;
+      for (const std::string &name : names)
+        result += (result.empty() ? "" : ", ") + name;
+      return result;
     }
 
 
@@ -263,6 +277,39 @@ namespace Viscoplastic
 
 
   void
+  Parameters::load_shared_libraries(const std::vector<ParameterLine> &lines)
+  {
+    const auto line =
+      std::find_if(lines.rbegin(), lines.rend(), [](const auto &one) {
+        return one.section.empty() && one.name == shared_libraries_entry;
+      });
+    if (line == lines.rend() || line->value.empty())
+      {
+        laws = built_in_laws();
+        return;
+      }
+    for (const std::string &library :
+         Utilities::split_string_list(line->value, ','))
+      {
+        AssertThrow(!library.empty(),
+                    ExcMessage(line->origin() + ": '" + shared_libraries_entry +
+                               "' has an empty name between commas."));
+        shared_libraries.push_back(line->locate(library));
+      }
+    try
+      {
+        laws = laws_with_libraries(shared_libraries);
+      }
+    catch (const std::exception &exception)
+      {
+        AssertThrow(false,
+                    ExcMessage(line->origin() + ": " + reason(exception)));
+      }
+  }
+
+
+
+  void
   Parameters::declare()
   {
     const auto in_subsection = [this](const std::string &name, auto &entries) {
@@ -274,11 +321,24 @@ namespace Viscoplastic
                           dimension,
                           "2 (plane strain) or 3.",
                           Patterns::Integer(2, 3));
+    // Independent of the working directory, as the name of the mesh file.
+    handler.declare_entry(
+      shared_libraries_entry,
+      "",
+      Patterns::Anything(),
+      "Files with laws that are not part of the program, separated by commas; "
+      "relative to the parameter file, or to the working directory.");
     in_subsection("Geometry", geometry);
-    in_subsection("Material", material);
+    const auto declare_material = [this](const std::string  &name,
+                                         MaterialParameters &entries) {
+      handler.enter_subsection(name);
+      entries.declare(handler, laws);
+      handler.leave_subsection();
+    };
+    declare_material("Material", material);
     in_subsection("Material", stress);
     for (auto &[id, numbered] : materials)
-      in_subsection("Material " + std::to_string(id), numbered);
+      declare_material("Material " + std::to_string(id), numbered);
     in_subsection("Loads", loads);
     in_subsection("Initial state", initial_state);
     in_subsection("Exact solution", exact_solution);
@@ -363,25 +423,13 @@ namespace Viscoplastic
   void
   Parameters::locate_mesh_file(const std::vector<ParameterLine> &lines)
   {
-    namespace fs = std::filesystem;
     const auto line =
       std::find_if(lines.rbegin(), lines.rend(), [](const auto &one) {
         return one.section + one.name == "Geometry/File";
       });
-    const fs::path given(geometry.file);
-    const fs::path beside =
-      line->number == 0 ? given : fs::path(line->source).parent_path() / given;
-    std::error_code error;
-    const fs::path  found = fs::exists(beside, error) ? beside : given;
-    AssertThrow(fs::exists(found, error),
-                ExcMessage(
-                  line->origin() + ": 'Geometry/File' is '" +
-                  excerpt(geometry.file) + "', but there is no such file" +
-                  (beside == given ? "." :
-                                     ", neither beside '" + line->source +
-                                       "' nor in the working directory.")));
+    const std::string found = line->locate(geometry.file);
     handler.enter_subsection("Geometry");
-    handler.set("File", fs::absolute(found).lexically_normal().string());
+    handler.set("File", found);
     handler.leave_subsection();
   }
 
@@ -445,8 +493,10 @@ namespace Viscoplastic
           if (line.name.compare(0, 9, "Material ") == 0)
             materials[id()];
         }
+    load_shared_libraries(lines);
     declare();
     read(lines);
+    handler.set(shared_libraries_entry, comma_separated(shared_libraries));
     if (!materials.empty())
       check_material(lines);
     if (!geometry.file.empty())

@@ -245,6 +245,26 @@ namespace Viscoplastic
 
 
 
+  std::string
+  ParameterLine::locate(const std::string &file) const
+  {
+    const fs::path given(file);
+    const fs::path beside =
+      number == 0 ? given : fs::path(source).parent_path() / given;
+    std::error_code error;
+    const fs::path  found = fs::exists(beside, error) ? beside : given;
+    require(fs::exists(found, error),
+            origin() + ": '" + section + name + "' is '" + excerpt(value) +
+              "', but there is no such file" +
+              (value == file ? "" : " as '" + excerpt(file) + "'") +
+              (beside == given ? "." :
+                                 ", neither beside '" + source +
+                                   "' nor in the working directory."));
+    return fs::absolute(found).lexically_normal().string();
+  }
+
+
+
   std::vector<ParameterLine>
   read_parameter_lines(const std::vector<std::string> &files,
                        const std::vector<std::string> &assignments)

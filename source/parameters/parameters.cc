@@ -71,7 +71,8 @@ namespace Viscoplastic
 
 
   void
-  MaterialParameters::declare(ParameterHandler &prm)
+  MaterialParameters::declare(ParameterHandler                  &prm,
+                              const std::vector<LawDescription> &laws)
   {
     prm.add_parameter("Young's modulus",
                       youngs_modulus,
@@ -93,9 +94,9 @@ namespace Viscoplastic
                       law,
                       "The function G of (1.1), the viscous part of the "
                       "stress rate. " +
-                        viscoplastic_law_help(),
-                      Patterns::Selection(viscoplastic_law_names()));
-    declare_viscoplastic_law_parameters(prm);
+                        viscoplastic_law_help(laws),
+                      Patterns::Selection(viscoplastic_law_names(laws)));
+    declare_viscoplastic_law_parameters(prm, laws);
   }
 
 

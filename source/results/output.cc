@@ -229,6 +229,9 @@ namespace Viscoplastic
                                     {"n_mpi_ranks", n_ranks},
                                     {"dimension", dim},
                                     {"effects", scene.effects()}};
+      const auto            &libraries = scene.parameters.shared_libraries;
+      if (!libraries.empty())
+        record["shared_libraries"] = libraries;
       if (summary != nullptr && summary->errors)
         record["estimated_error"] =
           record_of_errors(*summary->errors, "largest_energy_norm");

@@ -4,6 +4,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/resources.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/run/command_line.h>
@@ -17,20 +18,17 @@ namespace Viscoplastic
 
   namespace
   {
-    /// A part of the sources as it can be named from here, if the sources are
-    /// still where the program was built.
+    /// A file that comes with the program as it can be named from here.
     std::string
     source_path(const std::string &path)
     {
-      std::error_code             error;
-      const std::filesystem::path full =
-        std::filesystem::path(VISCOPLASTIC_CONTACT_SOURCE_DIRECTORY) / path;
-      if (!std::filesystem::exists(full, error))
+      const std::string full = path_of_resource(path);
+      if (full.empty())
         return path;
+      std::error_code   error;
       const std::string from_here =
         std::filesystem::proximate(full, error).string();
-      return error || from_here.compare(0, 2, "..") == 0 ? full.string() :
-                                                           from_here;
+      return error || from_here.compare(0, 2, "..") == 0 ? full : from_here;
     }
 
 
@@ -249,6 +247,8 @@ namespace Viscoplastic
     void
     Reader::check() const
     {
+      const bool describes = result.task == Task::describe ||
+                             result.task == Task::describe_as_markdown;
       const bool reads_scene =
         result.task == Task::run || result.task == Task::check ||
         result.task == Task::study || result.task == Task::effects;
@@ -267,10 +267,12 @@ namespace Viscoplastic
                                "--restart." :
                                "The options " + task_option +
                                  " and --restart exclude each other."));
-      AssertThrow(reads_scene ||
+      AssertThrow(reads_scene || (describes && !result.files.empty()) ||
                     (result.files.empty() && result.overrides.empty()),
-                  ExcMessage("The option " + task_option +
-                             " goes without parameter files and --set."));
+                  ExcMessage("The option " + task_option + " goes without " +
+                             (describes ? "--set where there is no parameter "
+                                          "file." :
+                                          "parameter files and --set.")));
     }
   } // namespace
 
@@ -318,7 +320,10 @@ namespace Viscoplastic
            "  --describe[=markdown]        print a parameter file with every "
            "entry, its\n"
            "                               meaning, unit, default and allowed "
-           "values\n"
+           "values;\n"
+           "                               for a scene, with its values and the "
+           "laws of\n"
+           "                               its shared libraries\n"
            "  --restart                    go on from the last checkpoint of "
            "this scene\n"
            "  --restart=auto               the same, or begin where there is "

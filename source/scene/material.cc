@@ -70,25 +70,27 @@ namespace Viscoplastic
 
 
     std::unique_ptr<const ViscoplasticLaw>
-    make_law(const std::string &section,
-             const std::string &name,
-             ParameterHandler  &handler,
-             const unsigned int dim)
+    make_law(const std::string                 &section,
+             const std::string                 &name,
+             ParameterHandler                  &handler,
+             const unsigned int                 dim,
+             const std::vector<LawDescription> &laws)
     {
       const Subsection subsection(handler, section);
-      return make_viscoplastic_law(name, handler, section, dim);
+      return make_viscoplastic_law(name, handler, section, dim, laws);
     }
   } // namespace
 
 
 
   template <int dim>
-  Material<dim>::Material(const std::string        &section,
-                          const MaterialParameters &parameters,
-                          ParameterHandler         &handler)
+  Material<dim>::Material(const std::string                 &section,
+                          const MaterialParameters          &parameters,
+                          ParameterHandler                  &handler,
+                          const std::vector<LawDescription> &laws)
     : section(section)
     , law_name(parameters.law)
-    , law(make_law(section, law_name, handler, dim))
+    , law(make_law(section, law_name, handler, dim, laws))
   {
     if (!parameters.voigt_matrix.empty())
       {

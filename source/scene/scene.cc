@@ -267,8 +267,11 @@ namespace Viscoplastic
     material_of_id.clear();
     if (parameters.materials.empty())
       {
-        materials.push_back(std::make_unique<const Material<dim>>(
-          "Material", parameters.material, parameters.handler));
+        materials.push_back(
+          std::make_unique<const Material<dim>>("Material",
+                                                parameters.material,
+                                                parameters.handler,
+                                                parameters.laws));
         for (const types::material_id id : ids)
           material_of_id[id] = materials[0].get();
         return;
@@ -294,7 +297,7 @@ namespace Viscoplastic
                                "'; the mesh has the material ids " + list(ids) +
                                "."));
         materials.push_back(std::make_unique<const Material<dim>>(
-          section, given->second, parameters.handler));
+          section, given->second, parameters.handler, parameters.laws));
         material_of_id[id] = materials.back().get();
       }
     for (const auto &pair : parameters.materials)

@@ -203,8 +203,11 @@ namespace Viscoplastic
         add(path + '=' + value + '\n');
     if (knows_reference)
       add(name(*reference));
+    std::vector<std::string> files = scene.shared_libraries;
     if (!scene.geometry.file.empty())
-      add(read_file_if_any(scene.geometry.file).value_or(""));
+      files.push_back(scene.geometry.file);
+    for (const std::string &file : files)
+      add(read_file_if_any(file).value_or(""));
     return {{"version", VISCOPLASTIC_CONTACT_VERSION},
             {"revision", VISCOPLASTIC_CONTACT_GIT_REVISION},
             {"ranks",

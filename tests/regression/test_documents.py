@@ -19,7 +19,10 @@ from pathlib import Path
 from harness import EXECUTABLE, SOURCE, Run, TestCase, main
 
 PAGES = sorted(
-    [SOURCE / "README.md", SOURCE / "LICENSES.md"]
+    [
+        SOURCE / name
+        for name in ("README.md", "LICENSES.md", "CHANGELOG.md", "CONTRIBUTING.md")
+    ]
     + list((SOURCE / "doc").glob("*.md"))
     + list((SOURCE / "benchmarks").glob("*.md"))
 )

@@ -71,7 +71,9 @@ namespace
     refused({"--check"}, "There is no parameter file among the arguments");
     refused({"--check", "--version"},
             "--check and --version exclude each other.");
-    refused({"--describe", "a.prm"}, "goes without parameter files");
+    EXPECT_EQ(read_command_line({"--describe", "a.prm"}).files.size(), 1u);
+    refused({"--describe", "--set", "a=b"}, "goes without --set where");
+    refused({"--version", "a.prm"}, "goes without parameter files");
     refused({"--describe=html"}, "the values prm and markdown, not 'html'.");
     refused({"--quiet=yes", "a.prm"}, "--quiet has no value");
     refused({"study"}, "There is no parameter file among the arguments");

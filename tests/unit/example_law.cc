@@ -59,6 +59,12 @@ namespace Viscoplastic
       }
 
       bool
+      has_symmetric_tangents() const override
+      {
+        return true;
+      }
+
+      bool
       deviatoric_flow() const override
       {
         return true;

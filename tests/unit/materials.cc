@@ -22,7 +22,7 @@ namespace
     ParameterHandler   prm;
     MaterialParameters parameters;
     prm.enter_subsection("Material 2");
-    parameters.declare(prm);
+    parameters.declare(prm, built_in_laws());
     prm.leave_subsection();
     prm.parse_input_from_string("subsection Material 2\n" + entries +
                                 "\nend\n");
@@ -154,7 +154,7 @@ namespace
     ParameterHandler   prm;
     MaterialParameters parameters;
     prm.enter_subsection("Material 7");
-    parameters.declare(prm);
+    parameters.declare(prm, built_in_laws());
     prm.leave_subsection();
     prm.parse_input_from_string("subsection Material 7\n"
                                 "set Law = perzyna\n"

@@ -117,7 +117,8 @@ namespace Viscoplastic
    * arguments only, so cells can be visited in any order and by several
    * threads. G must be Lipschitz in stress and strain, (2.8).
    *
-   * A new law is one file in source/laws and one line in the list of
+   * A new law is one file: in a shared library that the parameter file names,
+   * or in source/laws with one line in the list of
    * source/laws/viscoplastic_law.cc, see doc/adding_a_law.md.
    */
   class ViscoplasticLaw
@@ -298,21 +299,29 @@ namespace Viscoplastic
     std::function<std::unique_ptr<ViscoplasticLaw>(const LawSection &)> make;
   };
 
+  /// The laws that the program has by itself. What follows takes others as
+  /// well, from shared libraries.
+  const std::vector<LawDescription> &
+  built_in_laws();
+
   /**
    * The allowed values of the entry `Law` as for Patterns::Selection:
-   * `elastic` and the registered laws, separated by `|`.
+   * `elastic` and the laws, separated by `|`.
    */
   std::string
-  viscoplastic_law_names();
+  viscoplastic_law_names(
+    const std::vector<LawDescription> &laws = built_in_laws());
 
-  /// The manual entries of `elastic` and all registered laws, one paragraph
-  /// each.
+  /// The manual entries of `elastic` and all laws, one paragraph each.
   std::string
-  viscoplastic_law_help();
+  viscoplastic_law_help(
+    const std::vector<LawDescription> &laws = built_in_laws());
 
   /// Declares one subsection per law inside the current subsection.
   void
-  declare_viscoplastic_law_parameters(ParameterHandler &prm);
+  declare_viscoplastic_law_parameters(
+    ParameterHandler                  &prm,
+    const std::vector<LawDescription> &laws = built_in_laws());
 
   /**
    * The law of this name, with the parameters of its subsection of the
@@ -322,8 +331,10 @@ namespace Viscoplastic
    * name and for parameters outside their range.
    */
   std::unique_ptr<ViscoplasticLaw>
-  make_viscoplastic_law(const std::string &name,
-                        ParameterHandler  &prm,
-                        const std::string &section = "Material",
-                        const unsigned int dim     = 3);
+  make_viscoplastic_law(
+    const std::string                 &name,
+    ParameterHandler                  &prm,
+    const std::string                 &section = "Material",
+    const unsigned int                 dim     = 3,
+    const std::vector<LawDescription> &laws    = built_in_laws());
 } // namespace Viscoplastic

@@ -2,18 +2,24 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace Viscoplastic
 {
   /**
    * A parameter file with every entry: meaning, unit, default and allowed
    * values in comments, and `Boundary 0' and `Material 1' in the place of all
-   * ids. It is itself a scene.
+   * ids. It is itself a scene: that of @p files and @p overrides, as
+   * Parameters reads them, or without files a square at rest.
    */
   std::string
-  describe_parameters();
+  describe_parameters(const std::vector<std::string> &files     = {},
+                      const std::vector<std::string> &overrides = {});
 
-  /// The same as a chapter of the manual, doc/parameters.md.
+  /// All entries as a chapter of the manual, doc/parameters.md, with those of
+  /// the laws in the shared libraries of the scene.
   std::string
-  describe_parameters_as_markdown();
+  describe_parameters_as_markdown(
+    const std::vector<std::string> &files     = {},
+    const std::vector<std::string> &overrides = {});
 } // namespace Viscoplastic

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/laws/viscoplastic_law.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 
 #include <boost/property_tree/ptree_fwd.hpp>
@@ -41,9 +42,12 @@ namespace Viscoplastic
     operator=(const Parameters &) = delete;
 
     /// The first of the files, which gives the scene its name.
-    const std::string  file;
-    unsigned int       dimension = 2;
-    GeometryParameters geometry;
+    const std::string file;
+    /// Whose laws are known beside those of the program.
+    std::vector<std::string>    shared_libraries;
+    std::vector<LawDescription> laws;
+    unsigned int                dimension = 2;
+    GeometryParameters          geometry;
     /// Of all cells, or of none where there are numbered materials.
     MaterialParameters material;
     StressParameters   stress;
@@ -70,6 +74,10 @@ namespace Viscoplastic
     mutable ParameterHandler handler;
 
   private:
+    /// Load what must be there before entries can be declared.
+    void
+    load_shared_libraries(const std::vector<ParameterLine> &lines);
+
     void
     declare();
 

@@ -21,6 +21,14 @@ namespace Viscoplastic
     std::string value      = {};
     bool        is_opening = false;
 
+    /**
+     * The absolute path of a file that the line names: beside the file that the
+     * line stands in, or in the working directory. Throws ExcMessage if it is
+     * in neither.
+     */
+    std::string
+    locate(const std::string &file) const;
+
     /// "'scene.prm', line 3" or "--set 'Time/Phases=1: 4'", for messages.
     std::string
     origin() const;

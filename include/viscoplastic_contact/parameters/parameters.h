@@ -6,10 +6,13 @@
 #include <viscoplastic_contact/parameters/choices.h>
 
 #include <string>
+#include <vector>
 
 namespace Viscoplastic
 {
   using namespace dealii;
+
+  struct LawDescription;
 
   // One struct for each subsection of the parameter file: defaults, the help
   // text of every entry (in declare()), and the checks that need no mesh.
@@ -41,7 +44,7 @@ namespace Viscoplastic
     std::string law = "elastic";
 
     void
-    declare(ParameterHandler &prm);
+    declare(ParameterHandler &prm, const std::vector<LawDescription> &laws);
   };
 
   /// How stresses are discretized, the same for all materials.

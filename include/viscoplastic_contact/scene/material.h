@@ -24,9 +24,10 @@ namespace Viscoplastic
      * "Material 2"), in which @p handler stands outside; it names the material
      * in messages. Throws ExcMessage for data that cannot be right anywhere.
      */
-    Material(const std::string        &section,
-             const MaterialParameters &parameters,
-             ParameterHandler         &handler);
+    Material(const std::string                 &section,
+             const MaterialParameters          &parameters,
+             ParameterHandler                  &handler,
+             const std::vector<LawDescription> &laws = built_in_laws());
 
     /// E at x. Throws ExcMessage naming section, place and what is wrong.
     Stiffness

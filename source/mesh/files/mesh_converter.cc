@@ -3,7 +3,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/base/resources.h>
 #include <viscoplastic_contact/mesh/files/mesh_converter.h>
 #include <viscoplastic_contact/mesh/files/python.h>
 
@@ -41,7 +41,7 @@ namespace Viscoplastic
       std::error_code   error;
       process::child    script(
         python,
-        VISCOPLASTIC_CONTACT_SOURCE_DIRECTORY "/contrib/convert_mesh",
+        path_of_resource("contrib/convert_mesh"),
         "--format",
         format,
         "--",

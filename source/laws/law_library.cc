@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/laws/law_library.h>
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// What the loader says of the last failure, without the name of the file
+    /// that it begins with.
+    std::string
+    loader_message(const std::string &file)
+    {
+      const char       *words = dlerror();
+      std::string       text  = words == nullptr ? "no reason is known" : words;
+      const std::string name  = file + ": ";
+      if (text.compare(0, name.size(), name) == 0)
+        text.erase(0, name.size());
+      return text;
+    }
+
+
+
+    /// `elastic', which is no law, is taken as well.
+    void
+    check_name(const std::string                 &name,
+               const std::vector<LawDescription> &others,
+               const std::string                 &file)
+    {
+      const bool is_word =
+        !name.empty() &&
+        std::all_of(name.begin(), name.end(), [](const unsigned char c) {
+          return std::isalnum(c) != 0 || c == '_';
+        });
+      AssertThrow(is_word,
+                  ExcMessage("the shared library '" + file +
+                             "' has a law with the name '" + excerpt(name) +
+                             "'; names of laws have letters, digits and "
+                             "underscores."));
+      const std::string taken = '|' + viscoplastic_law_names(others) + '|';
+      AssertThrow(taken.find('|' + name + '|') == std::string::npos,
+                  ExcMessage("the shared library '" + file +
+                             "' has a law with the name '" + name +
+                             "', which another law has; the laws without it "
+                             "are " +
+                             viscoplastic_law_names(others) + "."));
+    }
+  } // namespace
+
+
+
+  std::vector<LawDescription>
+  load_laws(const std::string &file)
+  {
+    // All symbols at once: a function that is missing must not end a run in the
+    // middle. What is loaded stays, since laws are used until the end.
+    void *library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    AssertThrow(library != nullptr,
+                ExcMessage(
+                  "the shared library '" + file +
+                  "' cannot be loaded: " + excerpt(loader_message(file), 300) +
+                  ". Laws have to be built for this version of the program."));
+
+    const auto interface = reinterpret_cast<const char *(*)()>(
+      dlsym(library, "viscoplastic_contact_law_interface"));
+    const auto describe =
+      reinterpret_cast<void (*)(std::vector<LawDescription> &)>(
+        dlsym(library, "viscoplastic_contact_describe_laws"));
+    AssertThrow(interface != nullptr && describe != nullptr,
+                ExcMessage("the shared library '" + file +
+                           "' has no laws: VISCOPLASTIC_LAW_LIBRARY is missing "
+                           "in its source."));
+    const std::string theirs = interface();
+    AssertThrow(theirs == VISCOPLASTIC_CONTACT_LAW_INTERFACE,
+                ExcMessage("the shared library '" + file +
+                           "' was built for version " + excerpt(theirs) +
+                           " of the laws' interface, but this program has " +
+                           VISCOPLASTIC_CONTACT_LAW_INTERFACE +
+                           "; build it again."));
+    std::vector<LawDescription> laws;
+    describe(laws);
+    return laws;
+  }
+
+
+
+  std::vector<LawDescription>
+  laws_with_libraries(const std::vector<std::string> &files)
+  {
+    std::vector<LawDescription> laws = built_in_laws();
+    for (const std::string &file : files)
+      for (LawDescription &law : load_laws(file))
+        {
+          check_name(law.name, laws, file);
+          laws.push_back(std::move(law));
+        }
+    return laws;
+  }
+} // namespace Viscoplastic

@@ -9,7 +9,7 @@
 _viscoplastic_contact_entries()
 {
   "$1" --describe "${@:2}" 2>/dev/null | awk '
-    # Material 1 is described in comments.
+    # Material 1 and Table 1 are described in comments.
     /^# subsection [A-Z][a-z]+ [0-9]+$/ { commented = 1 }
     commented { sub(/^# ?/, "") }
     { sub(/^ +/, "") }

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/table_parser.h>
 
 #include <cmath>
 #include <iostream>
@@ -86,6 +87,19 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// Null if @p parser knows no tables.
+    template <int dim>
+    const ParserWithTables<dim> *
+    with_tables(const std::unique_ptr<FunctionParser<dim>> &parser)
+    {
+      return dynamic_cast<const ParserWithTables<dim> *>(parser.get());
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::unique_ptr<FunctionParser<dim>>
   parse_expression(const std::string &text,
@@ -95,7 +109,12 @@ namespace Viscoplastic
     AssertThrow(!Utilities::trim(text).empty(),
                 ExcMessage("The expression of '" + entry + "' is empty."));
     refuse_slips(text, entry);
-    auto parser = std::make_unique<FunctionParser<dim>>(1);
+    const auto                           columns = columns_in(text);
+    std::unique_ptr<FunctionParser<dim>> parser;
+    if (columns.empty())
+      parser = std::make_unique<FunctionParser<dim>>(1);
+    else
+      parser = std::make_unique<ParserWithTables<dim>>(columns);
     // deal.II prints what muParser says to std::cerr; the user gets it in our
     // sentence instead.
     std::ostringstream printed;
@@ -217,13 +236,17 @@ namespace Viscoplastic
   {
     if (!std::isfinite(result))
       {
+        const auto        *tables = with_tables<dim>(parser);
         std::ostringstream message;
         message << "The expression '" << (parser ? excerpt(text) : "derived")
                 << "' of '" << entry << "' has the value " << result << " at "
                 << (variables == FunctionParser<dim>::default_variable_names() ?
                       "x" :
                       variables)
-                << " = (" << x << "), t = " << t << "; it must be finite.";
+                << " = (" << x << "), t = " << t
+                << (tables && !tables->last_gap().empty() ?
+                      ": " + tables->last_gap() + "." :
+                      "; it must be finite.");
         AssertThrow(false, ExcMessage(message.str()));
       }
   }
@@ -236,7 +259,9 @@ namespace Viscoplastic
   {
     if (!parser || !time_dependent)
       return false;
-    bool result = text.find_first_of("<>=!?") != std::string::npos;
+    const auto *tables = with_tables<dim>(parser);
+    bool        result = text.find_first_of("<>=!?") != std::string::npos ||
+                  (tables && tables->may_jump());
     for (const char *function : {"if", "int", "ceil", "floor", "rint", "sign"})
       result = result || mentions(text, function);
     return result;
@@ -250,7 +275,7 @@ namespace Viscoplastic
   {
     if (!parser || !time_dependent)
       return false;
-    bool result = may_jump();
+    bool result = may_jump() || with_tables<dim>(parser);
     for (const char *function :
          {"abs", "min", "max", "fmod", "asin", "acos", "sqrt"})
       result = result || mentions(text, function);

@@ -508,6 +508,9 @@ namespace Viscoplastic
                           "Law",
                           "Volumetric integration",
                           "Stress history"});
+      // What is in the file counts.
+      if (kind == "Table")
+        return entry != "File";
       if (kind == "Boundary")
         return is_one_of({"Role", "Friction law"});
       if (section == "Initial state")

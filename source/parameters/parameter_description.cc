@@ -20,12 +20,14 @@ namespace Viscoplastic
     // The scene that is described: the default body, held at x = 0.
     const std::string described_boundary = "Boundary 0";
     const std::string described_material = "Material 1";
+    const std::string described_table    = "Table 1";
 
     const std::vector<std::string> scene{"Boundary 0/Role=clamped",
                                          "Boundary 1/Role=free",
                                          "Boundary 2/Role=free",
                                          "Boundary 3/Role=free",
-                                         "Material 1/Law=elastic"};
+                                         "Material 1/Law=elastic",
+                                         "Table 1/File="};
 
     const std::string introduction =
       "Entries that are left out have their defaults. Units are any consistent "
@@ -42,6 +44,12 @@ namespace Viscoplastic
       {described_material,
        "Bodies of several materials have no material in `Material' but one in "
        "a subsection `Material <id>' for each material id of the mesh."},
+      {described_table,
+       "A table whose columns all expressions may call as functions: with "
+       "`File' = load.csv, whose first line is `t, force', `Traction' may be "
+       "`2*force(t); 0'. The first column is the argument, a time or whatever "
+       "the expression gives; `Interpolation' is linear or constant, `Outside' "
+       "of the rows refuse or constant."},
       {"Material",
        "The material of all cells, and how stresses are discretised."}};
 
@@ -278,7 +286,8 @@ namespace Viscoplastic
           {
             const std::string name  = path + item.name;
             std::string       title = name;
-            if (name == described_boundary || name == described_material)
+            if (name == described_boundary || name == described_material ||
+                name == described_table)
               title = name.substr(0, name.find(' ')) + " <id>";
             out << "\n## " << as_markdown(title) << "\n\n";
             const auto about = about_sections.find(name);
@@ -335,7 +344,8 @@ namespace Viscoplastic
         const auto about = about_sections.find(name);
         if (about != about_sections.end())
           out << wrap(about->second, "# ", "# ", 78);
-        if (files.empty() && name == described_material)
+        if (files.empty() &&
+            (name == described_material || name == described_table))
           {
             out << "#\n# subsection " << name << '\n';
             print_template(out, section, "#   ");
@@ -359,7 +369,8 @@ namespace Viscoplastic
                                   const std::vector<std::string> &overrides)
   {
     std::vector<std::string> described{described_boundary + "/Role=not given",
-                                       described_material + "/Law=elastic"};
+                                       described_material + "/Law=elastic",
+                                       described_table + "/File="};
     const std::string        libraries = "Additional shared libraries";
     if (!files.empty())
       described.push_back(libraries + "=" +

@@ -10,12 +10,14 @@
 #include <viscoplastic_contact/laws/law_library.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
+#include <viscoplastic_contact/parameters/table_sections.h>
 
 #include <boost/property_tree/json_parser.hpp>
 
 #include <algorithm>
 #include <limits>
 #include <regex>
+#include <set>
 #include <sstream>
 
 namespace Viscoplastic
@@ -106,9 +108,11 @@ namespace Viscoplastic
         {
           if (line.name == "Boundary")
             return said + "; a boundary needs its id, as in `Boundary 0'.";
+          if (line.name == "Table")
+            return said + "; a table needs a number, as in `Table 1'.";
           // Any number makes a subsection.
           const std::size_t id = line.name.find_last_not_of("0123456789") + 1;
-          for (const std::string kind : {"Boundary ", "Material "})
+          for (const std::string kind : {"Boundary ", "Material ", "Table "})
             if (id < line.name.size())
               outermost.push_back(kind + line.name.substr(id));
           if (line.number > 0 && !parent.empty() &&
@@ -482,6 +486,7 @@ namespace Viscoplastic
   {
     const std::vector<ParameterLine> lines =
       read_parameter_lines(files, overrides);
+    std::set<unsigned int> tables;
     for (const ParameterLine &line : lines)
       if (line.is_opening && line.section.empty())
         {
@@ -492,10 +497,15 @@ namespace Viscoplastic
             boundaries[id()];
           if (line.name.compare(0, 9, "Material ") == 0)
             materials[id()];
+          if (line.name.compare(0, 6, "Table ") == 0)
+            tables.insert(
+              static_cast<unsigned int>(std::stoul(line.name.substr(6))));
         }
     load_shared_libraries(lines);
     declare();
+    declare_tables(handler, tables);
     read(lines);
+    use_tables(read_tables(handler, tables, lines));
     handler.set(shared_libraries_entry, comma_separated(shared_libraries));
     if (!materials.empty())
       check_material(lines);

@@ -68,7 +68,8 @@ namespace Viscoplastic
     with_plain_id(const std::string &name, const std::string &origin)
     {
       const std::string kind = name.substr(0, name.find(' '));
-      if (kind == name || (kind != "Boundary" && kind != "Material"))
+      if (kind == name ||
+          (kind != "Boundary" && kind != "Material" && kind != "Table"))
         return name;
       const std::string id = Utilities::trim(name.substr(kind.size()));
       require(Patterns::Integer(0, largest_id).match(id),

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/error/recovery_estimate.h>
 #include <viscoplastic_contact/error/solution_errors.h>
@@ -232,6 +233,10 @@ namespace Viscoplastic
       const auto            &libraries = scene.parameters.shared_libraries;
       if (!libraries.empty())
         record["shared_libraries"] = libraries;
+      for (const auto &table : tables_in_use())
+        record["tables"].push_back({{"section", table->section},
+                                    {"file", table->file},
+                                    {"crc32", table->checksum}});
       if (summary != nullptr && summary->errors)
         record["estimated_error"] =
           record_of_errors(*summary->errors, "largest_energy_norm");

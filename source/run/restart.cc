@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
@@ -27,6 +28,19 @@ namespace Viscoplastic
     fields_file(const unsigned int rank)
     {
       return "fields_" + Utilities::int_to_string(rank, 5) + ".bin";
+    }
+
+
+
+    /// The entries and, of tables, what is in their files.
+    std::map<std::string, std::string>
+    values_with_tables(const Parameters &parameters)
+    {
+      auto values = parameters.values();
+      for (const auto &table : tables_in_use())
+        values[table->section + "/Checksum of the file"] =
+          std::to_string(table->checksum);
+      return values;
     }
 
 
@@ -110,7 +124,7 @@ namespace Viscoplastic
     manifest.n_ranks   = Utilities::MPI::n_mpi_processes(communicator);
     manifest.version =
       VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
-    manifest.parameters = parameters.values();
+    manifest.parameters = values_with_tables(parameters);
 
     std::map<std::string, std::string> files;
     files[mesh_file(rank)] = pack_mesh(triangulation);
@@ -208,7 +222,7 @@ namespace Viscoplastic
     const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
 
     const ParameterChanges changes =
-      compare_parameters(checkpoint.parameters, parameters.values());
+      compare_parameters(checkpoint.parameters, values_with_tables(parameters));
     AssertThrow(checkpoint.dimension == dim && changes.forbidden.empty(),
                 ExcMessage(name + "' cannot go on with other unknowns: " +
                            enumeration(changes.forbidden) +

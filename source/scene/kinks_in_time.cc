@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/scene/kinks_in_time.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
@@ -54,6 +55,12 @@ namespace Viscoplastic
               times.push_back(phase.start + i * (phase.end - phase.start) / n);
             times.push_back(phase.end);
           }
+        // Windows on both sides of each row of a table.
+        for (const auto &table : tables_in_use())
+          for (const double t : table->nodes())
+            if (t > 0. && t < end_time && datum.may_have_kinks())
+              times.push_back(t);
+        std::sort(times.begin(), times.end());
         std::vector<double> before = values(0.);
         paths.resize(before.size());
         for (std::size_t i = 1; i < times.size(); ++i)

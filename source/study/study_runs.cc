@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
@@ -206,6 +207,8 @@ namespace Viscoplastic
     std::vector<std::string> files = scene.shared_libraries;
     if (!scene.geometry.file.empty())
       files.push_back(scene.geometry.file);
+    for (const auto &table : tables_in_use())
+      add(std::to_string(table->checksum));
     for (const std::string &file : files)
       add(read_file_if_any(file).value_or(""));
     return {{"version", VISCOPLASTIC_CONTACT_VERSION},

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/mu_parser_internal.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/table.h>
+
+#include <muParser.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /**
+   * deal.II's parser with columns of tables as functions, which deal.II keeps
+   * muParser from: its variables, constants and functions are those of
+   * FunctionParser.
+   */
+  template <int dim>
+  class ParserWithTables : public FunctionParser<dim>
+  {
+  public:
+    explicit ParserWithTables(
+      const std::vector<std::shared_ptr<const DataTable::Column>> &columns)
+      : FunctionParser<dim>(1)
+    {
+      for (const auto &column : columns)
+        calls.push_back({column, *this});
+    }
+
+    using FunctionParser<dim>::initialize;
+
+    void
+    initialize(const std::string                   &variable_names,
+               const std::vector<std::string>      &expressions,
+               const std::map<std::string, double> &constants,
+               const bool /*time_dependent*/) override
+    {
+      namespace Functions = internal::FunctionParser;
+      const auto names    = Utilities::split_string_list(variable_names, ',');
+      variables.resize(names.size());
+      for (std::size_t i = 0; i < names.size(); ++i)
+        parser.DefineVar(names[i], &variables[i]);
+      for (const auto &[name, value] : constants)
+        parser.DefineConst(name, value);
+      parser.DefineFun("if", Functions::mu_if, true);
+      parser.DefineOprt("|", Functions::mu_or, 1);
+      parser.DefineOprt("&", Functions::mu_and, 2);
+      parser.DefineFun("int", Functions::mu_int, true);
+      parser.DefineFun("ceil", Functions::mu_ceil, true);
+      parser.DefineFun("cot", Functions::mu_cot, true);
+      parser.DefineFun("csc", Functions::mu_csc, true);
+      parser.DefineFun("floor", Functions::mu_floor, true);
+      parser.DefineFun("sec", Functions::mu_sec, true);
+      parser.DefineFun("log", Functions::mu_log, true);
+      parser.DefineFun("pow", Functions::mu_pow, true);
+      parser.DefineFun("erf", Functions::mu_erf, true);
+      parser.DefineFun("erfc", Functions::mu_erfc, true);
+      for (Call &call : calls)
+        parser.DefineFunUserData(call.column->name, &evaluate, &call, false);
+      // muParser takes no blank between a function and its parenthesis.
+      parser.SetExpr(
+        std::regex_replace(expressions[0], std::regex("(\\w)\\s+\\("), "$1("));
+    }
+
+    double
+    value(const Point<dim> &x, const unsigned int /*component*/) const override
+    {
+      gap.clear();
+      for (unsigned int d = 0; d < dim; ++d)
+        variables[d] = x[d];
+      variables[dim] = this->get_time();
+      try
+        {
+          return parser.Eval();
+        }
+      catch (const mu::ParserError &error)
+        {
+          AssertThrow(false, ExcMessage(error.GetMsg()));
+        }
+      return 0.;
+    }
+
+    bool
+    may_jump() const
+    {
+      for (const Call &call : calls)
+        if (call.column->may_jump())
+          return true;
+      return false;
+    }
+
+    /// Why a table had no value in the last evaluation; empty if all had one.
+    const std::string &
+    last_gap() const
+    {
+      return gap;
+    }
+
+  private:
+    struct Call
+    {
+      std::shared_ptr<const DataTable::Column> column;
+      const ParserWithTables                  &caller;
+    };
+
+    static double
+    evaluate(void *data, const double argument)
+    {
+      const Call  &call   = *static_cast<const Call *>(data);
+      const double result = call.column->value(argument);
+      if (std::isnan(result) && !std::isnan(argument))
+        call.caller.gap = call.column->explain_gap(argument);
+      return result;
+    }
+
+    // What an evaluation changes.
+    mutable mu::Parser          parser;
+    mutable std::vector<double> variables;
+    mutable std::string         gap;
+    std::vector<Call>           calls;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/mu_parser_internal.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/table.h>
+
+#include <boost/crc.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <regex>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Measured curves are shorter; this bounds memory.
+    const std::size_t most_numbers = 10'000'000;
+
+
+
+    unsigned int
+    crc(const std::string &text)
+    {
+      boost::crc_32_type crc;
+      crc.process_bytes(text.data(), text.size());
+      return crc.checksum();
+    }
+
+
+
+    std::vector<std::string>
+    cells(const std::string &line)
+    {
+      std::vector<std::string> result;
+      std::size_t              begin = 0;
+      for (std::size_t end = 0; end != std::string::npos; begin = end + 1)
+        {
+          end = line.find(',', begin);
+          result.push_back(Utilities::trim(line.substr(begin, end - begin)));
+        }
+      return result;
+    }
+
+
+
+    bool
+    is_name(const std::string &text)
+    {
+      return std::regex_match(text, std::regex("[A-Za-z][A-Za-z0-9_]*"));
+    }
+
+
+
+    Tables &
+    current_tables()
+    {
+      static Tables tables;
+      return tables;
+    }
+  } // namespace
+
+
+
+  DataTable::DataTable(const std::string  &text,
+                       const std::string  &file,
+                       const std::string  &section,
+                       const Interpolation interpolation,
+                       const Outside       outside)
+    : file(file)
+    , section(section)
+    , interpolation(interpolation)
+    , outside(outside)
+    , checksum(crc(text))
+  {
+    std::istringstream       input(text);
+    std::string              line;
+    std::vector<std::string> names;
+    unsigned int             n_lines = 0;
+    const auto               require = [&](const bool         condition,
+                             const std::string &sentence) {
+      AssertThrow(condition,
+                  ExcMessage("'" + file + "', line " + std::to_string(n_lines) +
+                             ": " + sentence));
+    };
+    while (std::getline(input, line))
+      {
+        ++n_lines;
+        if (n_lines == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
+          line.erase(0, 3); // a byte order mark
+        line = Utilities::trim(line);
+        if (line.empty() || line[0] == '#')
+          continue;
+        const std::vector<std::string> row = cells(line);
+        if (names.empty())
+          {
+            names = row;
+            for (const std::string &name : names)
+              require(is_name(name),
+                      "'" + excerpt(name) +
+                        "' is no name of a column; the first line of a table "
+                        "has names of letters, digits and underscores, "
+                        "separated by commas.");
+            require(names.size() > 1,
+                    "there is one column; a table needs that of the argument "
+                    "and others after it.");
+            values.resize(names.size() - 1);
+            continue;
+          }
+        require(row.size() == names.size(),
+                "there are " + std::to_string(row.size()) +
+                  " values, but the table has " + std::to_string(names.size()) +
+                  " columns.");
+        require((arguments.size() + 1) * names.size() <= most_numbers,
+                "the table has more than " + std::to_string(most_numbers) +
+                  " numbers.");
+        for (std::size_t c = 0; c < row.size(); ++c)
+          {
+            double number = std::numeric_limits<double>::quiet_NaN();
+            try
+              {
+                number = Utilities::string_to_double(row[c]);
+              }
+            catch (const std::exception &)
+              {} // refused below
+            require(std::isfinite(number),
+                    "'" + excerpt(row[c]) + "' in the column '" + names[c] +
+                      "' is no finite number.");
+            (c == 0 ? arguments : values[c - 1]).push_back(number);
+          }
+        const std::size_t n = arguments.size();
+        require(n == 1 || arguments[n - 1] > arguments[n - 2],
+                "'" + row[0] + "' in the column '" + names[0] +
+                  "' is not above the value before it; the first column has "
+                  "to ascend.");
+      }
+    require(arguments.size() >= 2,
+            "the table ends with " + std::to_string(arguments.size()) +
+              " rows of numbers; it needs two or more.");
+    name_of_argument = names[0];
+    functions.reserve(values.size());
+    for (std::size_t c = 0; c < values.size(); ++c)
+      functions.emplace_back(*this, names[c + 1], c);
+  }
+
+
+
+  double
+  DataTable::Column::value(const double argument) const
+  {
+    const std::vector<double> &x = table.arguments, &y = table.values[number];
+    if (table.outside == Outside::refuse &&
+        !(argument >= x.front() && argument <= x.back()))
+      return std::numeric_limits<double>::quiet_NaN();
+    if (std::isnan(argument))
+      return argument;
+    const std::size_t next =
+      std::upper_bound(x.begin(), x.end(), argument) - x.begin();
+    if (next == 0)
+      return y.front();
+    if (next == x.size())
+      return y.back();
+    if (may_jump())
+      return y[next - 1];
+    // The value of a row exactly, and no overflow of differences.
+    const double share = (argument - x[next - 1]) / (x[next] - x[next - 1]);
+    return (1. - share) * y[next - 1] + share * y[next];
+  }
+
+
+
+  std::string
+  DataTable::Column::explain_gap(const double argument) const
+  {
+    std::ostringstream message;
+    message << "'" << name << "' of '" << table.section << "' has no value at "
+            << argument << ", since '" << table.name_of_argument
+            << "' goes from " << table.arguments.front() << " to "
+            << table.arguments.back() << " in '" << table.file << "'";
+    return message.str();
+  }
+
+
+
+  void
+  use_tables(const Tables &tables)
+  {
+    // deal.II's functions, muParser's own, variables of expressions.
+    std::vector<std::string> taken =
+      internal::FunctionParser::get_function_names();
+    for (const char *name :
+         {"sin",  "cos",   "tan",   "asin",      "acos",     "atan",  "sinh",
+          "cosh", "tanh",  "asinh", "acosh",     "log2",     "exp",   "abs",
+          "sqrt", "sign",  "rint",  "sum",       "avg",      "min",   "max",
+          "ln",   "atan2", "atanh", "log10",     "erf",      "x",     "y",
+          "z",    "t",     "id",    "pi",        "Pi",       "_pi",   "_e",
+          "p",    "fmod",  "rand",  "rand_seed", "sigma_eq", "eps_eq"})
+      taken.emplace_back(name);
+    for (const auto &table : tables)
+      for (const DataTable::Column &column : table->columns())
+        {
+          AssertThrow(std::find(taken.begin(), taken.end(), column.name) ==
+                        taken.end(),
+                      ExcMessage("'" + table->section + "/File': the column '" +
+                                 column.name + "' of '" + table->file +
+                                 "' has a name that expressions know already; "
+                                 "give it another one."));
+          taken.push_back(column.name);
+        }
+    current_tables() = tables;
+  }
+
+
+
+  const Tables &
+  tables_in_use()
+  {
+    return current_tables();
+  }
+
+
+
+  std::vector<std::shared_ptr<const DataTable::Column>>
+  columns_in(const std::string &text)
+  {
+    std::vector<std::shared_ptr<const DataTable::Column>> columns;
+    for (const auto &table : current_tables())
+      for (const DataTable::Column &column : table->columns())
+        if (std::regex_search(text, std::regex("\\b" + column.name + "\\b")))
+          columns.emplace_back(table, &column); // keeps the table
+    return columns;
+  }
+} // namespace Viscoplastic

@@ -197,7 +197,7 @@ namespace Viscoplastic
       "Role",
       role,
       "`clamped': u = 0; `displacement': given components of u; `traction': "
-      "sigma nu = F; `free': sigma nu = 0; `symmetry': u_nu = 0 without "
+      "sigma nu = F - p nu; `free': sigma nu = 0; `symmetry': u_nu = 0 without "
       "friction on a flat piece; `contact': a flat piece of Gamma_3 with a "
       "friction law.",
       Patterns::Selection("not given|clamped|displacement|traction|free|"
@@ -209,8 +209,15 @@ namespace Viscoplastic
                       "leaves a component free. Unit: length.");
     prm.add_parameter("Traction",
                       traction,
-                      "For the role traction: F(x,t), components separated by "
-                      "semicolons. Unit: stress.");
+                      "For the role traction, and for the role displacement "
+                      "in its free components: F(x,t), components separated "
+                      "by semicolons. Unit: stress.");
+    prm.add_parameter("Pressure",
+                      pressure,
+                      "As Traction, and added to it: p(x,t), which presses on "
+                      "the body where it is positive. It acts along the normal "
+                      "of the faces as they are in the mesh: F = -p nu. Unit: "
+                      "stress.");
     prm.add_parameter(
       "Friction law",
       friction_law,

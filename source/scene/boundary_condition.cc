@@ -126,8 +126,10 @@ namespace Viscoplastic
       const bool is_contact = condition.role == BoundaryRole::contact;
       if (name == "Displacement")
         return condition.role == BoundaryRole::displacement;
-      if (name == "Traction")
-        return condition.role == BoundaryRole::traction;
+      if (name == "Traction" || name == "Pressure")
+        return condition.role == BoundaryRole::traction ||
+               (condition.role == BoundaryRole::displacement &&
+                !condition.prescribes_all());
       if (name == "Friction bound")
         return condition.friction_law == FrictionLaw::tresca;
       if (name == "Friction coefficient" || name == "Normal stress")
@@ -163,6 +165,7 @@ namespace Viscoplastic
     if (solution)
       for (const auto &[name, text] :
            {std::make_pair("Traction", parameters.traction),
+            std::make_pair("Pressure", parameters.pressure),
             std::make_pair("Normal stress", parameters.normal_stress)})
         AssertThrow(!is_given(text),
                     ExcMessage("'" + entry(id, name) +
@@ -170,7 +173,7 @@ namespace Viscoplastic
                                "solution makes it; leave one of them out."));
     const auto scalar = [&](const std::string &name, const std::string &text) {
       std::optional<Expression<dim>> result;
-      AssertThrow(is_given(text) || !uses(*this, name) ||
+      AssertThrow(is_given(text) || !uses(*this, name) || name == "Pressure" ||
                     (solution && name == "Normal stress"),
                   ExcMessage("'" + entry(id, name) +
                              "' is missing; the friction law " +
@@ -201,11 +204,15 @@ namespace Viscoplastic
           displacement = std::move(components);
       }
     AssertThrow(role != BoundaryRole::traction || solution ||
-                  is_given(parameters.traction),
+                  is_given(parameters.traction) ||
+                  is_given(parameters.pressure),
                 ExcMessage("'" + entry(id, "Traction") +
-                           "' is missing; a boundary without load has the "
-                           "role free."));
-    traction       = vector("Traction", parameters.traction);
+                           "' is missing, and so is 'Pressure'; a boundary "
+                           "without load has the role free."));
+    traction = vector("Traction", parameters.traction);
+    pressure = scalar("Pressure", parameters.pressure);
+    if (pressure && pressure->is_zero())
+      pressure.reset();
     friction_bound = scalar("Friction bound", parameters.friction_bound);
     friction_coefficient =
       scalar("Friction coefficient", parameters.friction_coefficient);
@@ -239,6 +246,7 @@ namespace Viscoplastic
     };
     compare("Displacement", parameters.displacement, "");
     compare("Traction", parameters.traction, "");
+    compare("Pressure", parameters.pressure, "0");
     compare("Friction law", parameters.friction_law, "none");
     compare("Friction bound", parameters.friction_bound, "0");
     compare("Friction coefficient", parameters.friction_coefficient, "0");
@@ -293,6 +301,7 @@ namespace Viscoplastic
   BoundaryCondition<dim>::load_depends_on_time() const
   {
     return (traction && traction->depends_on_time()) ||
+           (pressure && pressure->depends_on_time()) ||
            (normal_stress && normal_stress->depends_on_time()) ||
            has_derived_traction();
   }
@@ -305,18 +314,18 @@ namespace Viscoplastic
                                const Tensor<1, dim> &outward_normal,
                                const double          t) const
   {
-    if (traction)
-      return traction->vector(x, t);
     if (normal_stress)
       return normal_stress->value(x, t) * outward_normal;
     Tensor<1, dim> result;
     if (has_derived_traction())
-      {
-        result = solution->traction(x, outward_normal, t);
-        for (unsigned int d = 0; d < dim; ++d)
-          if (displacement[d])
-            result[d] = 0.;
-      }
+      result = solution->traction(x, outward_normal, t);
+    if (traction)
+      result = traction->vector(x, t);
+    if (pressure)
+      result -= pressure->value(x, t) * outward_normal;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (displacement[d])
+        result[d] = 0.;
     return result;
   }
 
@@ -363,6 +372,7 @@ namespace Viscoplastic
     add(friction_bound);
     add(friction_coefficient);
     add(normal_stress);
+    add(pressure);
     for (const auto *vector : {&traction, &foundation_motion})
       if (*vector)
         for (unsigned int d = 0; d < dim; ++d)

@@ -419,6 +419,8 @@ namespace Viscoplastic
       result.push_back("body force");
     add("surface traction",
         boundaries([](const auto &b) { return b.traction.has_value(); }));
+    add("surface pressure",
+        boundaries([](const auto &b) { return b.pressure.has_value(); }));
     add("prescribed displacement", boundaries([](const auto &b) {
           return b.role == BoundaryRole::displacement;
         }));

@@ -30,6 +30,7 @@ NONSENSE = {
     "Material 1/Young's modulus": "-1 0 x-5 nan",
     "Boundary 0/Role": "glue",
     "Boundary 0/Traction": "1 1;2;3;4 nan;0;0 q;0 1,5;0 (;0 ;; inf;inf;inf",
+    "Boundary 0/Pressure": "nan q 1;1 (",
     "Boundary 2/Friction law": "kinetic",
     "Boundary 2/Friction bound": "-1 -0.001 nan 0.5-2*t x-1 q 1/0 -1e-300 0,08 0.1;0.1",
     "Boundary 4/Friction coefficient": "-1 nan -0.001 q",

@@ -13,14 +13,18 @@ namespace Viscoplastic
   {
     /// L(t, .) in nodal frames.
     DistributedVector values;
-    /// The resultant force of b, F and S.
+    /// The resultant force of b, F, p and S.
     Tensor<1, dim> resultant;
   };
 
 
   /**
-   * The load functional L(t,v) = int b.v + int_Gamma2 F.v + int_Gamma3 S v_nu.
-   * What does not depend on time is integrated once.
+   * The load functional
+   *
+   *     L(t,v) = int b.v + int_Gamma2 (F - p nu).v + int_Gamma3 S v_nu
+   *
+   * with nu as it is on the faces of the mesh. What does not depend on time is
+   * integrated once.
    */
   template <int dim>
   class Loads
@@ -47,7 +51,7 @@ namespace Viscoplastic
     add(const double t, const bool time_dependent, Load<dim> &load) const;
 
     const AdmissibleSpace<dim> &space;
-    std::vector<Face>           faces; // owned, with F or S
+    std::vector<Face>           faces; // owned, with F, p or S
     Load<dim>                   constant;
   };
 } // namespace Viscoplastic

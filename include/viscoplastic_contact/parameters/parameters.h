@@ -90,7 +90,7 @@ namespace Viscoplastic
   struct BoundaryParameters
   {
     std::string role = "not given";
-    std::string displacement, traction;
+    std::string displacement, traction, pressure;
     std::string friction_law = "not given";
     std::string friction_bound;
     std::string friction_coefficient;

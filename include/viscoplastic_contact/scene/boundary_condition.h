@@ -57,8 +57,11 @@ namespace Viscoplastic
 
     /// Role displacement: the given components; empty ones are free.
     std::array<std::optional<Expression<dim>>, dim> displacement;
-    /// F, role traction.
+    /// Roles traction and displacement, the latter in its free directions:
+    /// the given part of F, and the pressure p, which adds -p nu. Absent
+    /// where identically zero.
     std::optional<VectorExpression<dim>> traction;
+    std::optional<Expression<dim>>       pressure;
     /// d of bilateral contact; absent where identically zero.
     std::optional<Expression<dim>> foundation_displacement;
     /// w, whose tangential part slip is relative to; absent at rest.
@@ -95,18 +98,19 @@ namespace Viscoplastic
       return friction_law == FrictionLaw::glued;
     }
 
-    /// Whether there is F or S.
+    /// Whether there is F, p or S.
     bool
     carries_load() const
     {
-      return traction || normal_stress || has_derived_traction();
+      return traction || pressure || normal_stress || has_derived_traction();
     }
 
     bool
     load_depends_on_time() const;
 
-    /// The force per area that is given at a point with this outward normal:
-    /// F, or S nu; zero in the directions in which u is prescribed.
+    /// The force per area that is given at a point with this outward normal of
+    /// the face: F - p nu, or S nu; zero in the directions in which u is
+    /// prescribed.
     Tensor<1, dim>
     load(const Point<dim>     &x,
          const Tensor<1, dim> &outward_normal,

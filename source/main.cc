@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/mpi_singleton.h>
 #include <viscoplastic_contact/base/signals.h>
@@ -12,14 +13,40 @@
 #include <viscoplastic_contact/study/price_mode.h>
 #include <viscoplastic_contact/study/study.h>
 
+#include <cctype>
 #include <chrono>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <thread>
 
 namespace
 {
   using namespace Viscoplastic;
+
+  /// What @p work returns. Expressions that cannot be parsed are complained of
+  /// with the place where they stand.
+  template <typename Work>
+  std::string
+  with_places(const Parameters &parameters, const Work &work)
+  {
+    try
+      {
+        return work();
+      }
+    catch (const ExpressionError &error)
+      {
+        const std::string origin = parameters.origin_of(error.entry);
+        if (origin.empty())
+          throw;
+        std::string sentence = reason(error);
+        sentence[0]          = static_cast<char>(std::tolower(sentence[0]));
+        AssertThrow(false, dealii::ExcMessage(origin + ": " + sentence));
+        return "";
+      }
+  }
+
+
 
   /// The sentence of a run that a signal has ended; empty for others.
   template <int dim>
@@ -60,9 +87,11 @@ namespace
     if (command_line.price > 0.)
       return run_at_price(command_line, console);
     const Parameters parameters(command_line.files, command_line.overrides);
-    return parameters.dimension == 2 ?
-             run<2>(parameters, command_line, console) :
-             run<3>(parameters, command_line, console);
+    return with_places(parameters, [&] {
+      return parameters.dimension == 2 ?
+               run<2>(parameters, command_line, console) :
+               run<3>(parameters, command_line, console);
+    });
   }
 
 
@@ -95,6 +124,50 @@ namespace
   complain(const std::string &sentence)
   {
     std::cerr << "viscoplastic_contact: " << sentence << std::endl;
+  }
+
+
+
+  /**
+   * Whether all ranks come here within some seconds: then they have failed
+   * together, and nobody waits for anybody. Those that come have left whatever
+   * they did in common. @p communicator is used for nothing else.
+   */
+  bool
+  all_have_failed(const MPI_Comm communicator)
+  {
+    using Clock       = std::chrono::steady_clock;
+    const auto  until = Clock::now() + std::chrono::seconds(3);
+    MPI_Request barrier;
+    MPI_Ibarrier(communicator, &barrier);
+    int are_here = 0;
+    while (true)
+      {
+        MPI_Test(&barrier, &are_here, MPI_STATUS_IGNORE);
+        if (are_here != 0 || Clock::now() > until)
+          return are_here != 0;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+  }
+
+
+
+  /// Complain of a failure on this rank, of several ranks. Does not return if
+  /// others go on.
+  void
+  complain_in_parallel(const std::string &sentence, const MPI_Comm communicator)
+  {
+    if (!all_have_failed(communicator))
+      {
+        // Others may be in the middle of something that this rank has left.
+        complain(sentence);
+        MPI_Abort(MPI_COMM_WORLD, 1);
+      }
+    const std::vector<std::string> sentences =
+      dealii::Utilities::MPI::gather(communicator, sentence);
+    for (const std::string &each :
+         std::set<std::string>(sentences.begin(), sentences.end()))
+      complain(each);
   }
 
 
@@ -153,10 +226,14 @@ main(int argc, char *argv[])
     mpi.emplace(n_hidden_arguments, argv, 1);
   unsigned int rank        = 0;
   bool         is_parallel = false;
+  // For the case that something fails.
+  MPI_Comm of_failures = MPI_COMM_NULL;
   if (mpi)
     {
       rank        = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
       is_parallel = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1;
+      if (is_parallel)
+        MPI_Comm_dup(MPI_COMM_WORLD, &of_failures);
     }
 
   ignore_file_size_signal();
@@ -189,13 +266,10 @@ main(int argc, char *argv[])
     }
   catch (const std::exception &exception)
     {
-      // Most errors occur on all ranks; the first one speaks. A rank that fails
-      // alone must speak, too, and end the others.
-      if (rank > 0)
-        std::this_thread::sleep_for(std::chrono::seconds(2));
-      complain(reason(exception));
       if (is_parallel)
-        MPI_Abort(MPI_COMM_WORLD, 1);
+        complain_in_parallel(reason(exception), of_failures);
+      else
+        complain(reason(exception));
       return 1;
     }
 }

@@ -50,6 +50,39 @@ namespace Viscoplastic
 
 
 
+    /// The name, of a variable or function, that muParser complains of because
+    /// it does not know it; empty if it complains of something else.
+    std::string
+    unknown_name(const std::string &words, const std::string &variables)
+    {
+      static const std::regex unknown(
+        "^Unexpected token \"([A-Za-z_][A-Za-z_0-9]*)");
+      std::smatch part;
+      if (!std::regex_search(words, part, unknown) ||
+          mentions(variables, part[1]))
+        return "";
+      return part[1];
+    }
+
+
+
+    /// "x, y and t" of "x,y,t".
+    std::string
+    list_of(const std::string &variables)
+    {
+      std::string                    result;
+      const std::vector<std::string> names =
+        Utilities::split_string_list(variables);
+      for (std::size_t i = 0; i < names.size(); ++i)
+        result += (i == 0               ? "" :
+                   i + 1 < names.size() ? ", " :
+                                          " and ") +
+                  names[i];
+      return result;
+    }
+
+
+
     /// What muParser takes, but nobody means: the last of a list `0,5' as its
     /// value, an assignment `x = 1' for a comparison; and random numbers, which
     /// differ from run to run and from rank to rank.
@@ -58,9 +91,10 @@ namespace Viscoplastic
     {
       const auto refuse = [&](const std::string &why) {
         AssertThrow(false,
-                    ExcMessage("The expression '" +
-                               excerpt(Utilities::trim(text)) + "' of '" +
-                               entry + "' " + why));
+                    ExpressionError("The expression '" +
+                                      excerpt(Utilities::trim(text)) +
+                                      "' of '" + entry + "' " + why,
+                                    entry));
       };
       for (const char *function : {"rand", "rand_seed"})
         if (mentions(text, function))
@@ -107,7 +141,8 @@ namespace Viscoplastic
                    const std::string &entry)
   {
     AssertThrow(!Utilities::trim(text).empty(),
-                ExcMessage("The expression of '" + entry + "' is empty."));
+                ExpressionError("The expression of '" + entry + "' is empty.",
+                                entry));
     refuse_slips(text, entry);
     const auto                           columns = columns_in(text);
     std::unique_ptr<FunctionParser<dim>> parser;
@@ -131,13 +166,20 @@ namespace Viscoplastic
     catch (const std::exception &exception)
       {
         std::cerr.rdbuf(original);
-        const std::string why = message_of_parser(printed.str());
-        AssertThrow(false,
-                    ExcMessage(
-                      "The expression '" + excerpt(Utilities::trim(text)) +
-                      "' of '" + entry + "' cannot be parsed: " +
-                      as_sentence(
-                        excerpt(why.empty() ? reason(exception) : why, 200))));
+        const std::string why  = message_of_parser(printed.str());
+        const std::string name = unknown_name(why, variables);
+        AssertThrow(
+          false,
+          ExpressionError("The expression '" + excerpt(Utilities::trim(text)) +
+                            "' of '" + entry + "' cannot be parsed: " +
+                            (name.empty() ?
+                               as_sentence(excerpt(
+                                 why.empty() ? reason(exception) : why, 200)) :
+                               "there is no '" + excerpt(name) +
+                                 "'; its variables are " + list_of(variables) +
+                                 ", and pi and functions such as sin, exp, min "
+                                 "and if are known."),
+                          entry));
       }
     return parser;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 
@@ -171,52 +172,6 @@ namespace Viscoplastic
 
 
 
-  namespace
-  {
-    /**
-     * The largest relaxation rate and where it is: of samples whose rates are
-     * equal up to solver tolerances, the one with the least coordinates, so
-     * that it does not depend on the number of ranks.
-     */
-    struct CriticalSample
-    {
-      double   largest = 0., critical = 0.;
-      Point<3> position;
-
-      void
-      add(const double r, const Point<3> &x)
-      {
-        const bool is_larger = r > critical * (1. + 1e-6),
-                   is_equal  = r > 0. && r >= critical * (1. - 1e-6);
-        largest              = std::max(largest, r);
-        if (is_larger ||
-            (is_equal && std::lexicographical_compare(x.begin_raw(),
-                                                      x.end_raw(),
-                                                      position.begin_raw(),
-                                                      position.end_raw())))
-          {
-            critical = r;
-            position = x;
-          }
-      }
-
-      void
-      reduce(const MPI_Comm comm)
-      {
-        const std::array<double, 5> own{
-          {largest, critical, position[0], position[1], position[2]}};
-        *this = CriticalSample();
-        for (const auto &other : Utilities::MPI::all_gather(comm, own))
-          {
-            add(other[1], Point<3>(other[2], other[3], other[4]));
-            largest = std::max(largest, other[0]);
-          }
-      }
-    };
-  } // namespace
-
-
-
   template <int dim>
   FlowRate
   evaluate_flow(const FlowLaws<dim>                    &laws,
@@ -230,7 +185,7 @@ namespace Viscoplastic
     const auto              now          = laws.at(t);
     FlowRate                result{IrreversibleStress(z.size()), 0., 0.};
     std::vector<SymmetricTensor<2, 3>> strain(stress_space.n_samples);
-    CriticalSample                     worst;
+    LargestPlace<3>                    worst;
     // An expression without a value there, on some rank.
     fail_together(comm, [&] {
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
@@ -260,8 +215,8 @@ namespace Viscoplastic
         }
     });
     worst.reduce(comm);
-    result.relaxation_rate   = worst.largest;
-    result.critical_position = worst.position;
+    result.relaxation_rate   = worst.value();
+    result.critical_position = worst.position();
     if (laws.any_cap)
       result.capped_volume = Utilities::MPI::sum(result.capped_volume, comm);
     return result;

@@ -3,6 +3,8 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <viscoplastic_contact/base/largest_place.h>
+#include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
@@ -127,6 +129,45 @@ namespace Viscoplastic
 
 
   template <int dim>
+  IrreversibleStress
+  initial_irreversible_stress(const StressSpace<dim>  &stress_space,
+                              const DistributedVector &u0)
+  {
+    const AdmissibleSpace<dim>        &space     = stress_space.space;
+    const unsigned int                 n_samples = stress_space.n_samples;
+    IrreversibleStress                 z(stress_space.n_cells() * n_samples);
+    std::vector<SymmetricTensor<2, 3>> strain(n_samples);
+    if (u0.size() > 0)
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        {
+          stress_space.strains(c, u0.begin(), strain.data());
+          for (unsigned int s = 0; s < n_samples; ++s)
+            z[c * n_samples + s] =
+              -1. * stress_space.moduli(c).stress(strain[s]);
+        }
+    // (3.18): sigma0^h = P_Qh sigma0.
+    if (space.scene.initial_stress)
+      {
+        std::size_t c = 0;
+        for_each_cell(space, 2, [&](const auto &, const auto &values) {
+          for (const unsigned int q : values.quadrature_point_indices())
+            {
+              const SymmetricTensor<2, 3> stress =
+                initial_stress(space.scene, values.quadrature_point(q));
+              if (n_samples == 1)
+                z[c] += stress * (values.JxW(q) / stress_space.volume(c));
+              else
+                z[c * n_samples + q] += stress;
+            }
+          ++c;
+        });
+      }
+    return z;
+  }
+
+
+
+  template <int dim>
   State<dim>
   make_initial_state(const StressSpace<dim> &stress_space,
                      const bool              equilibrate)
@@ -174,35 +215,7 @@ namespace Viscoplastic
       }
 
     if (scene.has_irreversible_stress())
-      {
-        std::vector<SymmetricTensor<2, 3>> strain(stress_space.n_samples);
-        state.z.resize(stress_space.n_cells() * stress_space.n_samples);
-        for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-          {
-            stress_space.strains(c, state.u.begin(), strain.data());
-            for (unsigned int s = 0; s < stress_space.n_samples; ++s)
-              state.z[c * stress_space.n_samples + s] =
-                -1. * stress_space.moduli(c).stress(strain[s]);
-          }
-        // (3.18): sigma0^h = P_Qh sigma0.
-        if (scene.initial_stress)
-          {
-            std::size_t c = 0;
-            for_each_cell(space, 2, [&](const auto &, const auto &values) {
-              for (const unsigned int q : values.quadrature_point_indices())
-                {
-                  const SymmetricTensor<2, 3> stress =
-                    initial_stress(scene, values.quadrature_point(q));
-                  if (stress_space.n_samples == 1)
-                    state.z[c] +=
-                      stress * (values.JxW(q) / stress_space.volume(c));
-                  else
-                    state.z[c * stress_space.n_samples + q] += stress;
-                }
-              ++c;
-            });
-          }
-      }
+      state.z = initial_irreversible_stress(stress_space, state.u);
     return state;
   }
 
@@ -261,8 +274,48 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// The node with the largest of some forces, and its boundaries. Forces of
+    /// hanging nodes are zero.
+    template <int dim>
+    void
+    locate_largest_force(const AdmissibleSpace<dim>  &space,
+                         const DistributedVector     &forces,
+                         CompatibilityViolation<dim> &result)
+    {
+      LargestPlace<dim> largest;
+      for (const auto &cell : space.cells)
+        for (const unsigned int v : cell->vertex_indices())
+          if (const auto dof = cell->vertex_dof_index(v, 0);
+              space.owned.is_element(dof))
+            {
+              Tensor<1, dim> force;
+              for (unsigned int d = 0; d < dim; ++d)
+                force[d] =
+                  forces.begin()[space.owned.index_within_set(dof) + d];
+              largest.add(stable_norm(force), cell->vertex(v));
+            }
+      largest.reduce(space.communicator);
+      result.position = largest.position();
+
+      // Which ranks see its faces, not only the one that owns it.
+      std::set<types::boundary_id> here;
+      for (const auto &cell : space.cells)
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            for (const unsigned int v : cell->face(f)->vertex_indices())
+              if (cell->face(f)->vertex(v) == result.position)
+                here.insert(cell->face(f)->boundary_id());
+      result.boundaries =
+        Utilities::MPI::compute_set_union(here, space.communicator);
+    }
+  } // namespace
+
+
+
   template <int dim>
-  double
+  CompatibilityViolation<dim>
   compatibility_violation(const AdmissibleSpace<dim> &space,
                           const Load<dim>            &load,
                           const ContactFace<dim>     *face,
@@ -296,7 +349,12 @@ namespace Viscoplastic
       }
     // Where reactions balance the initial stress, nothing but rounding is left
     // of it.
-    return size > 1e-12 * largest ? residual.l2_norm() / size : 0.;
+    CompatibilityViolation<dim> result;
+    if (size > 1e-12 * largest)
+      result.relative = residual.l2_norm() / size;
+    if (result.relative > 0.)
+      locate_largest_force(space, residual, result);
+    return result;
   }
 
 
@@ -305,6 +363,12 @@ namespace Viscoplastic
   make_initial_state<2>(const StressSpace<2> &, const bool);
   template State<3>
   make_initial_state<3>(const StressSpace<3> &, const bool);
+  template IrreversibleStress
+  initial_irreversible_stress<2>(const StressSpace<2> &,
+                                 const DistributedVector &);
+  template IrreversibleStress
+  initial_irreversible_stress<3>(const StressSpace<3> &,
+                                 const DistributedVector &);
   template double
   initial_data_error<2>(const StressSpace<2> &,
                         const State<2> &,
@@ -313,12 +377,12 @@ namespace Viscoplastic
   initial_data_error<3>(const StressSpace<3> &,
                         const State<3> &,
                         Vector<double> *);
-  template double
+  template CompatibilityViolation<2>
   compatibility_violation<2>(const AdmissibleSpace<2> &,
                              const Load<2> &,
                              const ContactFace<2> *,
                              FrictionState &);
-  template double
+  template CompatibilityViolation<3>
   compatibility_violation<3>(const AdmissibleSpace<3> &,
                              const Load<3> &,
                              const ContactFace<3> *,

@@ -52,12 +52,11 @@ namespace Viscoplastic
     : name(section.path + "/" + entry)
     , text(section.prm.get(entry))
     , range(range)
-    , expression(std::make_shared<Expression<3>>(text, name))
   {
     // A z in a plane scene gets the message of any unknown symbol.
     if (section.dim == 2)
       Expression<2>(text, name);
-
+    expression = std::make_shared<Expression<3>>(text, name);
     if (!depends_on_position() && !depends_on_time())
       value(Point<3>(), 0.);
   }

@@ -88,6 +88,27 @@ namespace Viscoplastic
 
 
 
+    /// The name of a line with `/' for each `.', if that begins with a
+    /// subsection; otherwise empty.
+    std::string
+    with_slashes(const ParameterLine &line, const Entries &entries)
+    {
+      const std::size_t dot = line.name.find('.');
+      if (dot == std::string::npos)
+        return "";
+      std::string path = line.section + line.name;
+      std::replace(path.begin(), path.end(), '.', '/');
+      const std::string section = path.substr(0, path.find('/'));
+      const std::string kind    = section.substr(0, section.find(' '));
+      return contains(names_in("", entries, true), section) ||
+                 ((kind == "Boundary" || kind == "Material") &&
+                  kind != section) ?
+               path :
+               "";
+    }
+
+
+
     /// That there is no such entry or subsection, and what may have been meant.
     std::string
     unknown_name(const ParameterLine &line, const Tree &declared)
@@ -131,6 +152,15 @@ namespace Viscoplastic
         }
       else
         {
+          const std::string path = with_slashes(line, entries);
+          if (!path.empty())
+            return said + (line.number == 0 ?
+                             "; subsections are separated by `/', as in '" +
+                               excerpt(path) + "'." :
+                             "; it is `set " +
+                               excerpt(path.substr(path.rfind('/') + 1)) +
+                               "' within `subsection " +
+                               excerpt(path.substr(0, path.find('/'))) + "'.");
           if (contains(names_in(line.section, entries, true), line.name))
             return said + "; that is the name of a subsection.";
           if (contains(outermost, line.name))
@@ -233,6 +263,7 @@ namespace Viscoplastic
   allowed_values(const std::string &pattern_description)
   {
     static const std::regex selection("\\[Selection (.*) \\]"),
+      selections("\\[MultipleSelection (.*) \\]"),
       range("\\[(Integer range|Double) (.*)\\.\\.\\.(.*) \\(inclusive\\)\\]"),
       items("\\[List of <(.*)> of length (.*)\\.\\.\\.(.*) \\(inclusive\\)\\]");
     static const std::map<std::string, std::string> others{
@@ -241,6 +272,9 @@ namespace Viscoplastic
       {"[Anything]", "any text"}};
 
     std::smatch part;
+    if (std::regex_match(pattern_description, part, selections))
+      return "names separated by commas, each one of " +
+             enumeration(Utilities::split_string_list(part[1], '|'), 50);
     if (std::regex_match(pattern_description, part, selection))
       {
         std::vector<std::string> values =
@@ -501,6 +535,9 @@ namespace Viscoplastic
             tables.insert(
               static_cast<unsigned int>(std::stoul(line.name.substr(6))));
         }
+    for (const ParameterLine &line : lines)
+      if (!line.is_opening && !line.name.empty())
+        origins[line.section + line.name] = line.origin();
     load_shared_libraries(lines);
     declare();
     declare_tables(handler, tables);
@@ -519,6 +556,15 @@ namespace Viscoplastic
     AssertThrow(solver.contact_tolerance == 0. ||
                   solver.contact_tolerance >= 1e-14,
                 ExcMessage(message.str()));
+  }
+
+
+
+  std::string
+  Parameters::origin_of(const std::string &path) const
+  {
+    const auto origin = origins.find(path);
+    return origin == origins.end() ? "" : origin->second;
   }
 
 

@@ -53,6 +53,35 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ViscoplasticContact<dim>::announce_stability_limit()
+  {
+    if (std::none_of(scene.materials.begin(),
+                     scene.materials.end(),
+                     [](const auto &material) {
+                       return material->law != nullptr;
+                     }))
+      return;
+    const State<dim> &state = accepted.state;
+    const double      rate =
+      evaluate_flow(discretization->laws, state.u, state.z, state.t)
+        .relaxation_rate;
+    if (rate == 0.)
+      out << "Stability limit 2/r: none without stress; r grows with the "
+             "stress, and a run says where it is largest\n";
+    else if (parameters.initial_state.equilibrate)
+      {
+        const TimeStep largest = scene.schedule.largest_step();
+        out << "Stability limit 2/r before the initial state is brought into "
+               "equilibrium: "
+            << 2. / rate << (scene.is_implicit() ? " of explicit schemes" : "")
+            << "; the largest step is " << largest.k << '\n';
+      }
+  }
+
+
+
+  template <int dim>
+  void
   ViscoplasticContact<dim>::check()
   {
     make_mesh();
@@ -75,6 +104,7 @@ namespace Viscoplastic
         check_compatibility(d.loads.assemble(0.));
         check_steps();
       }
+    announce_stability_limit();
     const unsigned int n_steps = scene.schedule.n_steps();
 
     // The data of later times, of at most a hundred steps.

@@ -315,21 +315,23 @@ namespace Viscoplastic
   {
     const Discretization<dim> &d = *discretization;
     const double tolerance = parameters.initial_state.compatibility_tolerance;
-    const double violation = compatibility_violation(d.space,
-                                                     load,
-                                                     d.face.get(),
-                                                     accepted.state.friction);
+    const CompatibilityViolation<dim> violation = compatibility_violation(
+      d.space, load, d.face.get(), accepted.state.friction);
     // Data that a solution makes are compatible up to quadrature.
     if (scene.exact_solution && scene.exact_solution->makes_data)
       return;
     std::ostringstream message;
     message << "The initial data are not in equilibrium with the loads at "
                "t = 0, (2.12): the relative violation is "
-            << violation << ", and 'Initial state/Compatibility tolerance' is "
-            << tolerance
+            << violation.relative
+            << ", and 'Initial state/Compatibility tolerance' is " << tolerance
+            << "; it is largest at x = (" << violation.position << "), "
+            << (violation.boundaries.empty() ?
+                  "inside of the body" :
+                  "on boundary " + list(violation.boundaries))
             << "; start with loads that the initial stress balances, or set "
                "'Initial state/Equilibrate'.";
-    AssertThrow(violation <= tolerance, ExcMessage(message.str()));
+    AssertThrow(violation.relative <= tolerance, ExcMessage(message.str()));
   }
 
 

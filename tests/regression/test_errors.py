@@ -8,7 +8,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from harness import EXECUTABLE, TestCase, main, run, scene_file
+from harness import EXECUTABLE, MPIRUN, TestCase, main, run, scene_file
 
 SMALL = {
     "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
@@ -81,6 +81,35 @@ class Refused(TestCase):
             "include SLAB\n\nsubsection Lods\nend\n",
             r"scene\.prm', line 3: there is no subsection 'Lods'; "
             r"did you mean 'Loads'\?$",
+        )
+
+    def test_unknown_name_in_an_expression(self):
+        """File, line, and what may be used; of ids and a law, too."""
+        for section, entry, value, variables in (
+            ("Boundary 0", "Traction", "0.3*q; 0", "x, y and t"),
+            ("Geometry", "Boundary ids", "q", "x, y and id"),
+        ):
+            self.refused_text(
+                f"include SLAB\nsubsection {section}\n  set {entry} = {value}\nend\n",
+                rf"scene\.prm', line 3: the expression '.*q' of '{section}/{entry}' "
+                rf"cannot be parsed: there is no 'q'; its variables are {variables}, and pi",
+            )
+        self.refused_text(
+            "include SLAB\n",
+            r"--set 'Material/maxwell/Viscosity=eta': the expression 'eta'.* no 'eta'; ",
+            more=["--set", "Material/maxwell/Viscosity=eta"],
+        )
+
+    def test_dots_between_names(self):
+        self.refused_text(
+            "include SLAB\n",
+            r"--set 'Time\.Phases=1: 4': there is no entry 'Time\.Phases' outside of "
+            r"subsections; subsections are separated by `/', as in 'Time/Phases'\.$",
+            more=["--set", "Time.Phases=1: 4"],
+        )
+        self.refused_text(
+            "include SLAB\nset Boundary 0.Traction = 0; 0\n",
+            r"line 2: .* it is `set Traction' within `subsection Boundary 0'\.$",
         )
 
     def test_unknown_law(self):
@@ -326,8 +355,16 @@ class Refused(TestCase):
     def test_incompatible_initial_load(self):
         """A load that is there at t = 0 with zero initial stress."""
         self.refused(
-            "compatib|equilibr", **{"Boundary 0/Traction": "0.3; 0"}
+            r"equilibrium .* it is largest at x = \(0 0\.5\), on boundary 0;",
+            **{"Boundary 0/Traction": "0.3; 0"},
         )
+        # on several ranks the same, also if one of them does not see the faces
+        self.refused(
+            r"largest at x = \(0 0\.5\), on boundary 0;",
+            ranks=3,
+            **{"Boundary 0/Traction": "0.3; 0"},
+        )
+        self.refused("largest at .* inside of the body", **{"Loads/Body force": "1; 0"})
 
     def test_incompatible_initial_stress(self):
         self.refused(
@@ -521,6 +558,31 @@ class Refused(TestCase):
             self.refused(
                 Path(file.name).name, **{"Output/Directory": f"{file.name}/results"}
             )
+
+    def test_ranks_that_fail_together(self):
+        """They end by themselves, with one sentence: nothing of an abort."""
+        for wrong in "Dimension=7", "Boundary 0/Traction=0.3; 0":
+            process = subprocess.run(
+                [*MPIRUN, "-q", "-n", "3", EXECUTABLE, str(scene_file("slab"))]
+                + ["--set", wrong],
+                capture_output=True,
+                text=True,
+            )
+            self.assertEqual(process.returncode, 1)
+            self.assertRegex(process.stderr, r"\Aviscoplastic_contact: [^\n]*\n\Z")
+
+    def test_a_rank_that_fails_alone(self):
+        """Others wait for it: it speaks and ends them all."""
+        slab = str(scene_file("slab"))
+        process = subprocess.run(
+            [*MPIRUN, "-n", "1", EXECUTABLE, slab, ":"]
+            + ["-n", "1", EXECUTABLE, slab, "--set", "Dimension=7"],
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("viscoplastic_contact: --set 'Dimension=7'", process.stderr)
 
     def test_every_rank_ends(self):
         """An error found by all ranks or by one ends all of them."""

@@ -154,6 +154,20 @@ class Check(Manners):
         self.assertTrue(text.endswith("The scene is valid.\n"))
         self.assertEqual(list(self.work.iterdir()), [])
 
+    def test_stability_limit(self):
+        """Of a linear law it is known before a state is: 2 eta/mu = 2.6."""
+        known = ("Initial state/Equilibrate=true",)
+        unknown = ("Material/Law=norton", "Material/norton/Stress cap=1")
+        for changes, words in (
+            ((), "2/r of the initial state: 2.6\n"),
+            (known, "2/r before the initial state is brought into equilibrium: 2.6; "),
+            (unknown, "2/r: none without stress; r grows with the stress"),
+        ):
+            sets = [word for change in changes for word in ("--set", change)]
+            text = self.call("--check", SLAB, *SMALL, *sets).stdout
+            self.assertIn("Stability limit " + words, text)
+            self.assertEqual(text.count("Stability limit"), 1)
+
     def test_refuses_what_a_run_refuses(self):
         process = self.call(
             "--check", SLAB, "--set", "Material/Young's modulus=-1", code=1

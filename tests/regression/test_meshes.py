@@ -198,6 +198,13 @@ class Converted(TestCase):
             "as abaqus: line 6: this element is a CPE3; only quadrilaterals and hexahedra",
         )
         self.damaged(".inp", "CPE4", "CAX4R", "this element is a CAX4R, which is axisymmetric")
+        self.refused(
+            "*NODE\n" + "".join(f"{i}, {i}, 0\n" for i in range(1, 9)) +
+            "*ELEMENT, TYPE=CPE8\n1, 1, 2, 3, 4, 5, 6, 7, 8\n",
+            ".inp",
+            "this element is a CPE8, with 8 nodes, of which some are between its "
+            "corners; make the mesh of first order (in Gmsh, set Mesh.ElementOrder = 1)",
+        )
 
     def test_numbers_beyond_measure(self):
         for number in (

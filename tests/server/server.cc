@@ -6,8 +6,8 @@
 // the number of the signal that ended it.
 //
 // A single process forks for each run. Several ranks that mpirun has started
-// cannot: they run one scene after the other, and a run that fails ends them
-// all, as it ends the program.
+// cannot: they run one scene after the other, and a rank that fails alone ends
+// them all, as it ends the program.
 
 #include <deal.II/base/mpi.h>
 

@@ -206,7 +206,8 @@ namespace
     return compatibility_violation(*body.space,
                                    body.loads->assemble(0.),
                                    body.face.get(),
-                                   friction);
+                                   friction)
+      .relative;
   }
 
 

@@ -59,7 +59,7 @@ TEST(MeshIds, Refused)
     expect_mesh_refused<2>(geometry, why);
   };
   refused("id +", "cannot be parsed: Unexpected end of expression");
-  refused("t", "cannot be parsed: Unexpected token \"t\"");
+  refused("t", "there is no 't'; its variables are x, y and id,");
   refused("0.5", "gives 0.5 at (");
   refused("-1", "ids are whole numbers from 0 to 999999999");
   refused("1e9", "ids are whole numbers");

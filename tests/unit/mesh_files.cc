@@ -181,7 +181,18 @@ TEST(MeshFilesRefused, WithOtherCells)
                                "\n1 1 2 1 1 1 4\n",
                                "\n1 8 2 1 1 1 4 7\n"),
                       ".msh",
-                      "this element is a line of second order; only");
+                      "this element is a line of second order, with nodes "
+                      "between its corners; make the mesh of first order (in "
+                      "Gmsh, set Mesh.ElementOrder = 1)");
+  for (const std::string suffix : {".stl", ".STL"})
+    expect_text_refused("solid part\nendsolid part\n",
+                        suffix,
+                        "it is a surface of triangles (STL), but the body has "
+                        "to be filled with quadrilaterals (2D) or hexahedra "
+                        "(3D)");
+  expect_text_refused("ISO-10303-21;\n",
+                      ".step",
+                      "it is a geometry without a mesh (STEP)");
 }
 
 

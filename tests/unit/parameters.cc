@@ -155,7 +155,15 @@ namespace
                      "The expression '" + text +
                        "' of 'Loads/Body force' cannot be parsed");
     // z is not known in 2D.
-    expect_refusal([] { Expression<2> f("z", "here"); }, "cannot be parsed");
+    expect_refusal([] { Expression<2> f("1 + z", "here"); },
+                   "cannot be parsed: there is no 'z'; its variables are x, y "
+                   "and t, and pi and functions such as sin, exp, min and if "
+                   "are known.");
+    expect_refusal([] { Expression<2> f("foo(x)", "here"); },
+                   "there is no 'foo'");
+    // What is known, but in the wrong place, is not called unknown.
+    expect_refusal([] { Expression<2> f("x x", "here"); },
+                   "cannot be parsed: Unexpected");
     expect_refusal([] { Expression<2> f("  ", "here"); },
                    "The expression of 'here' is empty.");
     const Expression<2> f("log(x) + t", "Boundary 2/Friction bound");

@@ -15,10 +15,25 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
+  /// An expression of the parameter file that cannot be parsed. Who knows the
+  /// file can add the place of the entry.
+  class ExpressionError : public StandardExceptions::ExcMessage
+  {
+  public:
+    ExpressionError(const std::string &sentence, const std::string &entry)
+      : StandardExceptions::ExcMessage(sentence)
+      , entry(entry)
+    {}
+
+    /// The path of the entry, such as "Boundary 0/Traction".
+    const std::string entry;
+  };
+
+
   /**
    * A muParser function of @p variables, e.g. "x,y,t", of which the last is
    * what set_time() sets. @p entry names the parameter in error messages.
-   * Throws ExcMessage when @p text cannot be parsed.
+   * Throws ExpressionError when @p text cannot be parsed.
    */
   template <int dim>
   std::unique_ptr<FunctionParser<dim>>
@@ -48,7 +63,7 @@ namespace Viscoplastic
     /**
      * @p entry names the parameter in error messages. @p variables are the
      * names of the dim arguments before t where these are no coordinates.
-     * Throws ExcMessage when @p text cannot be parsed.
+     * Throws ExpressionError when @p text cannot be parsed.
      */
     Expression(const std::string &text,
                const std::string &entry,

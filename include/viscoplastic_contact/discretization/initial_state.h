@@ -5,6 +5,8 @@
 #include <viscoplastic_contact/discretization/loads.h>
 #include <viscoplastic_contact/discretization/state.h>
 
+#include <set>
+
 namespace Viscoplastic
 {
   /**
@@ -21,6 +23,15 @@ namespace Viscoplastic
                      const bool              equilibrate);
 
   /**
+   * z_0 = sigma0^h - E eps(u0^h) at the samples; @p u0 is Cartesian, with
+   * ghosts, or of size 0 if it is zero.
+   */
+  template <int dim>
+  IrreversibleStress
+  initial_irreversible_stress(const StressSpace<dim>  &stress_space,
+                              const DistributedVector &u0);
+
+  /**
    * |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
    * stresses, (int E^-1 s : s)^{1/2}, by quadrature; @p state as
    * make_initial_state() gives it. Zero and free without initial data. @p
@@ -33,6 +44,18 @@ namespace Viscoplastic
                      const State<dim>       &state,
                      Vector<double>         *squared_by_cell = nullptr);
 
+  /// By how much initial data and loads are not in equilibrium.
+  template <int dim>
+  struct CompatibilityViolation
+  {
+    /// Relative to the loads.
+    double relative = 0.;
+    /// The node with the largest force that nothing balances, and the
+    /// boundaries that it is on; none inside of the body.
+    Point<dim>                   position;
+    std::set<types::boundary_id> boundaries;
+  };
+
   /**
    * The violation of compatibility (2.12),
    *
@@ -44,7 +67,7 @@ namespace Viscoplastic
    * the multipliers at t = 0. @p face is null without friction. Collective.
    */
   template <int dim>
-  double
+  CompatibilityViolation<dim>
   compatibility_violation(const AdmissibleSpace<dim> &space,
                           const Load<dim>            &load,
                           const ContactFace<dim>     *face,

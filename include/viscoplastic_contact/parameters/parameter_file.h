@@ -70,10 +70,17 @@ namespace Viscoplastic
     std::map<std::string, std::string>
     values() const;
 
+    /// Where an entry, given by its path, has been set last, as messages name
+    /// it: file and line, or the assignment. Empty if it has its default.
+    std::string
+    origin_of(const std::string &path) const;
+
     /// The same with every entry, for law parameters and for the record.
     mutable ParameterHandler handler;
 
   private:
+    std::map<std::string, std::string> origins;
+
     /// Load what must be there before entries can be declared.
     void
     load_shared_libraries(const std::vector<ParameterLine> &lines);

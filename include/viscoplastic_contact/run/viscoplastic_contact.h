@@ -126,6 +126,12 @@ namespace Viscoplastic
     void
     check_steps();
 
+    /// What --check can say of the limit where check_steps() says nothing:
+    /// where the initial state has no stress, or has yet to be brought into
+    /// equilibrium. Source: source/run/check.cc.
+    void
+    announce_stability_limit();
+
     void
     set_up();
 

@@ -42,6 +42,42 @@ namespace Viscoplastic
 
 
 
+    /// What people have from CAD, but is no mesh of a body.
+    void
+    refuse_geometry(const std::string &name, const std::string &suffix)
+    {
+      static const std::map<std::string, std::string> formats{{".stl", "STL"},
+                                                              {".ply", "PLY"},
+                                                              {".obj", "OBJ"},
+                                                              {".step", "STEP"},
+                                                              {".stp", "STEP"},
+                                                              {".iges", "IGES"},
+                                                              {".igs", "IGES"},
+                                                              {".brep", "BREP"},
+                                                              {".geo", "geo"}};
+      const auto format = formats.find(suffix);
+      if (format == formats.end())
+        return;
+      const bool is_surface =
+        suffix == ".stl" || suffix == ".ply" || suffix == ".obj";
+      AssertThrow(
+        false,
+        ExcMessage(
+          "The mesh file '" + name + "' cannot be read: it is " +
+          (is_surface ? "a surface of triangles (" :
+                        "a geometry without a mesh (") +
+          format->second + "), but the body has to be filled with " +
+          "quadrilaterals (2D) or hexahedra (3D). " +
+          (is_surface ?
+             "Gmsh makes them of it: Classify 2D reparametrizes the surface, "
+             "then add a volume" :
+             "Open it in Gmsh") +
+          ", set Mesh.RecombineAll = 1 and Mesh.SubdivisionAlgorithm = 1 (in "
+          "3D 2), give boundaries physical groups, and save as .msh."));
+    }
+
+
+
     /// The nodes of the faces of a cell, as indices into Element::nodes.
     std::vector<std::vector<unsigned int>>
     faces_of_cell(const unsigned int dim)
@@ -191,6 +227,8 @@ namespace Viscoplastic
     std::string text   = content(name);
     std::string suffix = std::filesystem::path(name).extension();
     std::transform(suffix.begin(), suffix.end(), suffix.begin(), ::tolower);
+    if (format == "automatic")
+      refuse_geometry(name, suffix);
     const bool is_msh =
       format == "msh" || (format == "automatic" && suffix == ".msh");
     if (!is_msh)

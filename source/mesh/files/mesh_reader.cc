@@ -139,6 +139,11 @@ namespace Viscoplastic
                           const std::vector<long> &node_numbers)
   {
     const unsigned int dimension = shape.dimension;
+    if (shape.order > 1)
+      fail("this element is a " + shape.name + " of " +
+           (shape.order == 2 ? "second" : "third") +
+           " order, with nodes between its corners; make the mesh of first "
+           "order (in Gmsh, set Mesh.ElementOrder = 1)");
     if (shape.n_nodes != 1u << dimension)
       fail("this element is a " + shape.name +
            "; only quadrilaterals and hexahedra with nodes at their corners "

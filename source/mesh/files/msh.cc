@@ -17,13 +17,18 @@ namespace Viscoplastic
       {"5", {"hexahedron", 3, 8}},
       {"6", {"prism", 3, 6}},
       {"7", {"pyramid", 3, 5}},
-      {"8", {"line of second order", 1, 3}},
-      {"9", {"triangle of second order", 2, 6}},
-      {"10", {"quadrilateral of second order", 2, 9}},
-      {"11", {"tetrahedron of second order", 3, 10}},
-      {"12", {"hexahedron of second order", 3, 27}},
-      {"16", {"quadrilateral of second order", 2, 8}},
-      {"17", {"hexahedron of second order", 3, 20}}};
+      {"8", {"line", 1, 3, 2}},
+      {"9", {"triangle", 2, 6, 2}},
+      {"10", {"quadrilateral", 2, 9, 2}},
+      {"11", {"tetrahedron", 3, 10, 2}},
+      {"12", {"hexahedron", 3, 27, 2}},
+      {"16", {"quadrilateral", 2, 8, 2}},
+      {"17", {"hexahedron", 3, 20, 2}},
+      {"21", {"triangle", 2, 10, 3}},
+      {"26", {"line", 1, 4, 3}},
+      {"29", {"tetrahedron", 3, 20, 3}},
+      {"36", {"quadrilateral", 2, 16, 3}},
+      {"92", {"hexahedron", 3, 64, 3}}};
 
 
 

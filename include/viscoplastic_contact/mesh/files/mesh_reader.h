@@ -22,6 +22,8 @@ namespace Viscoplastic
     {
       std::string  name;
       unsigned int dimension, n_nodes;
+      /// 1 if all nodes are corners.
+      unsigned int order = 1;
     };
 
 

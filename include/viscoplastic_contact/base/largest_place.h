@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/point.h>
+
+#include <algorithm>
+#include <array>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /**
+   * The largest of some values that are not negative, and where it is: of
+   * values that are equal up to solver tolerances, the one with the least
+   * coordinates, so that the place does not depend on the number of ranks.
+   */
+  template <int dim>
+  class LargestPlace
+  {
+  public:
+    /// Whether a value would be the largest one or equal to it: for places that
+    /// cost something.
+    bool
+    may_take(const double value) const
+    {
+      return value > 0. && value >= representative * (1. - tolerance);
+    }
+
+    void
+    add(const double value, const Point<dim> &x)
+    {
+      largest_value = std::max(largest_value, value);
+      if (!may_take(value))
+        return;
+      if (value > representative * (1. + tolerance) ||
+          std::lexicographical_compare(
+            x.begin_raw(), x.end_raw(), place.begin_raw(), place.end_raw()))
+        {
+          representative = value;
+          place          = x;
+        }
+    }
+
+    /// Of all ranks. Collective.
+    void
+    reduce(const MPI_Comm communicator)
+    {
+      std::array<double, dim + 2> own{{largest_value, representative}};
+      std::copy(place.begin_raw(), place.end_raw(), own.begin() + 2);
+      *this = LargestPlace();
+      for (const auto &other : Utilities::MPI::all_gather(communicator, own))
+        {
+          Point<dim> x;
+          std::copy(other.begin() + 2, other.end(), x.begin_raw());
+          add(other[1], x);
+          largest_value = std::max(largest_value, other[0]);
+        }
+    }
+
+    /// Zero if nothing is positive.
+    double
+    value() const
+    {
+      return largest_value;
+    }
+
+    /// The origin if nothing is positive.
+    const Point<dim> &
+    position() const
+    {
+      return place;
+    }
+
+  private:
+    static constexpr double tolerance = 1e-6;
+
+    double     largest_value = 0., representative = 0.;
+    Point<dim> place;
+  };
+} // namespace Viscoplastic

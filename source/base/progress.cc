@@ -62,7 +62,9 @@ namespace Viscoplastic
                            error + number(100. * *step.relative_error, 2) +
                              " %");
       parts.emplace_back(1, "elapsed " + duration(elapsed));
-      parts.emplace_back(7, "left " + duration(left));
+      parts.emplace_back(7,
+                         (step.steps_grow ? "left < " : "left ") +
+                           duration(left));
 
       std::string line;
       for (unsigned int omitted = 0; omitted < 8; ++omitted)

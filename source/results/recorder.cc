@@ -391,9 +391,13 @@ namespace Viscoplastic
     present.relative_error = relative_error(step.end.errors);
     if (control.may_reject())
       {
-        present.expected_steps =
-          control.expected_steps(time_step.n, time_step.t, time_step.k);
-        present.done = time_step.t / scene.schedule.end_time();
+        if (time_step.n > 0)
+          expected_step.add_step(time_step.k);
+        present.expected_steps = control.expected_steps(time_step.n,
+                                                        time_step.t,
+                                                        expected_step.size());
+        present.done           = time_step.t / scene.schedule.end_time();
+        present.steps_grow     = present.done < 1. && expected_step.grows();
       }
     progress.report(present, elapsed());
   }

@@ -224,6 +224,26 @@ class Voice(Manners):
         self.assertIn("1000/1000", lines[-1])
         self.assertEqual(len(self.column(self.work / "output/slab", "t")), 1001)
 
+    def test_steps_to_come_where_they_are_chosen(self):
+        """From the sizes that steps have had, not from a short one to a time that
+        has to be met, here the end and the middle of phases."""
+        text = self.call(
+            SLAB,
+            *SMALL,
+            *("--set", "Output/Fields every=0"),
+            *("--set", "Step control/Tolerance=1e-2"),
+            *("--set", "Step control/Landing times=0.3001, 0.7, 0.7001, 1.5, 1.5001"),
+        ).stdout
+        lines = re.findall(
+            r"^Step +(\d+)/~(\d+)  t = (\S+) .*  left (?:< )?\d", text, re.M
+        )
+        n_steps = int(re.search(r"^Steps: (\d+) accepted", text, re.M).group(1))
+        self.assertEqual(lines[-1][:2], (str(n_steps), str(n_steps)))
+        self.assertGreater(len(lines), 20)
+        for n, expected, t in lines[5:]:
+            self.assertLess(int(expected), 2 * n_steps, f"step {n}, t = {t}")
+            self.assertGreater(int(expected), 0.5 * n_steps, f"step {n}, t = {t}")
+
     def test_one_line_on_a_terminal(self):
         """The present step is written over the one before, within the width
         of the terminal; the log gets lines all the same."""

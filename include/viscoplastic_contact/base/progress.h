@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/console.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -38,6 +39,48 @@ namespace Viscoplastic
 
 
 
+  /**
+   * The size of steps to come, where they are chosen on the way: the mean of
+   * those that have been made, with weights that halve in about seven steps, or
+   * the last one if that is longer. A short one to a time that has to be met is
+   * no sign of others.
+   */
+  class ExpectedStep
+  {
+  public:
+    void
+    add_step(const double k)
+    {
+      last           = k;
+      weighted_sizes = 0.9 * weighted_sizes + k;
+      weights        = 0.9 * weights + 1.;
+    }
+
+    double
+    size() const
+    {
+      return std::max(last, mean());
+    }
+
+    /// Whether the last one is much longer than those before.
+    bool
+    grows() const
+    {
+      return last > 1.2 * mean();
+    }
+
+  private:
+    double
+    mean() const
+    {
+      return weights > 0. ? weighted_sizes / weights : 0.;
+    }
+
+    double last = 0., weighted_sizes = 0., weights = 0.;
+  };
+
+
+
   /// What there is to say of a step.
   struct StepProgress
   {
@@ -57,6 +100,8 @@ namespace Viscoplastic
     /// part of its time is done.
     std::optional<double> expected_steps = {};
     double                done           = 0.;
+    /// Whether steps still become longer, so that fewer may do.
+    bool steps_grow = false;
   };
 
 

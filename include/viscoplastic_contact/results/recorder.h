@@ -202,6 +202,7 @@ namespace Viscoplastic
     std::map<std::string, double> last_seconds;
     double                        first_set_up_seconds = 0.;
     double                        earlier_seconds      = 0.;
+    ExpectedStep                  expected_step;
     Timer                         clock;
   };
 

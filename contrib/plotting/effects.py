@@ -12,9 +12,12 @@ VERDICTS = {
     "called for": style.SERIES[1],
     "as large as the error of this discretization": style.SERIES[4],
     "below the error of this discretization": style.SERIES[5],
-    "never acted": "#bbbbbb",
+    "never acted": "#888888",
+    "only watches": "#888888",
 }
+KINDS = {"problem": "", "discretization": " *", "observation": " *"}
 SMALLEST = 1e-4  # of a change on the axis
+NOTHING = ("never acted", "only watches")
 
 
 def is_there(directory):
@@ -27,9 +30,72 @@ def read(directory):
 
 
 def decisive(effect):
-    """Change and error of the quantity that has decided."""
+    """Change and error of the quantity that has decided; an error that is not
+    known is not drawn."""
     found = effect["changes"][effect["decisive"]]
-    return found["change"], found["error"]
+    error = found["error"]
+    return found["change"], np.nan if error is None else error
+
+
+def draw_changes(axes, rows, effects, colours):
+    changes, errors = np.array([decisive(effect) for effect in effects]).T
+    shown = 100 * np.maximum(changes, SMALLEST)
+    axes.barh(rows, shown - 100 * SMALLEST, left=100 * SMALLEST, color=colours)
+    axes.plot(
+        100 * np.maximum(errors, SMALLEST),
+        rows,
+        "|",
+        color="black",
+        markersize=12,
+        markeredgewidth=2,
+        label="error of that quantity",
+    )
+    for row, effect, x, error in zip(rows, effects, shown, errors):
+        nothing = effect["verdict"] in NOTHING
+        start = 100 * SMALLEST if nothing else x
+        # Not on the mark of the error.
+        if not nothing and start < 100 * error < 8 * start:
+            start = 100 * error
+        axes.annotate(
+            effect["verdict"] if nothing else style.plain(effect["decisive"]),
+            (start, row),
+            xytext=(5, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize="x-small",
+            fontstyle="italic" if nothing else "normal",
+        )
+    axes.set_xscale("log")
+    axes.set_xlim(100 * SMALLEST, 60 * max(shown.max(), 1.0))
+    axes.set_yticks(
+        rows,
+        [
+            style.plain(f'{effect["effect"]}: {effect["instead"]}')
+            + KINDS[effect["kind"]]
+            for effect in effects
+        ],
+        fontsize="small",
+    )
+    axes.set_xlabel("largest change in proportion to its error [%]")
+
+
+def draw_costs(axes, rows, effects, colours):
+    """The seconds that an effect takes, with what is chance."""
+    of_scene = np.array([effect["with"]["seconds"] for effect in effects])
+    without = np.array([effect["without"]["seconds"] for effect in effects])
+    chance = sum(
+        np.array([effect[which]["seconds_chance"] for effect in effects])
+        for which in ("with", "without")
+    )
+    axes.barh(
+        rows,
+        100 * (1 - without / of_scene),
+        xerr=100 * chance / of_scene,
+        color=colours,
+        error_kw={"elinewidth": 1, "capsize": 2},
+    )
+    axes.axvline(0, color="black", linewidth=0.8)
+    axes.set_xlabel("costs, of the seconds of the scene [%]")
 
 
 def draw(about):
@@ -42,66 +108,30 @@ def draw(about):
         1,
         2,
         sharey=True,
-        figsize=(11.0, 1.6 + 0.36 * len(effects)),
+        figsize=(11.0, 1.8 + 0.3 * len(effects)),
         width_ratios=(2, 1),
         layout="constrained",
     )
     colours = [VERDICTS[effect["verdict"]] for effect in effects]
-    changes, errors = np.array([decisive(effect) for effect in effects]).T
-    shown = 100 * np.maximum(changes, SMALLEST)
-    left.barh(rows, shown - 100 * SMALLEST, left=100 * SMALLEST, color=colours)
-    left.plot(
-        100 * np.maximum(errors, SMALLEST),
-        rows,
-        "|",
-        color="black",
-        markersize=14,
-        markeredgewidth=2,
-        label="error of the discretization there",
-    )
-    for row, effect, x in zip(rows, effects, shown):
-        if effect["verdict"] != "never acted":
-            left.annotate(
-                style.plain(effect["decisive"]),
-                (x, row),
-                xytext=(4, 0),
-                textcoords="offset points",
-                va="center",
-                fontsize="x-small",
-            )
-    left.set_xscale("log")
-    left.set_xlim(100 * SMALLEST, 20 * shown.max())
-    left.set_yticks(
-        rows,
-        [
-            style.plain(f'{effect["effect"]}: {effect["instead"]}')
-            + ("" if effect["physical"] else " *")
-            for effect in effects
-        ],
-        fontsize="small",
-    )
-    left.set_xlabel("largest change in proportion to its error [%]")
-    saved = [
-        100 * (1 - effect["seconds_without"] / effect["seconds_with"])
-        for effect in effects
-    ]
-    right.barh(rows, saved, color=colours)
-    right.axvline(0, color="black", linewidth=0.8)
-    right.set_xlabel("part of the time that the effect costs [%]")
-    handles = [
-        plt.Rectangle((0, 0), 1, 1, color=colour)
-        for verdict, colour in VERDICTS.items()
-        if any(effect["verdict"] == verdict for effect in effects)
-    ]
-    labels = [
-        verdict
-        for verdict in VERDICTS
-        if any(effect["verdict"] == verdict for effect in effects)
-    ]
+    draw_changes(left, rows, effects, colours)
+    draw_costs(right, rows, effects, colours)
+    right.tick_params(left=False)
+    found = {effect["verdict"] for effect in effects}
+    labels = [verdict for verdict in VERDICTS if verdict in found - set(NOTHING)]
+    handles = [plt.Rectangle((0, 0), 1, 1, color=VERDICTS[label]) for label in labels]
     line, label = left.get_legend_handles_labels()
-    figure.legend(handles + line, labels + label, loc="outside lower center", ncols=3)
-    star = "" if all(e["physical"] for e in effects) else " (*: of the discretization)"
-    figure.suptitle(style.plain(f'{about["scene"]}: which effects it calls for') + star)
+    title = style.plain(f'{about["scene"]}: which effects it calls for')
+    if any(KINDS[effect["kind"]] for effect in effects):
+        title += " (*: not of the problem)"
+    figure.suptitle(title)
+    # Below all axes: the layout leaves no room for it, the file does.
+    figure.legend(
+        handles + line,
+        labels + label,
+        loc="upper center",
+        bbox_to_anchor=(0.5, 0.0),
+        ncols=2,
+    )
     return figure
 
 

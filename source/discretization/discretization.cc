@@ -2,29 +2,30 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/discretization/volumetric_integration.h>
 
 #include <algorithm>
 
 namespace Viscoplastic
 {
+  template <int dim>
+  bool
+  uses_mean_dilatation(const Scene<dim> &scene, const double max_nu)
+  {
+    const VolumetricIntegration choice =
+      scene.parameters.stress.volumetric_integration;
+    if (choice != VolumetricIntegration::automatic)
+      return choice == VolumetricIntegration::mean_dilatation;
+    for (const auto &material : scene.materials)
+      if (material->law && material->law->deviatoric_flow())
+        return true;
+    return max_nu > 0.4;
+  }
+
+
+
   namespace
   {
-    template <int dim>
-    bool
-    use_mean_dilatation(const Scene<dim> &scene, const double max_nu)
-    {
-      const VolumetricIntegration choice =
-        scene.parameters.stress.volumetric_integration;
-      if (choice != VolumetricIntegration::automatic)
-        return choice == VolumetricIntegration::mean_dilatation;
-      for (const auto &material : scene.materials)
-        if (material->law && material->law->deviatoric_flow())
-          return true;
-      return max_nu > 0.4;
-    }
-
-
-
     template <int dim>
     bool
     has_bilateral_contact(const Scene<dim> &scene)
@@ -76,7 +77,7 @@ namespace Viscoplastic
                                       const Scene<dim>      &scene)
     : space(dof_handler, scene)
     , moduli(space)
-    , mean_dilatation(use_mean_dilatation(scene, moduli.max_poissons_ratio()))
+    , mean_dilatation(uses_mean_dilatation(scene, moduli.max_poissons_ratio()))
     , stress_space(space,
                    moduli,
                    scene.has_viscosity() &&
@@ -122,6 +123,11 @@ namespace Viscoplastic
   }
 
 
+
+  template bool
+  uses_mean_dilatation(const Scene<2> &, const double);
+  template bool
+  uses_mean_dilatation(const Scene<3> &, const double);
 
   template class Discretization<2>;
   template class Discretization<3>;

@@ -1,35 +1,29 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/scene/material.h>
 #include <viscoplastic_contact/study/effect_variants.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 namespace Viscoplastic
 {
   namespace
   {
-    std::string
-    file_name(std::string text)
+    /// The number that a text is; nothing if it is an expression.
+    std::optional<double>
+    as_number(const std::string &text)
     {
-      for (char &c : text)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0)
-          c = '_';
-      return text;
-    }
-
-
-
-    std::string
-    exact(const double value)
-    {
-      std::ostringstream text;
-      text << std::setprecision(17) << value;
-      return text.str();
+      try
+        {
+          return Utilities::string_to_double(text);
+        }
+      catch (const std::exception &)
+        {
+          return {};
+        }
     }
 
 
@@ -58,7 +52,7 @@ namespace Viscoplastic
           const std::size_t end = expression.find(';', begin);
           const std::string part =
             Utilities::trim(expression.substr(begin, end - begin));
-          result += part.empty() ? "" : "0";
+          result += part.empty() || part == "free" ? part : "0";
           if (end == std::string::npos)
             return result;
           result += "; ";
@@ -68,13 +62,28 @@ namespace Viscoplastic
 
 
 
+    /// "friction bound" of "Friction bound"; names keep their capitals.
+    std::string
+    in_a_sentence(std::string entry)
+    {
+      if (entry.rfind("Young", 0) != 0 && entry.rfind("Poisson", 0) != 0)
+        entry[0] =
+          static_cast<char>(std::tolower(static_cast<unsigned char>(entry[0])));
+      return entry;
+    }
+
+
+
     /// Collects the variants of one scene.
     class Variants
     {
     public:
-      Variants(const Parameters &scene, const double typical_stress)
+      Variants(const Parameters &scene,
+               const SceneData  &means,
+               const double      typical_stress)
         : scene(scene)
         , values(scene.values())
+        , means(means)
         , typical_stress(typical_stress)
       {}
 
@@ -83,16 +92,28 @@ namespace Viscoplastic
       {
         add_materials();
         for (const auto &[id, boundary] : scene.boundaries)
-          add_boundary("Boundary " + std::to_string(id), boundary);
+          add_boundary("Boundary " + std::to_string(id), id, boundary);
         if (!is_zero(scene.loads.body_force))
-          add("body force", "none", {"Loads/Body force="});
+          {
+            is_load = true;
+            add("body force", "none", {"Loads/Body force="});
+            add_mean_over_space("body force",
+                                "Loads/Body force",
+                                means.over_body(scene.loads.body_force));
+            add_mean_over_time("body force",
+                               "Loads/Body force",
+                               scene.loads.body_force);
+            is_load = false;
+          }
         const InitialStateParameters &initial = scene.initial_state;
         if (!initial.stress.empty() || !initial.displacement.empty())
           add("initial state",
               "none",
               {"Initial state/Stress=", "Initial state/Displacement="});
-        is_physical = false;
+        kind = EffectKind::discretization;
         add_discretization();
+        kind = EffectKind::observation;
+        add_observation();
         return result;
       }
 
@@ -100,52 +121,132 @@ namespace Viscoplastic
       void
       add(const std::string              &effect,
           const std::string              &instead,
-          const std::vector<std::string> &overrides)
+          const std::vector<std::string> &overrides,
+          const bool                      has_outputs = false)
       {
-        result.push_back({file_name(effect) + "__" + file_name(instead),
-                          effect,
-                          instead,
-                          overrides,
-                          is_physical});
+        result.push_back(
+          {effect, instead, overrides, kind, has_outputs, is_load});
       }
 
-      std::string
+      const std::string &
       value(const std::string &path) const
       {
         return values.at(path);
       }
 
       void
-      add_materials()
+      add_mean_over_space(const std::string                &what,
+                          const std::string                &entry,
+                          const std::optional<std::string> &mean)
       {
-        std::vector<std::pair<std::string, const MaterialParameters *>> all;
-        for (const auto &[id, material] : scene.materials)
-          all.emplace_back("Material " + std::to_string(id), &material);
-        if (all.empty())
-          all.emplace_back("Material", &scene.material);
-        for (const auto &[section, material] : all)
-          add_material(section,
-                       all.size() > 1 ? " of " + section : "",
-                       material->law);
-
-        // All of the first one.
-        const std::string        first = all[0].first + '/';
-        std::vector<std::string> same;
-        for (const auto &[path, text] : values)
-          if (path.compare(0, first.size(), first) == 0)
-            for (std::size_t m = 1; m < all.size(); ++m)
-              if (values.at(all[m].first + '/' + path.substr(first.size())) !=
-                  text)
-                same.push_back(all[m].first + '/' + path.substr(first.size()) +
-                               '=' + text);
-        if (!same.empty())
-          add("different materials", all[0].first + " everywhere", same);
+        if (mean)
+          add(what + " over space", "its mean", {entry + '=' + *mean});
       }
 
       void
-      add_material(const std::string &section,
-                   const std::string &of,
-                   const std::string &law)
+      add_mean_over_time(const std::string &what,
+                         const std::string &entry,
+                         const std::string &components)
+      {
+        const auto mean = means.over_time(components);
+        if (!mean)
+          return;
+        std::vector<std::string> overrides{entry + '=' + *mean};
+        // What is there from the beginning needs stresses to hold it.
+        if (is_load)
+          overrides.emplace_back("Initial state/Equilibrate=true");
+        add(what + " over time", "its mean", overrides);
+      }
+
+      void
+      add_materials()
+      {
+        const unsigned int n = std::max<std::size_t>(1, scene.materials.size());
+        std::vector<std::string> sections;
+        if (scene.materials.empty())
+          {
+            sections.emplace_back("Material");
+            add_material(sections[0], "", scene.material, {});
+          }
+        for (const auto &[id, material] : scene.materials)
+          {
+            sections.push_back("Material " + std::to_string(id));
+            add_material(sections.back(),
+                         n > 1 ? " of " + sections.back() : "",
+                         material,
+                         id);
+          }
+
+        // All of the first one.
+        const std::string        first = sections[0] + '/';
+        std::vector<std::string> same;
+        for (const auto &[path, text] : values)
+          if (path.compare(0, first.size(), first) == 0)
+            for (unsigned int m = 1; m < n; ++m)
+              {
+                const std::string other =
+                  sections[m] + '/' + path.substr(first.size());
+                if (value(other) != text)
+                  same.push_back(other + '=' + text);
+              }
+        if (!same.empty())
+          add("different materials", sections[0] + " everywhere", same);
+      }
+
+      void
+      add_material(const std::string                &section,
+                   const std::string                &of,
+                   const MaterialParameters         &material,
+                   const std::optional<unsigned int> id)
+      {
+        add_law(section, of, material.law);
+        if (!material.voigt_matrix.empty())
+          {
+            const Stiffness nearest =
+              nearest_isotropic(stiffness(section, material));
+            const double mu = nearest.shear_modulus(),
+                         nu = nearest.poissons_ratio();
+            add("anisotropy" + of,
+                "the nearest isotropic stiffness",
+                {section + "/Voigt matrix=",
+                 section + "/Young's modulus=" + exact(2. * (1. + nu) * mu),
+                 section + "/Poisson's ratio=" + exact(nu)});
+          }
+        else
+          for (const std::string modulus :
+               {"Young's modulus", "Poisson's ratio"})
+            add_mean_over_space(modulus + of,
+                                section + '/' + modulus,
+                                means.over_body(value(section + '/' + modulus),
+                                                id));
+        const std::string of_law = section + '/' + material.law + '/';
+        for (const auto &[path, text] : values)
+          // The strain rate of a parsed law is a function of other things.
+          if (path.compare(0, of_law.size(), of_law) == 0 && !text.empty() &&
+              path != of_law + "Strain rate")
+            {
+              const std::string what =
+                in_a_sentence(path.substr(of_law.size())) + of;
+              add_mean_over_space(what, path, means.over_body(text, id));
+              add_mean_over_time(what, path, text);
+            }
+      }
+
+      Stiffness
+      stiffness(const std::string        &section,
+                const MaterialParameters &material) const
+      {
+        return scene.dimension == 2 ?
+                 Material<2>(section, material, scene.handler)
+                   .stiffness(Point<2>()) :
+                 Material<3>(section, material, scene.handler)
+                   .stiffness(Point<3>());
+      }
+
+      void
+      add_law(const std::string &section,
+              const std::string &of,
+              const std::string &law)
       {
         if (law == "elastic")
           return;
@@ -155,13 +256,16 @@ namespace Viscoplastic
             add("relaxation" + of,
                 "elastic at once",
                 {section + "/Law=elastic"});
-            add("relaxation" + of,
-                "elastic with the long-term moduli",
-                {section + "/Law=elastic",
-                 section + "/Young's modulus=" +
-                   value(of_law + "Long-term Young's modulus"),
-                 section + "/Poisson's ratio=" +
-                   value(of_law + "Long-term Poisson's ratio")});
+            const std::string &modulus =
+              value(of_law + "Long-term Young's modulus");
+            if (!is_zero(modulus))
+              add("relaxation" + of,
+                  "elastic with the long-term moduli",
+                  {section + "/Law=elastic",
+                   section + "/Voigt matrix=",
+                   section + "/Young's modulus=" + modulus,
+                   section + "/Poisson's ratio=" +
+                     value(of_law + "Long-term Poisson's ratio")});
             return;
           }
         add("viscous flow" + of, "elastic", {section + "/Law=elastic"});
@@ -169,120 +273,224 @@ namespace Viscoplastic
           add("hardening" + of, "none", {of_law + "Hardening modulus=0"});
         if (law == "norton" && typical_stress > 0.)
           {
-            const double exponent = std::stod(value(of_law + "Exponent"));
-            const double factor   = std::stod(value(of_law + "Rate factor"));
-            if (exponent != 1.)
+            const auto exponent = as_number(value(of_law + "Exponent"));
+            if (exponent && *exponent != 1.)
               add("power of the flow law" + of,
-                  "1, with the rate at the mean stress",
+                  "1, same rate at the mean stress",
                   {of_law + "Exponent=1",
                    of_law + "Rate factor=" +
-                     exact(factor * std::pow(typical_stress, exponent - 1.))});
+                     exact(std::pow(typical_stress, *exponent - 1.)) + "*(" +
+                     value(of_law + "Rate factor") + ')'});
           }
       }
 
       void
-      add_boundary(const std::string &section, const BoundaryParameters &data)
+      add_boundary(const std::string        &section,
+                   const unsigned int        id,
+                   const BoundaryParameters &data)
       {
-        const std::string on = " on " + section;
-        const bool        is_tresca =
-                     data.role == "contact" && data.friction_law == "tresca",
-                   is_coulomb =
-                     data.role == "contact" && data.friction_law == "coulomb";
+        const std::string on         = " on " + section;
+        const bool        is_contact = data.role == "contact";
+        const bool is_tresca  = is_contact && data.friction_law == "tresca",
+                   is_coulomb = is_contact && data.friction_law == "coulomb";
+        // The data that this role reads.
+        std::vector<std::pair<std::string, std::string>> loads, others;
         if (is_tresca || is_coulomb)
           {
-            const std::string entry =
-              section +
-              (is_tresca ? "/Friction bound=" : "/Friction coefficient=");
+            const std::string name =
+              is_tresca ? "Friction bound" : "Friction coefficient";
             const std::string &bound =
               is_tresca ? data.friction_bound : data.friction_coefficient;
+            const std::string entry = section + '/' + name + '=';
             add("friction" + on, "none", {entry + '0'});
             // Where there is none, there is none.
             add("slip" + on, "never", {entry + "1e6*(" + bound + ')'});
+            others.emplace_back(name, bound);
           }
-        if (data.role == "contact")
+        if (is_coulomb)
+          loads.emplace_back("Normal stress", data.normal_stress);
+        else if (is_contact)
+          loads.emplace_back("Foundation displacement",
+                             data.foundation_displacement);
+        if (data.role == "traction")
+          loads.emplace_back("Traction", data.traction);
+        if (data.role == "displacement")
+          loads.emplace_back("Displacement", data.displacement);
+        const auto add_over_space = [&](const std::string &name,
+                                        const std::string &components) {
+          if (!is_zero(components))
+            add_mean_over_space(in_a_sentence(name) + on,
+                                section + '/' + name,
+                                means.over_boundary(components, id));
+        };
+        for (const auto &[name, text] : others)
           {
-            if (!is_zero(data.foundation_motion))
-              add("motion of the foundation" + on,
-                  "at rest",
-                  {section + "/Foundation motion="});
-            if (!is_zero(data.foundation_displacement))
-              add("displacement of the foundation" + on,
-                  "none",
-                  {section + "/Foundation displacement=0"});
+            add_mean_over_time(in_a_sentence(name) + on,
+                               section + '/' + name,
+                               text);
+            add_over_space(name, text);
           }
-        if (data.role == "traction" && !is_zero(data.traction))
-          add("traction" + on,
-              "none",
-              {section + "/Traction=" + zeros_for(data.traction)});
-        if (data.role == "displacement" && !is_zero(data.displacement))
-          add("displacement" + on,
-              "zero",
-              {section + "/Displacement=" + zeros_for(data.displacement)});
+        is_load = true;
+        if (is_contact && !is_zero(data.foundation_motion))
+          {
+            add("motion of the foundation" + on,
+                "at rest",
+                {section + "/Foundation motion="});
+            // Its mean over time is no motion.
+            add_over_space("Foundation motion", data.foundation_motion);
+          }
+        for (const auto &[name, components] : loads)
+          if (!is_zero(components))
+            {
+              add(in_a_sentence(name) + on,
+                  "none",
+                  {section + '/' + name + '=' + zeros_for(components)});
+              add_mean_over_time(in_a_sentence(name) + on,
+                                 section + '/' + name,
+                                 components);
+              add_over_space(name, components);
+            }
+        is_load = false;
       }
 
       void
       add_discretization()
       {
-        const std::string mean =
-                            name_of(VolumetricIntegration::mean_dilatation),
-                          full = name_of(VolumetricIntegration::full);
-        const auto &stress     = scene.stress;
-        add("volumetric integration",
-            stress.volumetric_integration == VolumetricIntegration::full ?
-              mean :
-              full,
-            {"Material/Volumetric integration=" +
-             (stress.volumetric_integration == VolumetricIntegration::full ?
-                mean :
-                full)});
+        const StressParameters &stress = scene.stress;
+        const std::string       other_integration =
+          name_of(stress.volumetric_integration == VolumetricIntegration::full ?
+                    VolumetricIntegration::mean_dilatation :
+                    VolumetricIntegration::full);
+        add("volumetric integration (" +
+              name_of(stress.volumetric_integration) + ')',
+            other_integration,
+            {"Material/Volumetric integration=" + other_integration});
         bool has_flow =
           scene.materials.empty() && scene.material.law != "elastic";
         for (const auto &entry : scene.materials)
           has_flow |= entry.second.law != "elastic";
         if (has_flow)
           {
-            const StressHistory other =
-              stress.stress_history == StressHistory::cell_means ?
-                StressHistory::quadrature_points :
-                StressHistory::cell_means;
-            add("history at " + name_of(stress.stress_history),
-                name_of(other),
-                {"Material/Stress history=" + name_of(other)});
+            const std::string other =
+              name_of(stress.stress_history == StressHistory::cell_means ?
+                        StressHistory::quadrature_points :
+                        StressHistory::cell_means);
+            add("stress history (" + name_of(stress.stress_history) + ')',
+                other,
+                {"Material/Stress history=" + other});
             for (const TimeScheme scheme : {TimeScheme::forward_euler,
                                             TimeScheme::backward_euler,
                                             TimeScheme::heun})
               if (scheme != scene.time.scheme)
-                add(name_of(scene.time.scheme),
+                add("time scheme (" + name_of(scene.time.scheme) + ')',
                     name_of(scheme),
                     {"Time/Scheme=" + name_of(scheme)});
           }
-        const bool to_tolerance = scene.error_control.has_tolerance();
-        if (!to_tolerance &&
+        if (scene.step_control.is_on())
+          add("step control",
+              "the steps of the phases",
+              {"Step control/Tolerance=0"});
+        if (!scene.error_control.has_tolerance() &&
             scene.refinement.strategy != RefinementStrategy::none)
           add("adaptive mesh",
               "the first mesh",
               {"Mesh refinement/Strategy=none"});
-        else if (!to_tolerance && scene.error_control.error_estimator &&
-                 scene.error_control.quantity.empty())
+      }
+
+      void
+      add_observation()
+      {
+        const bool needs_estimate =
+          scene.error_control.has_tolerance() ||
+          !scene.error_control.quantity.empty() ||
+          scene.refinement.strategy != RefinementStrategy::none ||
+          scene.step_control.is_on();
+        if (!needs_estimate && scene.error_control.error_estimator)
           add("error bar",
               "none, and a fixed tolerance",
               {"Error control/Error bar=false"});
+        if (scene.output.fields_every > 0 ||
+            scene.output.fields_interval > 0. ||
+            scene.checkpoint.every_n_steps > 0 ||
+            scene.checkpoint.wall_time_interval > 0.)
+          add("fields and checkpoints", "none", {}, /* has_outputs = */ true);
       }
 
       const Parameters                        &scene;
       const std::map<std::string, std::string> values;
+      const SceneData                         &means;
       const double                             typical_stress;
-      bool                                     is_physical = true;
+      EffectKind                               kind    = EffectKind::problem;
+      bool                                     is_load = false;
       std::vector<EffectVariant>               result;
     };
   } // namespace
 
 
 
-  std::vector<EffectVariant>
-  effect_variants(const Parameters &scene, const double typical_stress)
+  std::string
+  EffectVariant::name() const
   {
-    return Variants(scene, typical_stress).collect();
+    std::string result = effect + "__" + instead;
+    for (char &c : result)
+      if (std::isalnum(static_cast<unsigned char>(c)) == 0)
+        c = '_';
+    return result;
+  }
+
+
+
+  bool
+  EffectVariant::excludes(const EffectVariant &other) const
+  {
+    if (effect == other.effect)
+      return true;
+    for (const std::string &a : overrides)
+      for (const std::string &b : other.overrides)
+        {
+          const std::string entry = a.substr(0, a.find('='));
+          if (a != b && entry == b.substr(0, b.find('=')))
+            return true;
+        }
+    // Without a law there are no parameters of it.
+    const auto contains = [](const EffectVariant &law,
+                             const EffectVariant &part) {
+      const std::string suffix = "/Law=elastic";
+      for (const std::string &a : law.overrides)
+        if (a.size() > suffix.size() &&
+            a.compare(a.size() - suffix.size(), suffix.size(), suffix) == 0)
+          for (const std::string &b : part.overrides)
+            {
+              const std::string section = a.substr(0, a.find('/') + 1),
+                                entry   = b.substr(0, b.find('='));
+              if (entry.compare(0, section.size(), section) == 0 &&
+                  entry.find('/', section.size()) != std::string::npos)
+                return true;
+            }
+      return false;
+    };
+    return contains(*this, other) || contains(other, *this);
+  }
+
+
+
+  std::vector<EffectVariant>
+  effect_variants(const Parameters &scene,
+                  const SceneData  &means,
+                  const double      typical_stress)
+  {
+    return Variants(scene, means, typical_stress).collect();
+  }
+
+
+
+  Stiffness
+  nearest_isotropic(const Stiffness &stiffness)
+  {
+    // Voigt's averages are the coefficients of the projection.
+    const double mu = stiffness.shear_modulus(),
+                 nu = stiffness.poissons_ratio();
+    return Stiffness::isotropic(2. * (1. + nu) * mu, nu);
   }
 
 
@@ -291,7 +499,6 @@ namespace Viscoplastic
   both(const EffectVariant &first, const EffectVariant &second)
   {
     EffectVariant result = first;
-    result.name += "__and__" + second.name;
     result.effect += " and " + second.effect;
     result.instead += "; " + second.instead;
     result.overrides.insert(result.overrides.end(),

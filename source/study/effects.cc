@@ -7,121 +7,279 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <limits>
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// Changes by so many errors are changes.
-    constexpr double clear = 2.;
+    /// Runs shorter than this are timed twice.
+    constexpr double short_run = 1.; // s
 
-    /// The largest bound on the error of the iterations, of both runs.
-    double
-    error_of_iterations(const Table &run, const Table &other)
+
+
+    /// The overrides with what `automatic' stands for in the scene: a variant
+    /// without a law or with other moduli is to differ by these alone.
+    std::vector<std::string>
+    with_choices(const std::vector<std::string> &files,
+                 std::vector<std::string>        overrides)
     {
-      double result = 1e-10;
-      for (const Table *table : {&run, &other})
-        if (table->has("algebraic_error"))
-          for (const double value : table->columns.at("algebraic_error"))
-            result = std::max(result, std::isfinite(value) ? value : 0.);
+      const Parameters scene(files, overrides);
+      overrides.push_back(
+        "Material/Volumetric integration=" +
+        name_of(
+          SceneData::of(scene, MPI_COMM_WORLD)->volumetric_integration()));
+      return overrides;
+    }
+
+
+
+    std::unique_ptr<StudyRuns>
+    make_runs(const std::vector<std::string> &files,
+              std::vector<std::string>        overrides,
+              const std::string              &directory)
+    {
+      overrides.push_back("Output/Directory=" + directory);
+      auto runs = std::make_unique<StudyRuns>(files, overrides, MPI_COMM_WORLD);
+      runs->may_choose_steps = true;
+      return runs;
+    }
+
+
+
+    RunKey
+    key_of(const StudyRuns &runs, const int level)
+    {
+      RunKey key = runs.scene_key();
+      if (runs.scene.error_control.has_tolerance())
+        key.variant.strategy = MeshStrategy::tolerance;
+      key.mesh_level = key.time_level = level;
+      return key;
+    }
+
+
+
+    /// The largest value of a column, where it has values; 0 without any.
+    double
+    largest_of(const Table &table, const std::string &column)
+    {
+      double result = 0.;
+      if (table.has(column))
+        for (const double value : table.columns.at(column))
+          result = std::max(result, std::isfinite(value) ? value : 0.);
       return result;
     }
 
 
 
-    EffectVerdict
-    judge(const std::vector<QuantityChange> &changes, const double smallest)
+    /// Beyond what the process had before.
+    double
+    own_memory(const RunRecord &record)
     {
-      bool acts = false, is_above = false, is_clear = false;
-      for (const QuantityChange &quantity : changes)
-        {
-          acts |= quantity.change > smallest;
-          is_above |= quantity.change > std::max(quantity.error, smallest);
-          is_clear |= quantity.change > clear * quantity.error + smallest;
-        }
-      return !acts    ? EffectVerdict::never_acted :
-             is_clear ? EffectVerdict::called_for :
-             is_above ? EffectVerdict::as_large_as_the_error :
-                        EffectVerdict::below_the_error;
-    }
-
-
-
-    /// Whether both set the same entry.
-    bool
-    overlap(const EffectVariant &first, const EffectVariant &second)
-    {
-      const auto entry = [](const std::string &assignment) {
-        return assignment.substr(0, assignment.find('='));
-      };
-      for (const std::string &a : first.overrides)
-        for (const std::string &b : second.overrides)
-          if (entry(a) == entry(b))
-            return true;
-      return first.effect == second.effect;
+      return record.number("peak_memory_MB") - record.number("first_memory_MB");
     }
   } // namespace
-
-
-
-  std::string
-  to_string(const EffectVerdict verdict)
-  {
-    switch (verdict)
-      {
-        case EffectVerdict::called_for:
-          return "called for";
-        case EffectVerdict::below_the_error:
-          return "below the error of this discretization";
-        case EffectVerdict::as_large_as_the_error:
-          return "as large as the error of this discretization";
-        case EffectVerdict::never_acted:
-          return "never acted";
-        default:
-          return "cannot be left out";
-      }
-  }
 
 
 
   EffectsStudy::EffectsStudy(const std::vector<std::string> &files,
                              const std::vector<std::string> &overrides,
                              Console                        &console)
-    : scene(files, overrides)
+    : files(files)
+    , overrides(with_choices(files, overrides))
+    , scene(files, this->overrides)
     , directory(results_directory(scene) + "effects/")
-    , files(files)
-    , overrides(overrides)
     , console(console)
     , out(console.stream(),
           Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    , base(runs_of({"scene", "", "", {}, true}))
+    , data(SceneData::of(scene, MPI_COMM_WORLD))
+    , base(make_runs(files, this->overrides, directory + "scene"))
   {}
 
 
 
   std::unique_ptr<StudyRuns>
-  EffectsStudy::runs_of(const EffectVariant &variant) const
+  EffectsStudy::runs_of(const EffectVariant &variant, const int level) const
   {
     std::vector<std::string> all = overrides;
     all.insert(all.end(), variant.overrides.begin(), variant.overrides.end());
-    all.push_back("Output/Directory=" + directory + variant.name);
-    if (base && scene.exact_solution.displacement.empty())
-      all.push_back("Exact solution/Reference directory=" + base->directory +
-                    base->name(*base->reference));
-    return std::make_unique<StudyRuns>(files, all, MPI_COMM_WORLD);
+    // Differences from the scene stand in the place of errors, where these are
+    // not from the solution that makes the data.
+    if (scene.exact_solution.data == DataSource::scene)
+      {
+        all.emplace_back("Exact solution/Displacement=");
+        all.emplace_back("Exact solution/Stress=");
+        all.emplace_back("Exact solution/Reference directory=" +
+                         base->directory + base->name(key_of(*base, level)));
+      }
+    auto runs         = make_runs(files, all, directory + variant.name());
+    runs->has_outputs = variant.has_outputs;
+    return runs;
   }
 
 
 
-  RunKey
-  EffectsStudy::key_of(const StudyRuns &runs, const int level) const
+  bool
+  EffectsStudy::is_affordable(const double seconds) const
   {
-    RunKey key = runs.scene_key();
-    if (scene.error_control.has_tolerance())
-      key.variant.strategy = MeshStrategy::tolerance;
-    key.mesh_level = key.time_level = level;
-    return key;
+    return Utilities::MPI::broadcast(MPI_COMM_WORLD, timer.wall_time()) +
+             seconds <=
+           scene.study.budget;
+  }
+
+
+
+  EffectsStudy::Attempt
+  EffectsStudy::compute(const StudyRuns &runs,
+                        const int        level,
+                        const double     expected_seconds)
+  {
+    Attempt    attempt;
+    const auto find_or_make = [&](const RunKey &key) {
+      auto record = runs.find(key);
+      if (record)
+        return record;
+      attempt.is_too_long = !is_affordable(expected_seconds);
+      if (attempt.is_too_long)
+        return record;
+      StudyRuns::Outcome outcome = runs.make(key);
+      attempt.interruption       = outcome.interruption;
+      attempt.failure            = outcome.failure;
+      return outcome.record;
+    };
+    RunKey     key    = key_of(runs, level);
+    const auto record = find_or_make(key);
+    if (!record)
+      return attempt;
+    const double seconds = record->number("seconds_total"),
+                 memory  = own_memory(*record);
+    attempt.computed =
+      Computed{*record,
+               read_table(runs.directory + runs.name(key) + "/statistics.csv"),
+               {seconds, 0., memory, 0.}};
+    // Once more, to know what is chance. Of long runs only the scene, whose
+    // chance then stands for that of others, too.
+    RunCost &cost = attempt.computed->cost;
+    if (seconds > short_run && of_scene.count(level) > 0)
+      {
+        const RunCost &other = of_scene.at(level).cost;
+        cost.seconds_chance  = other.seconds_chance / other.seconds * seconds;
+        cost.memory_chance   = other.memory_chance;
+        return attempt;
+      }
+    key.is_timing = true;
+    if (const auto again = find_or_make(key))
+      {
+        const double seconds_again = again->number("seconds_total"),
+                     memory_again  = own_memory(*again);
+        cost                       = {std::min(seconds, seconds_again),
+                                      std::abs(seconds - seconds_again),
+                                      std::min(memory, memory_again),
+                                      std::abs(memory - memory_again)};
+      }
+    // Without time for that, the first run is enough.
+    attempt.is_too_long = false;
+    return attempt;
+  }
+
+
+
+  bool
+  EffectsStudy::compute_scene(const int level)
+  {
+    base->reference = key_of(*base, level);
+    // The first run is made in any case, another one has twice the resolution
+    // in space and time.
+    double       expected = -std::numeric_limits<double>::infinity();
+    const auto   coarser  = of_scene.find(level - 1);
+    const double factor   = std::pow(2., scene.dimension + 1);
+    if (coarser != of_scene.end())
+      expected = factor * coarser->second.record.number("seconds_total");
+    else if (!of_scene.empty())
+      expected = 0.;
+    Attempt attempt = compute(*base, level, expected);
+    interruption    = attempt.interruption;
+    if (attempt.failure.empty() && !attempt.computed && interruption.empty())
+      failure = "its run would not end within 'Study/Budget'.";
+    else
+      failure = attempt.failure;
+    if (attempt.computed)
+      of_scene.emplace(level, std::move(*attempt.computed));
+    return of_scene.count(level) > 0;
+  }
+
+
+
+  void
+  EffectsStudy::add_errors(std::vector<QuantityChange> &changes,
+                           const int                    level) const
+  {
+    const Computed &with    = of_scene.at(level);
+    const auto      coarser = of_scene.find(level - 1);
+    // What halving mesh and steps has changed, at times of both runs, or the
+    // error bar in energy.
+    std::vector<QuantityChange> errors;
+    if (coarser != of_scene.end())
+      errors = changes_between(coarser->second.table, with.table);
+    for (std::size_t q = 0; q < changes.size(); ++q)
+      changes[q].error = q < errors.size() ?
+                           errors[q].change :
+                           with.record.number("estimate_total");
+  }
+
+
+
+  std::optional<EffectResult>
+  EffectsStudy::compare(const EffectVariant &variant,
+                        const int            level,
+                        Table               *table)
+  {
+    console.show_status(variant.effect + ": " + variant.instead);
+    const Computed &with = of_scene.at(level);
+    base->reference      = key_of(*base, level);
+    EffectResult result;
+    result.variant = variant;
+    result.level   = level;
+    result.cells   = with.record.number("cells");
+    result.with    = with.cost;
+    Attempt attempt;
+    try
+      {
+        attempt = compute(*runs_of(variant, level),
+                          level,
+                          with.record.number("seconds_total"));
+      }
+    catch (const std::exception &exception)
+      {
+        attempt.failure = reason(exception);
+      }
+    interruption = attempt.interruption;
+    if (!interruption.empty() || attempt.is_too_long)
+      return {};
+    if (!attempt.computed)
+      {
+        result.failure = attempt.failure;
+        return result;
+      }
+
+    const RunRecord &record = attempt.computed->record;
+    result.without          = attempt.computed->cost;
+    if (variant.has_outputs)
+      {
+        // Of what the runs of studies go without.
+        result.without.seconds += record.number("seconds_output");
+        std::swap(result.with, result.without);
+      }
+    result.changes    = changes_between(with.table, attempt.computed->table);
+    const double size = largest_of(with.table, "energy_norm"),
+                 distance = largest_of(attempt.computed->table, "error_energy");
+    if (scene.exact_solution.data == DataSource::scene && size > 0.)
+      result.changes.push_back({"energy_norm", distance / size, 0.});
+    add_errors(result.changes, level);
+    judge(result, error_of_iterations(with.table, attempt.computed->table));
+    if (table != nullptr)
+      *table = std::move(attempt.computed->table);
+    return result;
   }
 
 
@@ -140,97 +298,144 @@ namespace Viscoplastic
 
 
 
-  std::optional<EffectsStudy::Computed>
-  EffectsStudy::compute(const StudyRuns &runs,
-                        const int        level,
-                        std::string     &failure)
+  void
+  EffectsStudy::keep(const EffectResult &result)
   {
-    const RunKey key    = key_of(runs, level);
-    auto         record = runs.find(key);
-    if (!record)
-      {
-        StudyRuns::Outcome outcome = runs.make(key);
-        interruption               = outcome.interruption;
-        failure                    = outcome.failure;
-        record                     = std::move(outcome.record);
-      }
-    if (!record)
-      return {};
-    return Computed{*record,
-                    read_table(runs.directory + runs.name(key) +
-                               "/statistics.csv")};
-  }
-
-
-
-  EffectResult
-  EffectsStudy::compare(const EffectVariant &variant, const int level)
-  {
-    const Computed &with = of_scene.at(level);
-    base->reference      = key_of(*base, level);
-    EffectResult result;
-    result.variant      = variant;
-    result.level        = level;
-    result.cells        = with.record.number("cells");
-    result.seconds_with = with.record.number("seconds_total");
-    result.memory_with  = with.record.number("peak_memory_MB");
-    std::optional<Computed> without;
-    try
-      {
-        const auto runs = runs_of(variant);
-        without         = compute(*runs, level, result.failure);
-      }
-    catch (const std::exception &exception)
-      {
-        result.failure = reason(exception);
-      }
-    if (!without)
-      return result;
-    result.seconds_without = without->record.number("seconds_total");
-    result.memory_without  = without->record.number("peak_memory_MB");
-    result.energy_distance = without->record.number("error_energy");
-    result.changes         = changes_between(with.table, without->table);
-
-    // What halving mesh and steps has changed, or the bar in energy.
-    const auto coarser = of_scene.find(level - 1);
-    if (coarser != of_scene.end())
-      {
-        const auto errors = changes_between(with.table, coarser->second.table);
-        for (std::size_t q = 0; q < errors.size(); ++q)
-          result.changes[q].error = errors[q].change;
-      }
+    const auto known =
+      std::find_if(results.begin(),
+                   results.end(),
+                   [&result](const EffectResult &other) {
+                     return other.variant.name() == result.variant.name();
+                   });
+    if (known == results.end())
+      results.push_back(result);
     else
-      for (QuantityChange &quantity : result.changes)
-        quantity.error = with.record.number("estimate_total");
-    const double smallest =
-      10. * error_of_iterations(with.table, without->table);
-    result.verdict = judge(result.changes, smallest);
-    result.decisive =
-      *std::max_element(result.changes.begin(),
-                        result.changes.end(),
-                        [smallest](const QuantityChange &a,
-                                   const QuantityChange &b) {
-                          return a.change / (a.error + smallest) <
-                                 b.change / (b.error + smallest);
-                        });
-    return result;
+      *known = result;
+    const auto size = [](const EffectResult &of) {
+      return of.failure.empty() ? of.decisive.change : 1e300;
+    };
+    std::stable_sort(results.begin(),
+                     results.end(),
+                     [&](const EffectResult &a, const EffectResult &b) {
+                       if (a.variant.kind != b.variant.kind)
+                         return a.variant.kind < b.variant.kind;
+                       return size(a) > size(b);
+                     });
   }
 
 
 
   void
-  EffectsStudy::sort()
+  EffectsStudy::judge_all(std::vector<EffectVariant> open)
   {
-    const auto size = [](const EffectResult &result) {
-      return result.failure.empty() ? result.decisive.change : 1e300;
-    };
-    std::stable_sort(results.begin(),
-                     results.end(),
-                     [&](const EffectResult &a, const EffectResult &b) {
-                       if (a.variant.is_physical != b.variant.is_physical)
-                         return a.variant.is_physical;
-                       return size(a) > size(b);
-                     });
+    const std::vector<int> all_levels = levels();
+    for (const int level : all_levels)
+      {
+        const bool has_coarser = of_scene.count(level - 1) > 0;
+        if (!compute_scene(level))
+          {
+            if (!interruption.empty())
+              return;
+            if (has_coarser)
+              break;
+            continue; // too coarse
+          }
+        if (open.empty())
+          {
+            open = effect_variants(scene,
+                                   *data,
+                                   largest_of(of_scene.at(level).table,
+                                              "mean_von_mises"));
+            out << "Effects of " << scene.file << ": " << open.size()
+                << " simplifications" << std::endl;
+          }
+        // The first one is what the next is compared with.
+        if (!has_coarser && level != all_levels.back())
+          continue;
+        std::vector<EffectVariant> undecided;
+        for (const EffectVariant &variant : open)
+          {
+            const auto result = compare(variant, level);
+            if (!interruption.empty())
+              return;
+            if (result)
+              keep(*result);
+            if (!result || result->is_open())
+              undecided.push_back(variant);
+            write(false);
+          }
+        open = std::move(undecided);
+        if (open.empty())
+          return;
+      }
+    AssertThrow(!of_scene.empty(),
+                ExcMessage("The scene itself could not be computed: " +
+                           failure));
+    // Those that are open on the mesh of the scene are settled.
+    unsigned int n_open = 0;
+    std::string  missing;
+    for (const EffectVariant &variant : open)
+      {
+        const auto known =
+          std::find_if(results.begin(),
+                       results.end(),
+                       [&variant](const EffectResult &result) {
+                         return result.variant.name() == variant.name();
+                       });
+        if (known == results.end())
+          missing += (missing.empty() ? "" : "; ") + variant.effect + ": " +
+                     variant.instead;
+        else if (known->level < 0)
+          ++n_open;
+      }
+    if (!missing.empty())
+      left_out = "No time within 'Study/Budget' for " + missing + ". ";
+    if (n_open > 0)
+      left_out +=
+        "Finer meshes might tell " + std::to_string(n_open) +
+        " of them from the error" +
+        (failure.empty() ?
+           ", but not within 'Study/Budget'." :
+           ", but on these the scene could not be computed: " + failure);
+  }
+
+
+
+  void
+  EffectsStudy::find_interaction()
+  {
+    // Everything depends on the loads.
+    const EffectResult *first = nullptr, *second = nullptr;
+    for (const EffectResult &result : results)
+      if (result.variant.kind == EffectKind::problem &&
+          !result.variant.is_load &&
+          result.verdict == EffectVerdict::called_for)
+        {
+          if (first == nullptr)
+            first = &result;
+          else if (second == nullptr &&
+                   !first->variant.excludes(result.variant))
+            second = &result;
+        }
+    if (second == nullptr)
+      return;
+    const int  level = std::max(first->level, second->level);
+    Table      of_first, of_second, of_both;
+    const auto one = compare(first->variant, level, &of_first);
+    const auto two = one ? compare(second->variant, level, &of_second) : one;
+    const auto joint =
+      two ? compare(both(first->variant, second->variant), level, &of_both) :
+            two;
+    if (!joint || !one->failure.empty() || !two->failure.empty() ||
+        !joint->failure.empty())
+      return;
+
+    EffectResult sum;
+    sum.changes =
+      interactions(of_scene.at(level).table, of_first, of_second, of_both);
+    add_errors(sum.changes, level);
+    judge(sum, error_of_iterations(of_first, of_both));
+    interaction = EffectInteraction{*one, *two, *joint, sum.decisive};
   }
 
 
@@ -239,106 +444,12 @@ namespace Viscoplastic
   EffectsStudy::run()
   {
     base->lock_directory();
-    const std::vector<int> all_levels = levels();
-    std::string            failure;
-    const auto             interrupted = [this] {
+    judge_all({});
+    if (interruption.empty())
+      find_interaction();
+    if (!interruption.empty())
       return interruption.substr(0, interruption.find(" has ended")) +
              " has ended the study of effects; the same command goes on.";
-    };
-
-    const auto make_scene = [&](const int level) {
-      base->reference = key_of(*base, level);
-      auto found      = compute(*base, level, failure);
-      if (found)
-        of_scene.emplace(level, std::move(*found));
-      return interruption.empty();
-    };
-    if (!make_scene(all_levels.front()))
-      return interrupted();
-    AssertThrow(!of_scene.empty(),
-                ExcMessage("The scene itself could not be computed: " +
-                           failure));
-
-    double typical_stress = 0.;
-    for (const double stress :
-         of_scene.begin()->second.table.columns.at("mean_von_mises"))
-      typical_stress = std::max(typical_stress, stress);
-    std::vector<EffectVariant> open = effect_variants(scene, typical_stress);
-    out << "Effects of " << scene.file << ": " << open.size()
-        << " simplifications" << std::endl;
-
-    double last_seconds = 0.;
-    for (const int level : all_levels)
-      {
-        if (all_levels.size() > 1 && level == all_levels.front())
-          continue; // what the next one is compared with
-        // Twice the resolution in space and time.
-        const double begin = timer.wall_time();
-        const double expected =
-          last_seconds * std::pow(2., scene.dimension + 1);
-        if (Utilities::MPI::broadcast(MPI_COMM_WORLD, begin + expected) >
-            scene.study.budget)
-          {
-            left_out =
-              std::to_string(open.size()) +
-              " simplifications would separate from the error, if at all, on "
-              "meshes that 'Study/Budget' leaves no time for.";
-            break;
-          }
-        if (of_scene.count(level) == 0 && !make_scene(level))
-          return interrupted();
-        if (of_scene.count(level) == 0)
-          {
-            left_out = "The scene could not be computed there: " + failure;
-            break;
-          }
-        std::vector<EffectVariant> undecided;
-        for (const EffectVariant &variant : open)
-          {
-            console.show_status(variant.effect + ": " + variant.instead);
-            EffectResult result = compare(variant, level);
-            if (!interruption.empty())
-              return interrupted();
-            if (result.verdict == EffectVerdict::below_the_error ||
-                result.verdict == EffectVerdict::as_large_as_the_error)
-              undecided.push_back(variant);
-            results.erase(std::remove_if(results.begin(),
-                                         results.end(),
-                                         [&](const EffectResult &earlier) {
-                                           return earlier.variant.name ==
-                                                  variant.name;
-                                         }),
-                          results.end());
-            results.push_back(std::move(result));
-          }
-        open = std::move(undecided);
-        last_seconds =
-          Utilities::MPI::broadcast(MPI_COMM_WORLD, timer.wall_time() - begin);
-        sort();
-        write(false);
-        if (open.empty())
-          break;
-      }
-
-    // The two largest at once.
-    const EffectResult *first = nullptr, *second = nullptr;
-    for (const EffectResult &result : results)
-      if (result.variant.is_physical &&
-          result.verdict == EffectVerdict::called_for)
-        {
-          if (first == nullptr)
-            first = &result;
-          else if (second == nullptr &&
-                   !overlap(first->variant, result.variant))
-            second = &result;
-        }
-    if (second != nullptr)
-      {
-        together = compare(both(first->variant, second->variant),
-                           std::max(first->level, second->level));
-        if (!interruption.empty())
-          return interrupted();
-      }
     write(true);
     out << in_words(*this) << "Results in " << directory << std::endl;
     return "";

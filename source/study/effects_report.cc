@@ -25,45 +25,57 @@ namespace Viscoplastic
 
 
 
-    /// "friction_force by 3 %, its error here is 0.2 %"
     std::string
-    change_in_words(const EffectResult &result)
+    with_chance(const double value,
+                const double chance,
+                const char  *unit,
+                const char  *between = " +- ")
     {
-      if (!result.failure.empty() ||
-          result.verdict == EffectVerdict::never_acted)
-        return "nothing";
-      return result.decisive.quantity + " by " +
-             percent(result.decisive.change);
+      return digits(value, 2) + between + digits(chance, 1) + unit;
     }
 
 
 
-    /// What the scene pays for the effect, of what it takes with it.
+    /// What the scene pays for the effect, of the seconds that it takes.
     std::string
-    cost_in_words(const EffectResult &result)
+    share_of_time(const EffectResult &result, const char *between = " +- ")
     {
-      if (!result.failure.empty())
-        return "-";
-      const double share = 1. - result.seconds_without / result.seconds_with;
-      return digits(result.seconds_with - result.seconds_without, 2) + " s (" +
-             digits(100. * share, 2) + " %), " +
-             digits(result.memory_with - result.memory_without, 2) + " MB";
+      const RunCost &with = result.with, &without = result.without;
+      return with_chance(100. * (1. - without.seconds / with.seconds),
+                         100. * (with.seconds_chance + without.seconds_chance) /
+                           with.seconds,
+                         " %",
+                         between);
     }
 
 
 
-    std::vector<std::string>
-    cells_of(const EffectResult &result)
+    std::string
+    seconds_of(const EffectResult &result)
     {
-      const bool failed = !result.failure.empty();
-      return {result.variant.effect,
-              result.variant.instead,
-              to_string(result.verdict),
-              change_in_words(result),
-              failed ? "-" : percent(result.decisive.error),
-              failed ? "-" : percent(result.energy_distance),
-              cost_in_words(result),
-              failed ? "-" : digits(result.cells, 9)};
+      return digits(result.with.seconds - result.without.seconds, 2) + " s";
+    }
+
+
+
+    std::string
+    memory_of(const EffectResult &result)
+    {
+      const RunCost &with = result.with, &without = result.without;
+      return with_chance(with.memory - without.memory,
+                         with.memory_chance + without.memory_chance,
+                         " MB");
+    }
+
+
+
+    /// Whether there is a change to tell of.
+    bool
+    has_changes(const EffectResult &result)
+    {
+      return result.failure.empty() &&
+             result.verdict != EffectVerdict::never_acted &&
+             result.verdict != EffectVerdict::only_watches;
     }
 
 
@@ -72,10 +84,149 @@ namespace Viscoplastic
                                                   "instead",
                                                   "verdict",
                                                   "changes most",
+                                                  "by",
                                                   "error there",
                                                   "energy norm",
-                                                  "costs",
+                                                  "time",
+                                                  "",
+                                                  "memory",
                                                   "cells"};
+
+
+
+    std::vector<std::string>
+    cells_of(const EffectResult &result)
+    {
+      std::vector<std::string> cells{result.variant.effect,
+                                     result.variant.instead,
+                                     to_string(result.verdict)};
+      if (!result.failure.empty())
+        cells.resize(effects_header.size(), "-");
+      else
+        {
+          const bool tells = has_changes(result);
+          for (const std::string &cell :
+               {tells ? result.decisive.quantity : "nothing",
+                tells ? percent(result.decisive.change) : "",
+                tells ? percent(result.decisive.error) : "",
+                percent(result.change_of("energy_norm")),
+                share_of_time(result),
+                seconds_of(result),
+                memory_of(result),
+                digits(result.cells, 9)})
+            cells.push_back(cell);
+        }
+      return cells;
+    }
+
+
+
+    /// The words of a text in lines of at most @p width characters, where no
+    /// word is longer.
+    std::vector<std::string>
+    lines_of(const std::string &text, const std::size_t width)
+    {
+      std::istringstream       words(text);
+      std::vector<std::string> lines{""};
+      std::string              word;
+      while (words >> word)
+        if (lines.back().empty())
+          lines.back() = word;
+        else if (lines.back().size() + 1 + word.size() <= width)
+          lines.back() += ' ' + word;
+        else
+          lines.push_back("  " + word);
+      return lines;
+    }
+
+
+
+    /// A row of the table for the console: of effect, verdict, quantity, its
+    /// change and error, and the time.
+    void
+    print_cells(std::ostream &out, const std::vector<std::string> &cells)
+    {
+      constexpr std::size_t width = 34;
+      const auto            first = lines_of(cells[0], width);
+      out << "  " << std::left << std::setw(width) << first[0] << ' '
+          << std::setw(13) << cells[1] << ' ' << std::setw(20) << cells[2]
+          << std::right << ' ' << std::setw(7) << cells[3] << ' '
+          << std::setw(7) << cells[4] << ' ' << std::setw(12) << cells[5]
+          << '\n';
+      for (std::size_t i = 1; i < first.size(); ++i)
+        out << "  " << first[i] << '\n';
+    }
+
+
+
+    /// The verdict in a column of the console.
+    std::string
+    in_short(const EffectVerdict verdict)
+    {
+      switch (verdict)
+        {
+          case EffectVerdict::below_the_error:
+            return "below error";
+          case EffectVerdict::as_large_as_the_error:
+            return "as the error";
+          case EffectVerdict::cannot_be_left_out:
+            return "is needed";
+          default:
+            return to_string(verdict);
+        }
+    }
+
+
+
+    void
+    print_row(std::ostream &out, const EffectResult &result)
+    {
+      const bool failed = !result.failure.empty(), tells = has_changes(result);
+      print_cells(out,
+                  {result.variant.effect + ": " + result.variant.instead,
+                   in_short(result.verdict),
+                   tells ? result.decisive.quantity : "",
+                   tells ? percent(result.decisive.change) : "",
+                   tells ? percent(result.decisive.error) : "",
+                   failed ? "" : share_of_time(result, "+-")});
+    }
+
+
+
+    /// Whether two effects interact, in numbers.
+    std::string
+    in_words(const EffectInteraction &interaction)
+    {
+      const std::string &quantity = interaction.largest.quantity;
+      std::ostringstream text;
+      text << "Without " << interaction.first.variant.effect << " ("
+           << interaction.first.variant.instead << ") " << quantity
+           << " changes by " << percent(interaction.first.change_of(quantity))
+           << ", without " << interaction.second.variant.effect << " ("
+           << interaction.second.variant.instead << ") by "
+           << percent(interaction.second.change_of(quantity))
+           << ", without both by "
+           << percent(interaction.joint.change_of(quantity))
+           << ". This differs from the sum of both changes by up to "
+           << percent(interaction.largest.change)
+           << ", where the error of this quantity is "
+           << percent(interaction.largest.error) << ": they "
+           << (interaction.is_clear() ?
+                 "interact." :
+                 "add up, as far as this discretization can tell.");
+      return text.str();
+    }
+
+
+
+    /// The name of a kind of effects, as a heading and in the files.
+    std::string
+    to_string(const EffectKind kind)
+    {
+      return kind == EffectKind::problem        ? "problem" :
+             kind == EffectKind::discretization ? "discretization" :
+                                                  "observation";
+    }
 
 
 
@@ -89,33 +240,31 @@ namespace Viscoplastic
               "discretization, and what it costs. Changes are the largest of "
               "all times over the largest value; the quantity is that whose "
               "change is the largest in proportion to its error, which is the "
-              "difference to a run with twice the mesh width and time steps. "
-              "Energy norm: of the difference of the displacements at the ends "
-              "of the phases of time.\n\n";
+              "difference to a run with twice the mesh width and time steps "
+              "(in the energy norm: the error bar). Energy norm: of the "
+              "difference of the displacements at the ends of the phases of "
+              "time. Time and memory: what the scene takes less what it takes "
+              "without the effect, +- the difference between two runs of the "
+              "same.\n\n";
       if (std::filesystem::exists(study.directory + "effects.png"))
         text << "![What effects change and cost](effects.png)\n\n";
-      for (const bool is_physical : {true, false})
+      const EffectResult *last = nullptr;
+      for (const EffectResult &result : study.results)
         {
-          bool is_first = true;
-          for (const EffectResult &result : study.results)
-            if (result.variant.is_physical == is_physical)
-              {
-                if (is_first)
-                  text << (is_physical ? "## The problem\n\n" :
-                                         "\n## The discretization\n\n")
-                       << table_head(effects_header);
-                is_first = false;
-                text << table_row(cells_of(result));
-              }
+          if (last == nullptr || last->variant.kind != result.variant.kind)
+            text << (last == nullptr ? "" : "\n") << "## Of the "
+                 << to_string(result.variant.kind) << "\n\n"
+                 << table_head(effects_header);
+          text << table_row(cells_of(result));
+          last = &result;
         }
       for (const EffectResult &result : study.results)
         if (!result.failure.empty())
           text << "\nWithout " << result.variant.effect << " ("
                << result.variant.instead << "): " << result.failure << '\n';
-      if (study.together && study.together->failure.empty())
+      if (study.interaction)
         text << "\n## The two largest at once\n\n"
-             << table_head(effects_header)
-             << table_row(cells_of(*study.together));
+             << in_words(*study.interaction) << '\n';
       if (!study.left_out.empty())
         text << '\n' << study.left_out << '\n';
       text << "\n*" << origin.program << ", " << origin.machine << ", "
@@ -126,20 +275,28 @@ namespace Viscoplastic
 
 
     nlohmann::ordered_json
+    json_of(const RunCost &cost)
+    {
+      return {{"seconds", cost.seconds},
+              {"seconds_chance", cost.seconds_chance},
+              {"memory_MB", cost.memory},
+              {"memory_chance_MB", cost.memory_chance}};
+    }
+
+
+
+    nlohmann::ordered_json
     json_of(const EffectResult &result)
     {
       nlohmann::ordered_json json{{"effect", result.variant.effect},
                                   {"instead", result.variant.instead},
                                   {"overrides", result.variant.overrides},
-                                  {"physical", result.variant.is_physical},
+                                  {"kind", to_string(result.variant.kind)},
                                   {"verdict", to_string(result.verdict)},
                                   {"level", result.level},
                                   {"cells", result.cells},
-                                  {"seconds_with", result.seconds_with},
-                                  {"seconds_without", result.seconds_without},
-                                  {"memory_with_MB", result.memory_with},
-                                  {"memory_without_MB", result.memory_without},
-                                  {"energy_distance", result.energy_distance},
+                                  {"with", json_of(result.with)},
+                                  {"without", json_of(result.without)},
                                   {"decisive", result.decisive.quantity},
                                   {"failure", result.failure},
                                   {"changes", nlohmann::json::object()}};
@@ -151,23 +308,39 @@ namespace Viscoplastic
 
 
 
+    nlohmann::ordered_json
+    json_of(const EffectInteraction &interaction)
+    {
+      return {{"first", json_of(interaction.first)},
+              {"second", json_of(interaction.second)},
+              {"joint", json_of(interaction.joint)},
+              {"quantity", interaction.largest.quantity},
+              {"interaction", interaction.largest.change},
+              {"error", interaction.largest.error},
+              {"interact", interaction.is_clear()},
+              {"words", in_words(interaction)}};
+    }
+
+
+
+    /// A row for each quantity of each simplification.
     std::string
     csv(const EffectsStudy &study)
     {
       std::ostringstream text;
-      text << "effect,instead,physical,verdict,level,cells,quantity,change,"
-              "error,energy_distance,seconds_with,seconds_without,"
-              "memory_with_MB,memory_without_MB\n"
+      text << "effect,instead,kind,verdict,level,cells,quantity,change,error,"
+              "seconds_with,seconds_without,memory_with_MB,memory_without_MB\n"
            << std::setprecision(12);
       for (const EffectResult &result : study.results)
-        text << '"' << result.variant.effect << "\",\""
-             << result.variant.instead << "\"," << result.variant.is_physical
-             << ",\"" << to_string(result.verdict) << "\"," << result.level
-             << ',' << result.cells << ',' << result.decisive.quantity << ','
-             << result.decisive.change << ',' << result.decisive.error << ','
-             << result.energy_distance << ',' << result.seconds_with << ','
-             << result.seconds_without << ',' << result.memory_with << ','
-             << result.memory_without << '\n';
+        for (const QuantityChange &quantity : result.changes)
+          text << '"' << result.variant.effect << "\",\""
+               << result.variant.instead << "\","
+               << to_string(result.variant.kind) << ",\""
+               << to_string(result.verdict) << "\"," << result.level << ','
+               << result.cells << ',' << quantity.quantity << ','
+               << quantity.change << ',' << quantity.error << ','
+               << result.with.seconds << ',' << result.without.seconds << ','
+               << result.with.memory << ',' << result.without.memory << '\n';
       return text.str();
     }
   } // namespace
@@ -178,29 +351,22 @@ namespace Viscoplastic
   in_words(const EffectsStudy &study)
   {
     std::ostringstream text;
-    const auto         add = [&text](const EffectResult &result) {
-      text << "  " << result.variant.effect << ", instead "
-           << result.variant.instead << ": " << to_string(result.verdict);
-      if (!result.failure.empty())
-        text << ": " << result.failure;
-      else
-        {
-          if (result.verdict != EffectVerdict::never_acted)
-            text << "; changes " << change_in_words(result) << " (error "
-                 << percent(result.decisive.error) << ")";
-          text << "; costs " << cost_in_words(result);
-        }
-      text << '\n';
+    print_cells(
+      text, {"without: instead", "", "changes most", "by", "error", "costs"});
+    for (const EffectResult &result : study.results)
+      print_row(text, result);
+    const auto add = [&text](const std::string &sentence) {
+      for (const std::string &line : lines_of(sentence, 96))
+        text << line << '\n';
     };
     for (const EffectResult &result : study.results)
-      add(result);
-    if (study.together)
-      {
-        text << "The two largest at once:\n";
-        add(*study.together);
-      }
+      if (!result.failure.empty())
+        add("Without " + result.variant.effect + " (" + result.variant.instead +
+            "): " + result.failure);
+    if (study.interaction)
+      add(in_words(*study.interaction));
     if (!study.left_out.empty())
-      text << study.left_out << '\n';
+      add(study.left_out);
     return text.str();
   }
 
@@ -220,9 +386,10 @@ namespace Viscoplastic
       {"machine", origin.machine},
       {"date", origin.date},
       {"finished", is_finished},
+      {"left_out", study.left_out},
       {"effects", results}};
-    if (study.together)
-      json["together"] = json_of(*study.together);
+    if (study.interaction)
+      json["interaction"] = json_of(*study.interaction);
     make_results_directory(study.directory);
     replace_file(study.directory + "effects.csv", csv(study));
     replace_file(study.directory + "effects.json", json_text(json));

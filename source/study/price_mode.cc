@@ -154,6 +154,7 @@ namespace Viscoplastic
   run_at_price(const CommandLine &command_line, Console &console)
   {
     StudyRuns runs(command_line.files, command_line.overrides, MPI_COMM_WORLD);
+    runs.require_given_steps();
     ConditionalOStream out(console.stream(),
                            Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) ==
                              0);

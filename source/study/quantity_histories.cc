@@ -20,8 +20,6 @@ namespace Viscoplastic
         return "force";
       if (begins("point") || quantity == "max_displacement")
         return "displacement";
-      if (begins("slip_area"))
-        return "area";
       if (quantity == "max_von_mises" || quantity == "mean_von_mises")
         return "stress";
       return quantity == "friction_dissipation" ||
@@ -73,6 +71,59 @@ namespace Viscoplastic
         (t - times[after - 1]) / (times[after] - times[after - 1]);
       return (1. - share) * values[after - 1] + share * values[after];
     }
+
+
+    /// A run with a sign.
+    struct Term
+    {
+      const Table *run;
+      double       sign;
+    };
+
+    /// For each quantity of @p run the largest size of the sum of it and the
+    /// @p others over the largest size of the quantity.
+    std::vector<QuantityChange>
+    differences(const Table &run, const std::vector<Term> &others)
+    {
+      const std::vector<double>    &times = run.columns.at("t");
+      std::vector<QuantityChange>   result;
+      std::vector<double>           sizes;
+      std::map<std::string, double> largest;
+      for (const auto &[name, columns] : quantities_of(run))
+        {
+          double size = 0., change = 0.;
+          for (std::size_t i = 0; i < times.size(); ++i)
+            {
+              double square = 0., difference = 0.;
+              for (const std::string &column : columns)
+                {
+                  const double value = run.columns.at(column)[i];
+                  double       sum   = value;
+                  for (const Term &term : others)
+                    sum += term.sign * value_at(*term.run, column, times[i]);
+                  square += value * value;
+                  difference += sum * sum;
+                }
+              size   = std::max(size, std::sqrt(square));
+              change = std::max(change, std::sqrt(difference));
+            }
+          result.push_back({name, change, 0.});
+          sizes.push_back(size);
+          double &most = largest[sort_of_quantity(name)];
+          most         = std::max(most, size);
+        }
+      for (std::size_t q = 0; q < result.size(); ++q)
+        {
+          // Energies are parts of one balance: beside all of it a dissipation
+          // can be negligible.
+          const std::string sort = sort_of_quantity(result[q].quantity);
+          const double      size = sort == "energy" ?
+                                     largest.at(sort) :
+                                     std::max(sizes[q], 1e-3 * largest.at(sort));
+          result[q].change       = size > 0. ? result[q].change / size : 0.;
+        }
+      return result;
+    }
   } // namespace
 
 
@@ -80,38 +131,17 @@ namespace Viscoplastic
   std::vector<QuantityChange>
   changes_between(const Table &run, const Table &other)
   {
-    const std::vector<double>    &times = run.columns.at("t");
-    std::vector<QuantityChange>   result;
-    std::vector<double>           sizes;
-    std::map<std::string, double> largest;
-    for (const auto &[name, columns] : quantities_of(run))
-      {
-        double size = 0., change = 0.;
-        for (std::size_t i = 0; i < times.size(); ++i)
-          {
-            double square = 0., difference = 0.;
-            for (const std::string &column : columns)
-              {
-                const double value = run.columns.at(column)[i];
-                square += value * value;
-                difference +=
-                  std::pow(value - value_at(other, column, times[i]), 2);
-              }
-            size   = std::max(size, std::sqrt(square));
-            change = std::max(change, std::sqrt(difference));
-          }
-        result.push_back({name, change, 0.});
-        sizes.push_back(size);
-        double &most = largest[sort_of_quantity(name)];
-        most         = std::max(most, size);
-      }
-    for (std::size_t q = 0; q < result.size(); ++q)
-      {
-        const double size =
-          std::max(sizes[q],
-                   1e-3 * largest.at(sort_of_quantity(result[q].quantity)));
-        result[q].change = size > 0. ? result[q].change / size : 0.;
-      }
-    return result;
+    return differences(run, {{&other, -1.}});
+  }
+
+
+
+  std::vector<QuantityChange>
+  interactions(const Table &run,
+               const Table &first,
+               const Table &second,
+               const Table &both)
+  {
+    return differences(run, {{&first, -1.}, {&second, -1.}, {&both, 1.}});
   }
 } // namespace Viscoplastic

@@ -182,8 +182,16 @@ namespace Viscoplastic
                            std::to_string(base) + "."));
     set("Geometry/Global refinements", refinements);
     set("Time/Phases", write_phases(steps));
+    // Steps by their error: half as long with half the error per time, or a
+    // quarter of it in the second order.
+    if (may_choose_steps && scene.step_control.is_on())
+      set("Step control/Tolerance",
+          scene.step_control.tolerance *
+            std::pow(scene.time.scheme == TimeScheme::heun ? 4. : 2.,
+                     -key.time_level));
     // Runs have the steps that the study says, or none.
-    if (scene.time.stiffness_policy == StiffnessPolicy::subdivide)
+    if (!may_choose_steps &&
+        scene.time.stiffness_policy == StiffnessPolicy::subdivide)
       set("Time/Stiffness policy", "refuse");
     if (base + level < 0)
       set("Geometry/Arguments",
@@ -226,16 +234,18 @@ namespace Viscoplastic
       result.push_back(assignment);
     for (const std::string &assignment :
          {"Output/Directory=" + place,
-          std::string("Output/Fields every=0"),
-          std::string("Output/Fields interval=0"),
           std::string("Output/Reference fields=") +
             (is_reference ? "true" : "false"),
-          std::string("Checkpoint/Every n steps=0"),
-          std::string("Checkpoint/Wall time interval=0"),
           std::string("Checkpoint/Wall time limit=0"),
           "Checkpoint/Directory=" + place + "/checkpoint",
           std::string("Error control/Two-level comparison=false")})
       result.push_back(assignment);
+    if (!has_outputs)
+      for (const char *assignment : {"Output/Fields every=0",
+                                     "Output/Fields interval=0",
+                                     "Checkpoint/Every n steps=0",
+                                     "Checkpoint/Wall time interval=0"})
+        result.emplace_back(assignment);
     if (is_compared(key))
       result.push_back("Exact solution/Reference directory=" + directory +
                        name(*reference));

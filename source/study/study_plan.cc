@@ -55,6 +55,7 @@ namespace Viscoplastic
     , out(console.stream(),
           Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
   {
+    runs.require_given_steps();
     AssertThrow(runs.scene.error_control.has_tolerance() ||
                   !contains(strategies, "tolerance"),
                 ExcMessage(

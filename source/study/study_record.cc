@@ -244,6 +244,7 @@ namespace Viscoplastic
     number["seconds_total"]     = total;
     number["seconds_rest"]      = rest;
     number["peak_memory_MB"]    = measurements.peak_memory;
+    number["first_memory_MB"]   = measurements.first_memory;
     for (const std::string name : {"contact_iterations", "linear_iterations"})
       number[name] = sum(name);
 

@@ -80,13 +80,14 @@ namespace Viscoplastic
 
 
 
-    /// In MB, of all ranks.
-    double
-    peak_memory(const MPI_Comm communicator)
+    /// Now and at the most, in MB, of all ranks.
+    std::pair<double, double>
+    memory(const MPI_Comm communicator)
     {
       Utilities::System::MemoryStats stats;
       Utilities::System::get_memory_stats(stats); // kB
-      return Utilities::MPI::sum(stats.VmHWM / 1024., communicator);
+      return {Utilities::MPI::sum(stats.VmRSS / 1024., communicator),
+              Utilities::MPI::sum(stats.VmHWM / 1024., communicator)};
     }
 
 
@@ -134,11 +135,12 @@ namespace Viscoplastic
             RunMeasurements           &measurements)
   {
     reset_peak_memory();
+    measurements.first_memory = memory(MPI_COMM_WORLD).first;
     const std::string interruption =
       parameters.dimension == 2 ?
         run_scene_in<2>(parameters, console, restart, measurements) :
         run_scene_in<3>(parameters, console, restart, measurements);
-    measurements.peak_memory = peak_memory(MPI_COMM_WORLD);
+    measurements.peak_memory = memory(MPI_COMM_WORLD).second;
     return interruption;
   }
 
@@ -155,10 +157,6 @@ namespace Viscoplastic
               read_phases(scene.time.phases)))
     , communicator(communicator)
   {
-    AssertThrow(!scene.step_control.is_on(),
-                ExcMessage("A study compares runs with the steps of "
-                           "'Time/Phases'; set 'Step control/Tolerance' = 0 "
-                           "for it."));
     int ierr = MPI_Comm_dup(communicator, &agreement);
     AssertThrowMPI(ierr);
     if (scene.dimension == 2)
@@ -172,6 +170,17 @@ namespace Viscoplastic
   StudyRuns::~StudyRuns()
   {
     MPI_Comm_free(&agreement);
+  }
+
+
+
+  void
+  StudyRuns::require_given_steps() const
+  {
+    AssertThrow(!scene.step_control.is_on(),
+                ExcMessage("A study compares runs with the steps of "
+                           "'Time/Phases'; set 'Step control/Tolerance' = 0 "
+                           "for it."));
   }
 
 
@@ -197,6 +206,7 @@ namespace Viscoplastic
     };
     for (const auto &[path, value] : parameters.values())
       if (path == "Output/Points" || path == "Output/Reference fields" ||
+          (has_outputs && path.compare(0, 13, "Output/Fields") == 0) ||
           (path.compare(0, 7, "Output/") != 0 &&
            path.compare(0, 6, "Study/") != 0 &&
            path.compare(0, 11, "Checkpoint/") != 0 &&

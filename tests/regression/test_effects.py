@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness import SOURCE, TestCase, main, run_program
+from harness import SOURCE, TestCase, as_prm, main, run_program
 from test_study import VERIFICATION, Folder
 
 sys.path.insert(0, str(SOURCE / "contrib"))
@@ -59,30 +59,53 @@ class Effects(TestCase):
                 ("traction on Boundary 0", "none"),
                 ("friction on Boundary 2", "none"),
                 ("slip on Boundary 2", "never"),
+                ("traction on Boundary 0 over time", "its mean"),
             ):
                 self.assertEqual(verdicts.pop(effect), "called for", effect)
-            # nu = 0.3, steps of an eighth: all as good as each other
+            # nu = 0.3 and little flow: both are as good as their alternatives.
+            for effect in (
+                ("volumetric integration (full)", "mean dilatation"),
+                ("stress history (cell means)", "quadrature points"),
+            ):
+                self.assertEqual(
+                    verdicts.pop(effect), "below the error of this discretization"
+                )
             for effect, verdict in verdicts.items():
-                self.assertNotEqual(verdict, "called for", effect)
                 self.assertNotEqual(verdict, "cannot be left out", effect)
 
             about = scene.about()
             self.assertTrue(about["finished"])
             for effect in about["effects"]:
                 self.check_changes(scene, effect)
-            joint = about["together"]
+            # The two largest, once more from the tables.
+            both = about["interaction"]
             names = {effect["effect"]: effect for effect in about["effects"]}
-            self.assertIn(" and ", joint["effect"])
-            for part in joint["effect"].split(" and "):
-                self.assertEqual(names[part]["verdict"], "called for")
+            for part in (both["first"], both["second"]):
+                self.assertEqual(names[part["effect"]]["verdict"], "called for")
+            self.check_interaction(scene, both)
 
             # Most were settled on the coarser mesh, the rest on the scene's.
             levels = {e["effect"]: e["level"] for e in about["effects"]}
             self.assertEqual(levels["traction on Boundary 0"], -1)
-            self.assertEqual(levels["error bar"], 0)
+            self.assertEqual(levels["volumetric integration (full)"], 0)
+            self.assertEqual(about["left_out"], "")
+            for watching in ("error bar", "fields and checkpoints"):
+                self.assertEqual(names[watching]["verdict"], "only watches")
+                self.assertEqual(names[watching]["level"], -1)
+            fields = names["fields and checkpoints"]
+            self.assertGreater(fields["with"]["seconds"], 0.0)
+            written = scene.effects / "fields_and_checkpoints__none" / "study"
+            self.assertTrue(list(written.rglob("*.vtu")))
+
+            # A table of at most 100 columns.
+            for line in process.stdout.splitlines():
+                if line.startswith("  "):
+                    self.assertLessEqual(len(line), 100, line)
             with open(scene.effects / "effects.csv", newline="") as file:
                 rows = list(csv.DictReader(file))
-            self.assertEqual(len(rows), len(about["effects"]))
+            self.assertEqual(
+                len(rows), sum(len(e["changes"]) for e in about["effects"])
+            )
             text = (scene.effects / "effects.md").read_text()
             self.assertIn("| viscous flow | elastic | called for |", text)
 
@@ -90,30 +113,74 @@ class Effects(TestCase):
             before = scene.finished()
             self.assertEqual(scene.run("effects").returncode, 0)
             self.assertEqual(scene.finished(), before)
-            self.assertEqual(scene.verdicts().keys() - verdicts.keys(), {
-                ("viscous flow", "elastic"),
-                ("traction on Boundary 0", "none"),
-                ("friction on Boundary 2", "none"),
-                ("slip on Boundary 2", "never"),
-            })
+
+    def table(self, scene, effect):
+        """That of the run without an effect, or with all."""
+        directory = scene.effects / "scene"
+        level = effect["level"]
+        if "effect" in effect:
+            name = f'{effect["effect"]}__{effect["instead"]}'
+            directory = scene.effects / "".join(c if c.isalnum() else "_" for c in name)
+        (file,) = (directory / "study").glob(
+            f"uniform*_h{level}_k{level}/statistics.csv"
+        )
+        return read_statistics(file)
+
+    def size(self, table, column):
+        """What changes are relative to: energies to the largest of them."""
+        energies = ("friction_dissipation", "viscous_dissipation")
+        energies += ("stored_energy", "external_work")
+        names = energies if column in energies else (column,)
+        return max(np.abs(table[name]).max() for name in names if name in table)
 
     def check_changes(self, scene, effect):
         """Once more from the tables of both runs."""
-        if effect["verdict"] == "never acted":
+        if effect["verdict"] in ("never acted", "only watches"):
             return
-        name = f"uniform_h{effect['level']}_k{effect['level']}/statistics.csv"
-        own = "".join(c if c.isalnum() else "_" for c in effect["effect"])
-        instead = "".join(c if c.isalnum() else "_" for c in effect["instead"])
-        of_scene = read_statistics(scene.effects / "scene" / "study" / name)
-        (file,) = (scene.effects / f"{own}__{instead}" / "study").glob(
-            f"uniform*_h{effect['level']}_k{effect['level']}/statistics.csv"
-        )
-        other = read_statistics(file)
-        for column in ("viscous_dissipation", "stored_energy"):
+        of_scene = self.table(scene, {"level": effect["level"]})
+        other = self.table(scene, effect)
+        for column in ("viscous_dissipation", "stored_energy", "max_von_mises"):
             difference = of_scene[column] - other.get(column, 0.0)
-            size = np.abs(of_scene[column]).max()
+            size = self.size(of_scene, column)
             found = effect["changes"][column]["change"]
             self.assertClose(found, np.abs(difference).max() / size, 1e-9, 1e-12)
+        coarser = self.table(scene, {"level": effect["level"] - 1})
+        every = of_scene["stored_energy"][::2]
+        self.assertClose(
+            effect["changes"]["stored_energy"]["error"],
+            np.abs(every - coarser["stored_energy"]).max()
+            / self.size(coarser, "stored_energy"),
+            1e-9,
+            1e-12,
+        )
+        distance = effect["changes"]["energy_norm"]
+        self.assertClose(
+            distance["change"],
+            np.nanmax(other["error_energy"]) / of_scene["energy_norm"].max(),
+            1e-9,
+            1e-12,
+        )
+        self.assertGreater(distance["error"], 0.0)
+
+    def check_interaction(self, scene, both):
+        column = both["quantity"]
+        runs = [{"level": both["joint"]["level"]}]
+        runs += [both[which] for which in ("first", "second", "joint")]
+        tables = [self.table(scene, run) for run in runs]
+        names = [name for name in tables[0] if name in (column, f"{column}_x")]
+        names += [f"{column}_y"] if f"{column}_y" in tables[0] else []
+        values = [
+            np.array([np.atleast_1d(t.get(n, 0 * t["t"])) for n in names])
+            for t in tables
+        ]
+        rest = values[0] - values[1] - values[2] + values[3]
+        size = np.linalg.norm(values[0], axis=0).max()
+        if len(names) == 1:
+            size = self.size(tables[0], names[0])
+        found = np.linalg.norm(rest, axis=0).max() / size
+        self.assertClose(both["interaction"], found, 1e-9, 1e-12)
+        self.assertEqual(both["interact"], found > 4 * both["error"])
+        self.assertIn("interact" if both["interact"] else "add up", both["words"])
 
     def test_of_what_never_acts(self):
         with Scene(
@@ -182,12 +249,69 @@ class Effects(TestCase):
                 process = run_program(arguments, 1, Path(work))
             self.assertEqual(process.returncode, 2, process.stderr)
             self.assertIn(sentence, process.stderr)
+
+    def test_steps_by_their_error(self):
+        """Step control: coarser levels have larger tolerances; three ranks."""
         with Scene(
             VERIFICATION / "slab.prm", **SLAB, Step_control__Tolerance=0.01
         ) as scene:
+            process = scene.run("effects", ranks=3)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            about = scene.about()
+            verdicts = scene.verdicts()
+            self.assertEqual(verdicts["friction on Boundary 2", "none"], "called for")
+            self.assertIn(("step control", "the steps of the phases"), verdicts)
+            steps = [
+                len(self.table(scene, {"level": level})["t"]) for level in (-2, -1)
+            ]
+            self.assertLess(steps[0], steps[1])
+            self.assertEqual(about["ranks"], 3)
+
+    def test_in_space_on_adaptive_meshes(self):
+        """Without friction, with moduli and loads that are no constants."""
+        entries = {
+            "Dimension": 3,
+            "Geometry/Arguments": "4, 2, 2 : 0, 0, 0 : 2, 1, 1 : true",
+            "Material/Young's modulus": "1 + 5*x",
+            "Boundary 0/Role": "clamped",
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Traction": "0.01*t*(1 + y); 0; 0",
+            **{f"Boundary {i}/Role": "free" for i in range(2, 6)},
+            "Time/Phases": "1: 4",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Every n steps": 2,
+        }
+        with tempfile.TemporaryDirectory() as work:
+            beam = Path(work) / "beam.prm"
+            beam.write_text(as_prm(entries))
+            with Scene(beam, Study__Budget=100) as scene:
+                process = scene.run("effects")
+                self.assertEqual(process.returncode, 0, process.stderr)
+                verdicts = scene.verdicts()
+                for effect in (
+                    ("traction on Boundary 1", "none"),
+                    ("Young's modulus over space", "its mean"),
+                ):
+                    self.assertEqual(verdicts[effect], "called for", effect)
+                self.assertIn(("adaptive mesh", "the first mesh"), verdicts)
+                over_time = ("traction on Boundary 1 over time", "its mean")
+                self.assertEqual(verdicts[over_time], "called for")
+                changes = scene.about()["effects"][0]["changes"]
+                self.assertNotIn("friction_force", changes)
+                for quantity in ("reaction_0", "max_displacement", "max_von_mises"):
+                    self.assertIn(quantity, changes)
+
+    def test_of_a_budget_that_ends(self):
+        """A second is enough for the first run, not for all."""
+        with Scene(VERIFICATION / "slab.prm", Study__Budget=1) as scene:
             process = scene.run("effects")
-            self.assertEqual(process.returncode, 1)
-            self.assertIn("'Step control/Tolerance' = 0", process.stderr)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            about = scene.about()
+            self.assertTrue(about["finished"])
+            self.assertIn("'Study/Budget'", about["left_out"])
+            self.assertIn(
+                " ".join(about["left_out"].split()), " ".join(process.stdout.split())
+            )
 
 
 if __name__ == "__main__":

@@ -4,8 +4,7 @@
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/timer.h>
 
-#include <viscoplastic_contact/study/effect_variants.h>
-#include <viscoplastic_contact/study/quantity_histories.h>
+#include <viscoplastic_contact/study/effect_result.h>
 #include <viscoplastic_contact/study/study_runs.h>
 
 #include <map>
@@ -16,47 +15,6 @@
 
 namespace Viscoplastic
 {
-  /// What an effect is worth to the answer.
-  enum class EffectVerdict
-  {
-    /// Some quantity changes by more than twice its error.
-    called_for,
-    /// Nothing changes by more than its error.
-    below_the_error,
-    /// In between, on the finest discretization there was time for.
-    as_large_as_the_error,
-    /// Nothing changes but for the error of the iterations.
-    never_acted,
-    /// The scene cannot be computed without it.
-    cannot_be_left_out
-  };
-
-  std::string
-  to_string(const EffectVerdict verdict);
-
-
-  /// What the scene is without one effect, on one discretization.
-  struct EffectResult
-  {
-    EffectVariant variant;
-    EffectVerdict verdict = EffectVerdict::cannot_be_left_out;
-    /// Of the discretization, 0 is that of the scene, see RunKey.
-    int    level = 0;
-    double cells = 0.;
-    /// The changes of all quantities, in the order of the scene's table, and
-    /// the one that is the largest in proportion to its error.
-    std::vector<QuantityChange> changes;
-    QuantityChange              decisive;
-    /// Of the displacements in the energy norm, relative; nan where unknown.
-    double energy_distance = not_a_number;
-    /// Seconds and memory (MB) with and without the effect.
-    double seconds_with = 0., seconds_without = 0., memory_with = 0.,
-           memory_without = 0.;
-    /// Why it could not be computed.
-    std::string failure;
-  };
-
-
   /**
    * Runs a scene, and the same with one effect left out or simplified at a
    * time, and tells for each what it costs and what it changes, beside the
@@ -80,14 +38,16 @@ namespace Viscoplastic
     std::string
     run();
 
-    const Parameters  scene;
-    const std::string directory;
+    const std::vector<std::string> files, overrides;
+    const Parameters               scene;
+    const std::string              directory;
 
-    /// What has been found of each simplification, the largest changes first.
+    /// What has been found of each simplification: of the problem first, the
+    /// largest changes first.
     std::vector<EffectResult> results;
     /// Two of them at once, if there are two that matter.
-    std::optional<EffectResult> together;
-    /// Levels that the budget did not reach, in words; empty if it did.
+    std::optional<EffectInteraction> interaction;
+    /// What the budget did not reach, in words; empty if there is nothing.
     std::string left_out;
 
   private:
@@ -96,40 +56,73 @@ namespace Viscoplastic
     {
       RunRecord record;
       Table     table;
+      RunCost   cost;
     };
 
-    /// The run of @p runs on a level. Nothing if it has failed, whose reason
-    /// is put into @p failure.
-    std::optional<Computed>
-    compute(const StudyRuns &runs, const int level, std::string &failure);
+    /// How an attempt at a run has ended: with a run, or one of these.
+    struct Attempt
+    {
+      std::optional<Computed> computed;
+      std::string             failure, interruption;
+      bool                    is_too_long = false;
+    };
 
-    RunKey
-    key_of(const StudyRuns &runs, const int level) const;
-
-    /// Runs of a variant, below its own directory.
+    /// Runs of a variant below its own directory, compared with those of the
+    /// scene on this level.
     std::unique_ptr<StudyRuns>
-    runs_of(const EffectVariant &variant) const;
+    runs_of(const EffectVariant &variant, const int level) const;
 
-    /// Compare a variant with the scene on a level.
-    EffectResult
-    compare(const EffectVariant &variant, const int level);
+    /// Find a run, or make it if it can be expected to end within the budget.
+    Attempt
+    compute(const StudyRuns &runs,
+            const int        level,
+            const double     expected_seconds);
+
+    /// Whether a run of so many seconds ends within the budget.
+    bool
+    is_affordable(const double seconds) const;
+
+    /// The scene as it is, to be found in of_scene; whether that is possible.
+    bool
+    compute_scene(const int level);
+
+    /// Compare a variant with the scene on a level; nothing where the budget
+    /// or a signal has ended the study. @p table: that of the variant.
+    std::optional<EffectResult>
+    compare(const EffectVariant &variant,
+            const int            level,
+            Table               *table = nullptr);
+
+    /// Put the errors of the quantities of the scene on a level beside changes
+    /// of the same quantities.
+    void
+    add_errors(std::vector<QuantityChange> &changes, const int level) const;
+
+    /// Judge all variants, on as fine levels as they need.
+    void
+    judge_all(std::vector<EffectVariant> open);
+
+    /// Leave out the two largest at once that are no loads.
+    void
+    find_interaction();
+
+    /// Replace what is known of the variant.
+    void
+    keep(const EffectResult &result);
 
     std::vector<int>
     levels() const;
 
     void
-    sort();
-
-    void
     write(const bool is_finished) const;
 
-    std::vector<std::string>   files, overrides;
-    Console                   &console;
-    ConditionalOStream         out;
-    Timer                      timer;
-    std::unique_ptr<StudyRuns> base;
-    std::map<int, Computed>    of_scene;
-    /// The sentence of a signal that has come.
-    std::string interruption;
+    Console                               &console;
+    ConditionalOStream                     out;
+    Timer                                  timer;
+    const std::unique_ptr<const SceneData> data;
+    const std::unique_ptr<StudyRuns>       base;
+    std::map<int, Computed>                of_scene;
+    /// Why the scene could not be computed, and the sentence of a signal.
+    std::string failure, interruption;
   };
 } // namespace Viscoplastic

@@ -99,7 +99,9 @@ namespace Viscoplastic
   {
     /// Wall time by phase, see ViscoplasticContact::seconds().
     std::map<std::string, double> seconds;
-    double                        peak_memory = 0.; // MB, of all ranks
+    /// Of all ranks in MB: the largest, and that before the run, with what
+    /// earlier runs of the process have left.
+    double peak_memory = 0., first_memory = 0.;
     /// That of the last mesh.
     SolverDemand solver_demand;
   };

@@ -54,6 +54,18 @@ namespace Viscoplastic
     /// with another one, or none, do not count as finished.
     std::optional<RunKey> reference;
 
+    /// Whether runs choose their steps where the scene does: by step control,
+    /// whose tolerance goes with the time level, or by dividing those beyond
+    /// the stability limit. Otherwise they have the given steps, or fail.
+    bool may_choose_steps = false;
+
+    /// Whether runs write fields and checkpoints as the scene does.
+    bool has_outputs = false;
+
+    /// Throws ExcMessage if the steps of the scene are chosen by their error.
+    void
+    require_given_steps() const;
+
     /// Make the directory of the study, and take its lock, so that no two
     /// studies make the same runs at once.
     void

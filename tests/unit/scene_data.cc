@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Means of the data of a scene over its boundary, its body and its time.
+
+#include "folder.h"
+#include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/study/scene_data.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+
+
+  /// A box of two materials, with hanging nodes, and its data.
+  struct Box
+  {
+    explicit Box(const unsigned int dim, const std::string &more = "")
+      : scene({folder.add("scene.prm", text(dim, more))})
+      , data(SceneData::of(scene, MPI_COMM_WORLD))
+    {}
+
+    static std::string
+    text(const unsigned int dim, const std::string &more)
+    {
+      std::string result = "set Dimension = " + std::to_string(dim) +
+                           "\nsubsection Geometry\nset Arguments = " +
+                           (dim == 2 ? "4, 2 : 0, 0 : 2, 1 : true" :
+                                       "4, 2, 1 : 0, 0, 0 : 2, 1, 1 : true") +
+                           "\nset Material ids = if(x < 1, 0, 7)\n"
+                           "set Boundary refinements = 1: 1\nend\n"
+                           "subsection Time\nset Phases = 1: 4, 3: 2\nend\n";
+      for (unsigned int id = 0; id < 2 * dim; ++id)
+        result += "subsection Boundary " + std::to_string(id) +
+                  "\nset Role = " + (id == 0 ? "clamped" : "free") + "\nend\n";
+      return result + more;
+    }
+
+    Folder                           folder;
+    const Parameters                 scene;
+    std::unique_ptr<const SceneData> data;
+  };
+
+
+
+  double
+  value(const std::string &text, const double x, const double t)
+  {
+    return Expression<2>(text, "mean").value(Point<2>(x, 0.), t);
+  }
+
+
+
+  TEST(SceneData, MeansOverABoundary)
+  {
+    const Box square(2), cube(3);
+    EXPECT_NEAR(value(*square.data->over_boundary("x^2", 2), 0., 0.),
+                4. / 3.,
+                1e-14);
+    EXPECT_NEAR(value(*square.data->over_boundary("x + y^3", 1), 0., 0.),
+                2.25,
+                1e-14);
+    EXPECT_NEAR(value(*cube.data->over_boundary("x^2*y + z", 4), 0., 0.),
+                2. / 3.,
+                1e-14);
+    // What is the same everywhere is its own mean.
+    EXPECT_FALSE(square.data->over_boundary("3*t; 2", 2));
+    EXPECT_FALSE(square.data->over_boundary("", 2));
+  }
+
+
+
+  TEST(SceneData, MeansOverTheBodyAndItsMaterials)
+  {
+    const Box square(2), cube(3);
+    EXPECT_NEAR(value(*square.data->over_body("x*y"), 0., 0.), 0.5, 1e-14);
+    EXPECT_NEAR(value(*square.data->over_body("x", 0), 0., 0.), 0.5, 1e-14);
+    EXPECT_NEAR(value(*cube.data->over_body("x*y*z", 7), 0., 0.), 0.375, 1e-14);
+  }
+
+
+
+  TEST(SceneData, ChangesInTimeStay)
+  {
+    const Box         square(2);
+    const std::string mean = *square.data->over_boundary("x*t^2", 3);
+    // Exact at the ends of steps, 0.25 apart and then 1, linear between them.
+    for (const double t : {0., 0.25, 0.5, 0.75, 1., 2., 3.})
+      EXPECT_NEAR(value(mean, 0., t), t * t, 1e-13);
+    EXPECT_NEAR(value(mean, 0., 2.5), 6.5, 1e-13);
+    // Components without a value keep none.
+    EXPECT_EQ(*square.data->over_boundary("free; 0*x", 2), "free; 0");
+    EXPECT_EQ(*square.data->over_boundary("t; x*0", 2), "t; 0");
+  }
+
+
+
+  TEST(SceneData, MeansOverTheRun)
+  {
+    const Box square(2);
+    EXPECT_NEAR(value(*square.data->over_time("t^3"), 0., 7.), 6.75, 1e-13);
+    // A kink at the end of a phase.
+    EXPECT_NEAR(value(*square.data->over_time("min(t, 1)"), 0., 7.),
+                2.5 / 3.,
+                1e-14);
+    // What changes in space, too, goes on doing so; `t' within other names is
+    // none.
+    const std::string mean = *square.data->over_time("sqrt(x)*t^2 + tan(0)*t");
+    for (const double x : {0., 1., 4.})
+      EXPECT_NEAR(value(mean, x, 7.), 3. * std::sqrt(x), 1e-13);
+    EXPECT_FALSE(square.data->over_time("x; "));
+  }
+
+
+
+  TEST(SceneData, WhatAutomaticStandsFor)
+  {
+    const auto of = [](const std::string &material) {
+      return Box(2,
+                 "subsection Material 0\nend\nsubsection Material 7\n" +
+                   material + "end\n")
+        .data->volumetric_integration();
+    };
+    EXPECT_EQ(of(""), VolumetricIntegration::full);
+    EXPECT_EQ(of("set Law = maxwell\n"),
+              VolumetricIntegration::mean_dilatation);
+    EXPECT_EQ(of("set Poisson's ratio = 0.3 + 0.1*x\n"),
+              VolumetricIntegration::mean_dilatation);
+    EXPECT_EQ(of("set Law = maxwell\nend\nsubsection Material\n"
+                 "set Volumetric integration = full\n"),
+              VolumetricIntegration::full);
+  }
+
+
+
+  TEST(SceneData, RampsOnlyWhereTheSlopeChanges)
+  {
+    const std::vector<double> t{0., 0.1, 0.2, 0.3, 0.7, 1.},
+      v{1., 1., 3., 5., 5., -1.};
+    const std::string text = piecewise_linear(t, v);
+    for (std::size_t i = 0; i < t.size(); ++i)
+      EXPECT_NEAR(value(text, 0., t[i]), v[i], 1e-13);
+    EXPECT_NEAR(value(text, 0., 0.25), 4., 1e-13);
+    unsigned int n = 0;
+    for (std::size_t i = text.find("max"); i != std::string::npos;
+         i             = text.find("max", i + 1))
+      ++n;
+    EXPECT_EQ(n, 3u);
+    EXPECT_EQ(piecewise_linear(t, {2., 2., 2., 2., 2., 2.}), "2");
+  }
+} // namespace

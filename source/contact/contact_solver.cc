@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/contact/contact_solver.h>
@@ -352,6 +353,10 @@ namespace Viscoplastic
     void
     give_up(const unsigned int max_iterations) const;
 
+    /// What a solve without friction would have taken.
+    double
+    plain_seconds(const double seconds_to_finish) const;
+
     BulkSolver         &bulk;
     const FrictionFace &face;
     const double        tolerance;
@@ -372,6 +377,11 @@ namespace Viscoplastic
     /// Bound on the error and size of the solution in the energy norm.
     double error = 0., size = 0.;
     double best_error = std::numeric_limits<double>::max();
+    /// The error of the start over the tolerance.
+    double first_ratio = 0.;
+    /// Wall time of the corrections, and by how many powers of ten they were to
+    /// reduce their residuals.
+    double correction_seconds = 0., decades = 0.;
 
     ContactReport report;
   };
@@ -424,8 +434,22 @@ namespace Viscoplastic
         if (!(-energy_change > least_descent * report.duality_gap))
           follow();
       }
+    const Timer timer;
     report.linear_iterations += bulk.finish();
+    report.plain_seconds = plain_seconds(timer.wall_time());
     return report;
+  }
+
+
+
+  double
+  ContactSolver::Iteration::plain_seconds(const double seconds_to_finish) const
+  {
+    if (bulk.is_exact())
+      return seconds_to_finish;
+    return decades > 0. && first_ratio > 1. ?
+             correction_seconds / decades * std::log10(first_ratio / safety) :
+             0.;
   }
 
 
@@ -521,6 +545,8 @@ namespace Viscoplastic
                 ExcMessage("The contact solver met a value that is not "
                            "finite."));
     best_error = std::min(best_error, report.relative_error);
+    if (report.iterations == 0 && size > 0.)
+      first_ratio = error / (tolerance * size);
     if (error > tolerance * size)
       return false;
     report.error = error;
@@ -550,12 +576,16 @@ namespace Viscoplastic
   {
     // Loosely while the sets still change, and as far as needed once they do
     // not.
-    report.linear_iterations +=
-      bulk.correct(force,
-                   same_sets ? std::min(loose_tolerance,
-                                        safety * tolerance * size / error) :
-                               loose_tolerance,
-                   w);
+    // From zero, the first solution sets the scale.
+    const double reduction =
+      same_sets ? std::clamp(safety * tolerance * size / error,
+                             std::min(safety * tolerance, loose_tolerance),
+                             loose_tolerance) :
+                  loose_tolerance;
+    const Timer timer;
+    report.linear_iterations += bulk.correct(force, reduction, w);
+    correction_seconds += timer.wall_time();
+    decades -= std::log10(reduction);
   }
 
 

@@ -4,12 +4,14 @@
 
 #include <viscoplastic_contact/discretization/loads.h>
 
+#include <iterator>
+
 namespace Viscoplastic
 {
   template <int dim>
   Loads<dim>::Loads(const AdmissibleSpace<dim> &space)
     : space(space)
-    , constant{space.owned_vector(), Tensor<1, dim>()}
+    , constant{space.owned_vector(), Tensor<1, dim>(), {}}
   {
     for (const auto &cell : space.cells)
       for (const unsigned int f : cell->face_indices())
@@ -32,14 +34,23 @@ namespace Viscoplastic
                   Load<dim>   &load) const
   {
     std::vector<double> cartesian(space.relevant.n_elements());
-    Tensor<1, dim>      resultant;
-    bool                any = false;
+    // The resultant, and for each boundary and b whether it has a force.
+    std::vector<double> sums(dim + space.scene.boundary.size() + 1, 0.);
+    bool                any       = false;
+    const auto          number_of = [&](const types::boundary_id id) {
+      return std::distance(space.scene.boundary.begin(),
+                           space.scene.boundary.find(id));
+    };
 
     const auto add_at_point = [&](const auto           &fe_values,
                                   const unsigned int    q,
                                   const Cell           &cell,
-                                  const Tensor<1, dim> &force) {
-      resultant += force;
+                                  const Tensor<1, dim> &force,
+                                  const std::ptrdiff_t  load) {
+      for (unsigned int d = 0; d < dim; ++d)
+        sums[d] += force[d];
+      if (force != Tensor<1, dim>())
+        sums[dim + load] = 1.;
       for (const unsigned int v : cell->vertex_indices())
         {
           const auto node =
@@ -67,7 +78,8 @@ namespace Viscoplastic
                            q,
                            cell,
                            b->vector(fe_values.quadrature_point(q), t) *
-                             fe_values.JxW(q));
+                             fe_values.JxW(q),
+                           space.scene.boundary.size());
           }
       }
 
@@ -83,6 +95,7 @@ namespace Viscoplastic
       if (face.condition->load_depends_on_time() == time_dependent)
         {
           face_values.reinit(face.cell, face.face);
+          const std::ptrdiff_t load_number = number_of(face.condition->id);
           for (const unsigned int q : face_values.quadrature_point_indices())
             {
               const Tensor<1, dim> force =
@@ -92,14 +105,22 @@ namespace Viscoplastic
               add_at_point(face_values,
                            q,
                            face.cell,
-                           force * face_values.JxW(q));
+                           force * face_values.JxW(q),
+                           load_number);
             }
         }
 
     if (any) // the same on all ranks
       {
         space.add_cartesian_load(cartesian, load.values);
-        load.resultant += Utilities::MPI::sum(resultant, space.communicator);
+        Utilities::MPI::sum(sums, space.communicator, sums);
+        for (unsigned int d = 0; d < dim; ++d)
+          load.resultant[d] += sums[d];
+        for (const auto &pair : space.scene.boundary)
+          if (sums[dim + number_of(pair.first)] > 0.)
+            load.acting.insert(pair.first);
+        if (sums.back() > 0.)
+          load.acting.insert(body_force_id);
       }
   }
 

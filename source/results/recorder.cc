@@ -96,6 +96,8 @@ namespace Viscoplastic
   void
   Recorder<dim>::set_mesh(const Discretization<dim> &on_mesh)
   {
+    if (discretization != nullptr)
+      effects.note_change_of_mesh();
     discretization = &on_mesh;
     probes.clear();
     for (const Point<dim> &x : scene.output_points)
@@ -133,9 +135,12 @@ namespace Viscoplastic
     largest_force = std::max(largest_force, quantities.largest_force);
     contact_iterations += step.report.iterations;
     linear_iterations += step.report.linear_iterations;
+    solve_seconds += step.report.seconds;
+    plain_solve_seconds += step.report.plain_seconds;
     newton_iterations += step.newton_iterations;
     implicit_steps += step.is_implicit;
 
+    effects.note(*discretization, step);
     judge(step, quantities);
     sum_up(step, quantities, errors);
     check_sizes(/* at_end = */ false);
@@ -454,29 +459,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::vector<std::string>
-  Recorder<dim>::effects_that_never_acted() const
-  {
-    std::vector<std::string> result;
-    if (run.viscous_dissipation && *run.viscous_dissipation == 0.)
-      result.push_back("viscoplastic flow has never acted: no material has "
-                       "flowed, and 'Law' = elastic gives the same for less.");
-    if (discretization->face && run.slip_area.value == 0.)
-      {
-        std::ostringstream text;
-        text << std::setprecision(3)
-             << "friction has never acted: nothing has slipped, and at most "
-             << 100. * run.utilization.value
-             << " % of a bound was needed; on bilateral contact 'Friction law' "
-                "= glued gives the same for less.";
-        result.push_back(text.str());
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
   std::string
   Recorder<dim>::remark_on_tolerance() const
   {
@@ -557,7 +539,7 @@ namespace Viscoplastic
     if (budget && run.controlled_errors().relative() > budget->tolerance)
       result.push_back(remark_on_tolerance());
 
-    for (const std::string &what : effects_that_never_acted())
+    for (const std::string &what : effects.that_never_acted(scene, run))
       result.push_back("Note: " + what);
 
     // What meshes do is no physics.
@@ -617,12 +599,14 @@ namespace Viscoplastic
     if (discretization->face)
       out << contact_iterations / n << " of the active set, ";
     out << linear_iterations / n << " linear\n";
-    print_seconds(out,
-                  timer.get_summary_data(TimerOutput::total_wall_time),
-                  first_set_up_seconds,
-                  elapsed(),
-                  scene.has_viscosity(),
-                  discretization->face != nullptr);
+    RunBill bill;
+    bill.seconds       = seconds();
+    bill.total         = elapsed();
+    bill.has_viscosity = scene.has_viscosity();
+    bill.solves        = solve_seconds;
+    if (scene.has_friction())
+      bill.plain_solves = plain_solve_seconds;
+    bill.print(out);
   }
 
 

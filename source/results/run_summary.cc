@@ -319,50 +319,61 @@ namespace Viscoplastic
 
 
 
+  double
+  RunBill::friction() const
+  {
+    const auto contact = seconds.find("contact");
+    if (!plain_solves || !(solves > 0.) || contact == seconds.end())
+      return 0.;
+    return contact->second * (1. - *plain_solves / solves);
+  }
+
+
+
   void
-  print_seconds(std::ostream                        &out,
-                const std::map<std::string, double> &seconds,
-                const double                         first_set_up,
-                const double                         total,
-                const bool                           has_viscosity,
-                const bool                           has_friction)
+  RunBill::print(std::ostream &out) const
   {
     std::map<std::string, double> remaining(seconds);
     double                        rest = total;
 
-    const auto print_phase =
+    const auto print_line =
       [&](const std::string &name, const double time, const std::string &text) {
         std::ostringstream digits;
         digits << std::fixed << std::setprecision(3) << time;
-        out << "  " << std::left << std::setw(12) << name << std::right
+        out << "  " << std::left << std::setw(14) << name << std::right
             << std::setw(9) << digits.str() << std::setw(5)
             << std::lround(total > 0. ? 100. * time / total : 0.) << " %"
             << (text.empty() ? "" : "  ") << text << '\n';
         rest -= time;
       };
-    out << "Seconds by phase:\n";
+    out << "This scene paid, in seconds and as a share of the run:\n";
     if (!has_viscosity)
       remaining.erase("rate");
-    if (remaining.count("set-up") > 0)
-      remaining["set-up"] = first_set_up;
     for (const RunPhase &phase : run_phases)
       {
         const auto found = remaining.find(phase.name);
         if (found == remaining.end())
           continue;
-        print_phase(phase.name,
-                    found->second,
-                    phase.name == "contact" && !has_friction ?
-                      "elasticity: linear solves" :
-                      phase.effect);
+        print_line(phase.effect,
+                   found->second - (phase.name == "contact" ? friction() : 0.),
+                   phase.text);
+        if (phase.name == "contact" && plain_solves)
+          {
+            std::ostringstream text;
+            text << "active set";
+            if (*plain_solves > 0.)
+              text << "; with it, solves take " << std::setprecision(3)
+                   << solves / *plain_solves << " times as long";
+            print_line("friction", friction(), text.str());
+          }
         remaining.erase(found);
       }
     // Those that the list lacks, under their own names.
     for (const auto &[name, time] : remaining)
-      print_phase(name, time, "");
+      print_line(name, time, "");
     const double others = rest;
-    print_phase("rest", others, "mesh, initial state, progress");
-    print_phase("whole run", total, "");
+    print_line("rest", others, "mesh, initial state, progress");
+    print_line("whole run", total, "");
   }
 
 

@@ -144,8 +144,7 @@ namespace Viscoplastic
     DistributedVector u = solver.initial_guess(problem, guess, state.friction);
     ContactReport     report =
       solver.solve(problem, right_side, problem.tolerance, u, state.friction);
-    report.iterations += solution.report.iterations;
-    report.linear_iterations += solution.report.linear_iterations;
+    report.add_earlier(solution.report);
     solution.report = report;
     solver.set_displacement(problem, u, state);
   }

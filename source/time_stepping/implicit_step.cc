@@ -275,8 +275,7 @@ namespace Viscoplastic
                             right_side);
       ContactReport report = method.solver.solve(
         problem, right_side, tolerance, u, solution.state.friction);
-      report.iterations += solution.report.iterations;
-      report.linear_iterations += solution.report.linear_iterations;
+      report.add_earlier(solution.report);
       solution.report = report;
       method.solver.set_displacement(problem, u, solution.state);
     }

@@ -3,10 +3,16 @@
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
 
+#include <set>
 #include <vector>
 
 namespace Viscoplastic
 {
+  /// What stands for b among the boundaries with loads.
+  constexpr types::boundary_id body_force_id = numbers::invalid_boundary_id;
+
+
+
   /// The loads at one time.
   template <int dim>
   struct Load
@@ -15,6 +21,9 @@ namespace Viscoplastic
     DistributedVector values;
     /// The resultant force of b, F, p and S.
     Tensor<1, dim> resultant;
+    /// The boundaries whose loads are not zero everywhere. The same on all
+    /// ranks.
+    std::set<types::boundary_id> acting;
   };
 
 

@@ -79,8 +79,6 @@ namespace Viscoplastic
     mutable ParameterHandler handler;
 
   private:
-    std::map<std::string, std::string> origins;
-
     /// Load what must be there before entries can be declared.
     void
     load_shared_libraries(const std::vector<ParameterLine> &lines);
@@ -104,6 +102,9 @@ namespace Viscoplastic
     /// Make the name of the mesh file independent of the working directory.
     void
     locate_mesh_file(const std::vector<ParameterLine> &lines);
+
+    /// By path, see origin_of().
+    std::map<std::string, std::string> origins;
   };
 
 

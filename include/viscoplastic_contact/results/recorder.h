@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/discretization/point_probe.h>
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/error/solution_errors.h>
+#include <viscoplastic_contact/results/acting_effects.h>
 #include <viscoplastic_contact/results/energy_balance.h>
 #include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/results/statistics.h>
@@ -131,11 +132,6 @@ namespace Viscoplastic
     std::string
     remark_on_tolerance() const;
 
-    /// Sentences on effects of the scene that have made no difference in the
-    /// whole run.
-    std::vector<std::string>
-    effects_that_never_acted() const;
-
     /// Warn of what makes the numbers of a step doubtful, once each.
     void
     judge(const AcceptedStep<dim> &step, const StepQuantities<dim> &quantities);
@@ -191,7 +187,8 @@ namespace Viscoplastic
     double       largest_force      = 0.;
     unsigned int contact_iterations = 0, linear_iterations = 0,
                  newton_iterations = 0, implicit_steps = 0;
-    RunSummary<dim> run;
+    RunSummary<dim>    run;
+    ActingEffects<dim> effects;
     /// Whether the user has been told that forces do not balance well.
     bool balance_is_doubtful = false;
 
@@ -201,9 +198,11 @@ namespace Viscoplastic
     /// the run before the last restart.
     std::map<std::string, double> last_seconds;
     double                        first_set_up_seconds = 0.;
-    double                        earlier_seconds      = 0.;
-    ExpectedStep                  expected_step;
-    Timer                         clock;
+    /// Of the solves of this process, see ContactReport.
+    double       solve_seconds = 0., plain_solve_seconds = 0.;
+    double       earlier_seconds = 0.;
+    ExpectedStep expected_step;
+    Timer        clock;
   };
 
 
@@ -216,6 +215,7 @@ namespace Viscoplastic
     balance.exchange(archive);
     archive &largest_force &contact_iterations &linear_iterations
       &newton_iterations &implicit_steps;
+    effects.exchange(archive);
     for (Largest *largest : {&run.displacement,
                              &run.strain,
                              &run.von_mises,

@@ -11,8 +11,9 @@ namespace Viscoplastic
   {
     /// The name of the section of the timer of a run.
     std::string name;
-    /// What it is, for the lines at the end of a run.
-    std::string effect;
+    /// What it is paid for, and what that is, for the lines at the end of a
+    /// run.
+    std::string effect, text;
     /// Whether statistics.csv has its seconds in each step, as wall_<name>.
     bool is_in_statistics;
     /// The column of study.csv; several phases may share one.
@@ -26,47 +27,70 @@ namespace Viscoplastic
   /// and pictures take them from here, so that none can be forgotten in one.
   inline const std::vector<RunPhase> run_phases{
     {"pilot run",
-     "tolerance: a run on the first mesh for the size of the solution",
+     "pilot run",
+     "of the tolerance: on the first mesh, for the size of the solution",
      false,
      "seconds_set_up",
      true},
     {"set-up",
+     "set-up",
      "spaces, matrix, factorisation or multigrid",
      false,
      "seconds_set_up",
      true},
     {"rate",
-     "viscosity: flow of the law in all cells",
+     "viscosity",
+     "flow of the law in all cells",
      true,
      "seconds_rate",
      true},
     {"tangent",
-     "backward Euler: matrix of the step with its set-up",
+     "backward Euler",
+     "matrices of the steps with their set-up",
      true,
      "seconds_tangent",
      true},
-    {"load", "loads and prescribed displacements", true, "seconds_load", true},
+    {"load",
+     "data",
+     "loads, friction bounds, motion of foundations",
+     true,
+     "seconds_load",
+     true},
     {"contact",
-     "friction and elasticity together: all solves",
+     "elasticity",
+     "linear solves, as they would be without friction",
      true,
      "seconds_contact",
      true},
     {"balance",
+     "balance",
      "energies, reactions, statistics.csv",
      true,
      "seconds_balance",
      true},
-    {"estimate", "error estimates", true, "seconds_estimate", true},
+    {"estimate",
+     "error estimate",
+     "of the mesh, of steps and iterations",
+     true,
+     "seconds_estimate",
+     true},
     {"adaptation",
-     "adaptivity: new meshes with their set-up",
+     "adaptivity",
+     "new meshes with their set-up",
      false,
      "seconds_set_up",
      true},
-    {"output", "fields for ParaView", true, "seconds_output", false},
+    {"output", "fields", "for ParaView", true, "seconds_output", false},
     {"errors",
-     "comparison with an exact solution or a reference",
+     "comparison",
+     "with an exact solution or a reference",
      false,
      "seconds_errors",
      false},
-    {"checkpoint", "checkpoints", false, "seconds_checkpoint", true}};
+    {"checkpoint",
+     "checkpoints",
+     "to go on from",
+     false,
+     "seconds_checkpoint",
+     true}};
 } // namespace Viscoplastic

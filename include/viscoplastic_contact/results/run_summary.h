@@ -111,19 +111,27 @@ namespace Viscoplastic
 
 
 
-  /**
-   * Where the time of a run went.
-   *
-   * @param seconds by phase, as ViscoplasticContact::timer names them; phases
-   *   of effects that the scene does not have are left out
-   * @param first_set_up of the set-up; later ones are part of the adaptation
-   * @param total of the run
-   */
-  void
-  print_seconds(std::ostream                        &out,
-                const std::map<std::string, double> &seconds,
-                const double                         first_set_up,
-                const double                         total,
-                const bool                           has_viscosity,
-                const bool                           has_friction);
+  /// What a run has paid for its effects: wall time.
+  struct RunBill
+  {
+    /// By phase, as run_phases names them; `set-up' is that of the first mesh,
+    /// later ones are part of the adaptation.
+    std::map<std::string, double> seconds;
+    /// Of the run.
+    double total         = 0.;
+    bool   has_viscosity = false;
+    /// Of the solves of all steps, and what they would have taken without
+    /// friction; the latter is absent where nothing can slip.
+    double                solves = 0.;
+    std::optional<double> plain_solves;
+
+    /// The part of the phase `contact' that is friction's. What it is of the
+    /// solves of steps that have been accepted, it is of all.
+    double
+    friction() const;
+
+    /// Effects that the scene does not have get no line.
+    void
+    print(std::ostream &out) const;
+  };
 } // namespace Viscoplastic

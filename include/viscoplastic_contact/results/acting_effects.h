@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/types.h>
+
+#include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/results/run_summary.h>
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Which effects of a scene have made a difference so far in a run, apart from
+   * those that its sums and maxima (RunSummary) tell of.
+   */
+  template <int dim>
+  class ActingEffects
+  {
+  public:
+    /// Take notice of what acts in a step. Collective.
+    void
+    note(const Discretization<dim> &discretization,
+         const AcceptedStep<dim>   &step);
+
+    void
+    note_change_of_mesh()
+    {
+      mesh_has_changed = true;
+    }
+
+    /// Sentences on effects that never acted, with the entry that can go.
+    /// @p run is the whole run.
+    std::vector<std::string>
+    that_never_acted(const Scene<dim> &scene, const RunSummary<dim> &run) const;
+
+    /// Write to, or read from, an archive.
+    template <typename Archive>
+    void
+    exchange(Archive &archive)
+    {
+      std::vector<types::boundary_id> ids(loads.begin(), loads.end());
+      archive &ids &mesh_has_changed &has_bound &foundation_has_moved;
+      loads = {ids.begin(), ids.end()};
+    }
+
+  private:
+    /// By boundary, see Load::acting.
+    std::set<types::boundary_id> loads;
+    bool                         mesh_has_changed = false;
+    /// Whether a friction bound has been above zero somewhere.
+    bool has_bound            = false;
+    bool foundation_has_moved = false;
+  };
+} // namespace Viscoplastic

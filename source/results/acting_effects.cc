@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/results/acting_effects.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  ActingEffects<dim>::note(const Discretization<dim> &discretization,
+                           const AcceptedStep<dim>   &step)
+  {
+    const std::set<types::boundary_id> &acting = step.end.forces.load.acting;
+    loads.insert(acting.begin(), acting.end());
+    if (!discretization.face)
+      return;
+    const auto is_so = [&discretization](const bool here) {
+      return Utilities::MPI::max(here ? 1 : 0,
+                                 discretization.space.communicator) == 1;
+    };
+    if (!has_bound)
+      {
+        const auto &bounds = step.end.state.friction.bound;
+        has_bound          = is_so(
+          std::any_of(bounds.begin(), bounds.end(), [](const double bound) {
+            return bound > 0.;
+          }));
+      }
+    if (!foundation_has_moved && discretization.scene().has_moving_foundation())
+      foundation_has_moved =
+        is_so(std::any_of(step.foundation_step.begin(),
+                          step.foundation_step.end(),
+                          [](const double d) { return d != 0.; }));
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  ActingEffects<dim>::that_never_acted(const Scene<dim>      &scene,
+                                       const RunSummary<dim> &run) const
+  {
+    std::vector<std::string> result;
+    if (run.viscous_dissipation && *run.viscous_dissipation == 0.)
+      {
+        std::string text = "viscoplastic flow has never acted: no material has "
+                           "flowed, and 'Law' = elastic gives the same for "
+                           "less.";
+        for (const auto &material : scene.materials)
+          if (material->law_name == "perzyna")
+            text += " The stress has stayed below '" + material->section +
+                    "/perzyna/Yield radius', so that no hardening has been "
+                    "used either.";
+        result.push_back(text);
+      }
+    if (scene.has_friction() && !has_bound)
+      result.push_back("friction has never acted: its bound has been zero "
+                       "everywhere and at all times, and contact without "
+                       "friction ('Friction law' = none if it is bilateral, "
+                       "'Role' = traction if its pressure is given) gives the "
+                       "same for less.");
+    else if (scene.has_friction() && run.slip_area.value == 0.)
+      {
+        std::ostringstream text;
+        text << std::setprecision(3)
+             << "friction has never acted: nothing has slipped, and at most "
+             << 100. * run.utilization.value
+             << " % of a bound was needed; on bilateral contact 'Friction law' "
+                "= glued gives the same for less.";
+        result.push_back(text.str());
+      }
+    for (const auto &[id, condition] : scene.boundary)
+      {
+        const std::string section = "Boundary " + std::to_string(id);
+        if ((condition.traction || condition.normal_stress) &&
+            loads.count(id) == 0)
+          result.push_back("the load on " + section + " has never acted: '" +
+                           section + '/' +
+                           (condition.traction ? "Traction" : "Normal stress") +
+                           "' has been zero everywhere and at all times, and "
+                           "'Role' = free gives the same for less.");
+        if (scene.has_friction() && !foundation_has_moved &&
+            condition.has_friction() && condition.foundation_motion)
+          result.push_back("the motion of the foundation has never acted: no "
+                           "foundation has moved, and '" +
+                           section + "/Foundation motion' can go.");
+      }
+    if (scene.body_force && loads.count(body_force_id) == 0)
+      result.push_back("the body force has never acted: 'Loads/Body force' has "
+                       "been zero everywhere and at all times, and can go.");
+    if (scene.is_adaptive() && !mesh_has_changed)
+      result.push_back("adaptivity has never acted: the mesh has never "
+                       "changed, and 'Mesh refinement/Strategy' = none gives "
+                       "the same for less.");
+    return result;
+  }
+
+
+
+  template class ActingEffects<2>;
+  template class ActingEffects<3>;
+} // namespace Viscoplastic

@@ -60,17 +60,6 @@ namespace Viscoplastic
 
 
 
-    /// The fields of a state that have values at vertices.
-    template <typename StateType>
-    auto
-    nodal_fields(StateType &state)
-    {
-      return std::array<decltype(&state.u), 3>{
-        {&state.u, &state.velocity, &state.initial_u}};
-    }
-
-
-
     /// The nodes of the face by their first degrees of freedom.
     template <int dim>
     std::map<types::global_dof_index, unsigned int>
@@ -288,8 +277,12 @@ namespace Viscoplastic
     AssertDimension(packed.meshes.size(), packed.fields.size());
     using Cell = typename DoFHandler<dim>::active_cell_iterator;
     const AdmissibleSpace<dim> &space = stress_space.space;
-    const auto        &triangulation  = space.dof_handler.get_triangulation();
-    const unsigned int n_fields       = packed.has_initial_u ? 3 : 2;
+    const auto &triangulation         = space.dof_handler.get_triangulation();
+    std::vector<DistributedVector *> targets;
+    for (unsigned int f = 0; f < packed.has_nodal_field.size(); ++f)
+      if (packed.has_nodal_field[f])
+        targets.push_back(nodal_fields(state)[f]);
+    const unsigned int                n_fields = targets.size();
     std::vector<IrreversibleStress *> sampled;
     for (unsigned int f = 0; f < packed.n_sample_fields; ++f)
       sampled.push_back(sample_fields(state)[f]);
@@ -421,7 +414,6 @@ namespace Viscoplastic
                 next_value == friction.values.size());
       }
 
-    const auto targets = nodal_fields(state);
     for (unsigned int f = 0; f < n_fields; ++f)
       {
         *targets[f] = space.ghosted_vector();

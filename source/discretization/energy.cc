@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/energy.h>
 
@@ -20,7 +21,7 @@ namespace Viscoplastic
 
 
   template <int dim>
-  StressSummary
+  StressSummary<dim>
   summarize_stress(const FlowLaws<dim> &laws,
                    const State<dim>    &old_state,
                    const State<dim>    &state)
@@ -30,7 +31,8 @@ namespace Viscoplastic
     const auto                         now          = laws.at(state.t);
     std::vector<SymmetricTensor<2, 3>> strain(n), old_strain(n);
     const bool                         has_z = !state.z.empty();
-    StressSummary                      result;
+    StressSummary<dim>                 result;
+    LargestPlace<dim>                  largest_mises;
     double                             volume = 0.;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
@@ -80,9 +82,10 @@ namespace Viscoplastic
                   weight * ((z - old_z) * driving_strain);
               }
           }
-        const double mises   = std::sqrt(1.5) * stable_norm(deviator(mean));
-        result.max_von_mises = std::max(result.max_von_mises, mises);
-        result.max_strain    = std::max(result.max_strain, mean_strain.norm());
+        const double mises = std::sqrt(1.5) * stable_norm(deviator(mean));
+        if (largest_mises.may_take(mises))
+          largest_mises.add(mises, stress_space.space.cells[c]->center());
+        result.max_strain = std::max(result.max_strain, mean_strain.norm());
         result.mean_von_mises += mises * stress_space.volume(c);
         result.stress_norm += (mean * mean) * stress_space.volume(c);
         volume += stress_space.volume(c);
@@ -95,10 +98,10 @@ namespace Viscoplastic
                              result.viscous_dissipation,
                              volume};
     Utilities::MPI::sum(sums, comm, sums);
-    std::vector<double> largest{result.max_von_mises, result.max_strain};
-    Utilities::MPI::max(largest, comm, largest);
-    result.max_von_mises       = largest[0];
-    result.max_strain          = largest[1];
+    largest_mises.reduce(comm);
+    result.max_von_mises       = largest_mises.value();
+    result.von_mises_position  = largest_mises.position();
+    result.max_strain          = Utilities::MPI::max(result.max_strain, comm);
     result.mean_von_mises      = sums[0] / sums[4];
     result.stress_norm         = std::sqrt(sums[1]);
     result.irreversible_energy = sums[2];
@@ -144,9 +147,9 @@ namespace Viscoplastic
 
 
 
-  template StressSummary
+  template StressSummary<2>
   summarize_stress<2>(const FlowLaws<2> &, const State<2> &, const State<2> &);
-  template StressSummary
+  template StressSummary<3>
   summarize_stress<3>(const FlowLaws<3> &, const State<3> &, const State<3> &);
   template double
   relative_stress_fluctuation<2>(const StressSpace<2> &, const State<2> &);

@@ -247,6 +247,7 @@ namespace Viscoplastic
     , old_fields{{state.u,
                   state.velocity,
                   state.initial_u,
+                  state.friction_work,
                   multiplier_density ? *multiplier_density :
                                        DistributedVector()}}
     , field_transfer(old_stress_space.space.dof_handler)
@@ -354,10 +355,11 @@ namespace Viscoplastic
     result.state.t = t;
     result.state.k = k;
 
-    const std::array<DistributedVector *, 4> targets{
+    const std::array<DistributedVector *, 5> targets{
       {&result.state.u,
        &result.state.velocity,
        &result.state.initial_u,
+       &result.state.friction_work,
        &result.multiplier_density}};
     std::vector<DistributedVector>   fields;
     std::vector<DistributedVector *> field_pointers;

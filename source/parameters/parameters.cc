@@ -563,6 +563,17 @@ namespace Viscoplastic
                       "Points of the body, coordinates separated by commas and "
                       "points by semicolons, whose displacement goes into "
                       "statistics.csv. Unit: length.");
+    add_choices(
+      prm,
+      "Additional fields",
+      additional_fields,
+      "What the outputs of fields have besides displacements and stresses, "
+      "separated by commas. In the body, of cell means: `total strain' eps(u); "
+      "`irreversible strain' eps(u) - E^-1 sigma; `creep strain', what flow "
+      "has added to that, as the equivalent (2/3 e:e)^(1/2) of its deviator; "
+      "`creep rate', the same of -E^-1 G; `principal stresses', the largest "
+      "first. On Gamma_3: `normal traction' sigma_nu, negative in compression; "
+      "`friction work', what friction has dissipated per area since t = 0.");
   }
 
 

@@ -11,6 +11,7 @@
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/error/recovery_estimate.h>
 #include <viscoplastic_contact/error/solution_errors.h>
+#include <viscoplastic_contact/results/body_fields.h>
 #include <viscoplastic_contact/results/output.h>
 
 #include <nlohmann/json.hpp>
@@ -381,18 +382,17 @@ namespace Viscoplastic
 
   template <int dim>
   std::vector<std::string>
-  Output<dim>::write_fields(const StressSpace<dim> &stress_space,
+  Output<dim>::write_fields(const FlowLaws<dim>    &laws,
                             const State<dim>       &state,
                             const ContactFace<dim> *face,
                             const Vector<double>   *squared_estimate)
   {
     times.push_back(state.t);
-    std::vector<std::string> remarks{
-      write_body(stress_space, state, squared_estimate)};
+    std::vector<std::string> remarks{write_body(laws, state, squared_estimate)};
     write_pvd("solution");
     if (scene.has_contact())
       {
-        remarks.push_back(write_contact(stress_space.space, state, face));
+        remarks.push_back(write_contact(laws.stress_space, state, face));
         write_pvd("contact");
       }
     remarks.erase(std::remove(remarks.begin(), remarks.end(), ""),
@@ -476,13 +476,14 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  Output<dim>::write_body(const StressSpace<dim> &stress_space,
-                          const State<dim>       &state,
-                          const Vector<double>   *squared_estimate)
+  Output<dim>::write_body(const FlowLaws<dim>  &laws,
+                          const State<dim>     &state,
+                          const Vector<double> *squared_estimate)
   {
-    const DoFHandler<dim> &dof_handler = stress_space.space.dof_handler;
-    const auto            &tria        = dof_handler.get_triangulation();
-    BodyOutput<dim>        data_out;
+    const StressSpace<dim> &stress_space = laws.stress_space;
+    const DoFHandler<dim>  &dof_handler  = stress_space.space.dof_handler;
+    const auto             &tria         = dof_handler.get_triangulation();
+    BodyOutput<dim>         data_out;
     data_out.attach_dof_handler(dof_handler);
     const std::vector<DataComponentInterpretation::DataComponentInterpretation>
       is_vector(dim, DataComponentInterpretation::component_is_part_of_vector);
@@ -538,6 +539,9 @@ namespace Viscoplastic
       }
     data_out.add_data_vector(mises, "von_mises");
     data_out.add_data_vector(subdomain, "subdomain");
+    const std::vector<CellField> additional = additional_fields(laws, state);
+    for (const CellField &field : additional)
+      data_out.add_data_vector(field.values, field.name);
     const auto square_roots = [](Vector<double> squares) {
       for (double &value : squares)
         value = std::sqrt(value);
@@ -568,10 +572,20 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  Output<dim>::write_contact(const AdmissibleSpace<dim> &space,
-                             const State<dim>           &state,
-                             const ContactFace<dim>     *face)
+  Output<dim>::write_contact(const StressSpace<dim> &stress_space,
+                             const State<dim>       &state,
+                             const ContactFace<dim> *face)
   {
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    const bool                  has_normal_traction =
+      scene.parameters.output.has(AdditionalField::normal_traction);
+    const bool has_friction_work =
+      face != nullptr &&
+      scene.parameters.output.has(AdditionalField::friction_work);
+    // In the order of the cells.
+    const std::vector<SymmetricTensor<2, 3>> stress =
+      has_normal_traction ? stress_space.mean_stress(state.u, state.z) :
+                            std::vector<SymmetricTensor<2, 3>>();
     FaceOutput<dim> output;
     output.set_flags(vtk_flags());
     const auto add_vector = [&output](const std::string &name) {
@@ -594,6 +608,8 @@ namespace Viscoplastic
         add_vector("traction");
         for (const char *name : {"bound", "utilisation", "stick"})
           output.names.push_back(name);
+        if (has_friction_work)
+          output.names.emplace_back("friction_work");
         const std::vector<double> &bounds = state.friction.bound;
         std::vector<double>        values(bounds.size());
         for (unsigned int p = 0; p < values.size(); ++p)
@@ -610,10 +626,13 @@ namespace Viscoplastic
         density  = face->density(state.friction);
       }
 
-    for (const auto &cell : space.cells)
-      for (const unsigned int f : cell->face_indices())
+    if (has_normal_traction)
+      output.names.emplace_back("normal_traction");
+
+    for (std::size_t c = 0; c < space.cells.size(); ++c)
+      for (const unsigned int f : space.cells[c]->face_indices())
         {
-          const auto cell_face = cell->face(f);
+          const auto cell_face = space.cells[c]->face(f);
           if (!cell_face->at_boundary())
             continue;
           const auto &condition =
@@ -669,6 +688,20 @@ namespace Viscoplastic
                     frictional ? utilization.begin()[node] : 0.;
                   patch.data(row++, v) =
                     frictional ? 1. - slipping.begin()[node] : 0.;
+                  if (has_friction_work)
+                    patch.data(row++, v) =
+                      frictional && state.friction_work.size() > 0 ?
+                        state.friction_work.begin()[node] :
+                        0.;
+                }
+              if (has_normal_traction)
+                {
+                  double normal_traction = 0.;
+                  for (unsigned int i = 0; i < dim; ++i)
+                    for (unsigned int j = 0; j < dim; ++j)
+                      normal_traction += condition.normal[i] * stress[c][i][j] *
+                                         condition.normal[j];
+                  patch.data(row++, v) = normal_traction;
                 }
             }
           output.patches.push_back(patch);

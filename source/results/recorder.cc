@@ -190,7 +190,7 @@ namespace Viscoplastic
                         const SolutionErrors      &errors)
   {
     const double              t        = step.time_step.t;
-    const StressSummary      &stress   = quantities.stress;
+    const StressSummary<dim> &stress   = quantities.stress;
     const FrictionIdentities &friction = quantities.friction;
     run.n_steps                        = step.time_step.n;
     run.t                              = t;
@@ -201,9 +201,11 @@ namespace Viscoplastic
     run.max_displacement               = quantities.max_displacement;
     run.point_displacements            = quantities.point_displacements;
     run.tension_area.update(quantities.tension_area, t);
-    run.displacement.update(quantities.max_displacement, t);
+    if (run.displacement.update(quantities.max_displacement, t))
+      run.displacement_position = quantities.displacement_position;
     run.strain.update(stress.max_strain, t);
-    run.von_mises.update(stress.max_von_mises, t);
+    if (run.von_mises.update(stress.max_von_mises, t))
+      run.von_mises_position = stress.von_mises_position;
     run.capped_volume.update(step.capped_volume, step.time_of_rate());
     run.largest_error.update(errors.error);
     run.largest_exact.update(errors.exact);
@@ -260,7 +262,7 @@ namespace Viscoplastic
   {
     const Discretization<dim> &d         = *discretization;
     const TimeStep            &time_step = step.time_step;
-    const StressSummary       &stress    = quantities.stress;
+    const StressSummary<dim>  &stress    = quantities.stress;
     const FrictionIdentities  &friction  = quantities.friction;
     const Forces<dim>         &forces    = step.end.forces;
     Statistics                &row       = *statistics;

@@ -137,9 +137,19 @@ namespace Viscoplastic
     void
     print_largest(std::ostream &out, const RunSummary<dim> &run)
     {
+      const auto with_place = [](const Largest    &largest,
+                                 const Point<dim> &position) {
+        std::ostringstream place;
+        place << std::setprecision(3) << position;
+        return with_time(largest) + ", x = (" + place.str() + ")";
+      };
       out << "Largest in the run:\n";
-      print_row(out, "displacement", with_time(run.displacement));
-      print_row(out, "von Mises stress", with_time(run.von_mises));
+      print_row(out,
+                "displacement",
+                with_place(run.displacement, run.displacement_position));
+      print_row(out,
+                "von Mises stress",
+                with_place(run.von_mises, run.von_mises_position));
       if (run.friction_force)
         print_row(out,
                   "slipping area",
@@ -149,13 +159,9 @@ namespace Viscoplastic
       if (run.capped_volume.value > 0.)
         print_row(out, "volume beyond the cap", with_time(run.capped_volume));
       if (run.stiffness.value > 0.)
-        {
-          std::ostringstream place;
-          place << std::setprecision(3) << run.critical_position;
-          print_row(out,
-                    "time step times r",
-                    with_time(run.stiffness) + ", x = (" + place.str() + ")");
-        }
+        print_row(out,
+                  "time step times r",
+                  with_place(run.stiffness, run.critical_position));
     }
 
 

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/results/step_quantities.h>
@@ -14,21 +15,28 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Frames are orthonormal, and hanging nodes lie between others.
+    /// The largest length of a nodal displacement; @p u is Cartesian, with
+    /// ghosts.
     template <int dim>
-    double
-    max_displacement(const AdmissibleSpace<dim> &space,
-                     const DistributedVector    &u_in_frames)
+    LargestPlace<dim>
+    largest_displacement(const AdmissibleSpace<dim> &space,
+                         const DistributedVector    &u)
     {
-      double result = 0.;
-      for (std::size_t i = 0; i < space.owned.n_elements(); i += dim)
-        {
-          Tensor<1, dim> u;
-          for (unsigned int c = 0; c < dim; ++c)
-            u[c] = u_in_frames.begin()[i + c];
-          result = std::max(result, stable_norm(u));
-        }
-      return Utilities::MPI::max(result, space.communicator);
+      LargestPlace<dim> result;
+      for (const auto &cell : space.cells)
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            const double *values = u.begin() + space.relevant.index_within_set(
+                                                 cell->vertex_dof_index(v, 0));
+            Tensor<1, dim> at_node;
+            for (unsigned int d = 0; d < dim; ++d)
+              at_node[d] = values[d];
+            const double length = stable_norm(at_node);
+            if (result.may_take(length))
+              result.add(length, cell->vertex(v));
+          }
+      result.reduce(space.communicator);
+      return result;
     }
 
 
@@ -52,7 +60,7 @@ namespace Viscoplastic
     /// The stored energy, from the integrals of the stress.
     template <int dim>
     double
-    stored_energy(const Forces<dim> &forces, const StressSummary &stress)
+    stored_energy(const Forces<dim> &forces, const StressSummary<dim> &stress)
     {
       // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
       return forces.strain_energy + forces.irreversible_work +
@@ -72,9 +80,11 @@ namespace Viscoplastic
     const Forces<dim>  &forces     = step.end.forces;
     const bool          is_initial = step.time_step.n == 0;
     StepQuantities<dim> result;
-    result.stress           = summarize_stress(d.laws, old.state, state);
-    result.stored_energy    = stored_energy(forces, result.stress);
-    result.max_displacement = max_displacement(d.space, forces.u);
+    result.stress        = summarize_stress(d.laws, old.state, state);
+    result.stored_energy = stored_energy(forces, result.stress);
+    const LargestPlace<dim> largest = largest_displacement(d.space, state.u);
+    result.max_displacement         = largest.value();
+    result.displacement_position    = largest.position();
     if (d.face)
       {
         DistributedVector change = forces.u;

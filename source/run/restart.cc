@@ -140,7 +140,8 @@ namespace Viscoplastic
         const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
         BinaryWriter     archive;
         archive &coarse_mesh.topology &coarse_mesh.vertices;
-        archive &(state.initial_u.size() > 0);
+        for (const DistributedVector *field : nodal_fields(state))
+          archive &(field->size() > 0);
         archive &(indicators.size() > 0);
         archive & output->output_times();
         archive &recorder.elapsed_in_all();
@@ -229,13 +230,23 @@ namespace Viscoplastic
                            "; undo that, or begin without --restart."));
     BinaryReader        archive(store.read(checkpoint, run_file));
     CoarseMesh          coarse_mesh;
-    bool                has_initial_u, has_estimate;
+    std::array<bool, 4> has_nodal_field;
+    bool                has_estimate;
     double              earlier_seconds;
     std::vector<double> output_times;
     archive &coarse_mesh.topology &coarse_mesh.vertices;
     AssertThrow(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
                 ExcMessage(name + "' belongs to another coarse mesh."));
-    archive &has_initial_u &has_estimate &output_times &earlier_seconds;
+    for (bool &has_field : has_nodal_field)
+      archive &has_field;
+    AssertThrow(has_nodal_field[3] ==
+                  (scene.has_friction() &&
+                   parameters.output.has(AdditionalField::friction_work)),
+                ExcMessage(name +
+                           "' cannot go on with another sum: `friction work' "
+                           "among 'Output/Additional fields' has to be there "
+                           "from the beginning or not at all."));
+    archive &has_estimate &output_times &earlier_seconds;
     exchange(archive);
     std::optional<PreconditionerState> preconditioner;
     exchange_preconditioner(archive, preconditioner);
@@ -266,7 +277,7 @@ namespace Viscoplastic
     const auto unpack = [&](const unsigned int begin, const unsigned int end) {
       PackedFields packed{{meshes.begin() + begin, meshes.begin() + end},
                           {},
-                          has_initial_u,
+                          has_nodal_field,
                           has_estimate,
                           ErrorEstimator<dim>::n_sample_fields(scene)};
       for (unsigned int r = begin; r < end; ++r)

@@ -523,7 +523,7 @@ namespace Viscoplastic
     const Vector<double> &squared_indicators =
       accepted.space_estimate.squared_indicators;
     const std::vector<std::string> remarks =
-      output->write_fields(discretization->stress_space,
+      output->write_fields(discretization->laws,
                            accepted.state,
                            discretization->face.get(),
                            squared_indicators.size() > 0 ? &squared_indicators :

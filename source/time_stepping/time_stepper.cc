@@ -62,6 +62,32 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// The work of friction per area up to the end of a step.
+    template <int dim>
+    void
+    add_friction_work(const Discretization<dim> &discretization,
+                      const State<dim>          &old,
+                      State<dim>                &state)
+    {
+      const ContactFace<dim> &face     = *discretization.face;
+      const FrictionState    &friction = state.friction;
+      std::vector<double>     work(friction.n_points());
+      for (unsigned int p = 0; p < work.size(); ++p)
+        if (face.weights()[p] > 0.)
+          work[p] =
+            friction.multiplier[p] * friction.slip[p] / face.weights()[p];
+      state.friction_work = face.nodal_field(work);
+      if (old.friction_work.size() > 0)
+        for (std::size_t i = 0; i < discretization.space.relevant.n_elements();
+             ++i)
+          state.friction_work.begin()[i] += old.friction_work.begin()[i];
+    }
+  } // namespace
+
+
+
   template <int dim>
   bool
   TimeStepper<dim>::needs_rate() const
@@ -111,6 +137,9 @@ namespace Viscoplastic
             if (control.accepts(time_step, errors, has_event))
               {
                 step.n_rejections = n_rejections;
+                if (discretization.face &&
+                    scene.parameters.output.has(AdditionalField::friction_work))
+                  add_friction_work(discretization, state, step.end.state);
                 return step;
               }
           }

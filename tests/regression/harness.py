@@ -54,7 +54,10 @@ EFFORT = {
 }
 
 # Fields that have one value a cell.
-CELL_DATA = ("stress_", "irreversible_stress_", "von_mises", "estimator", "subdomain")
+CELL_DATA = (
+    *("stress_", "irreversible_stress_", "von_mises", "estimator", "subdomain"),
+    *("strain_", "irreversible_strain_", "creep_", "principal_stress_"),
+)
 
 # Columns that are errors of the solution of one step, compared with bounds,
 # not with each other.

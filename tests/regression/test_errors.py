@@ -112,6 +112,13 @@ class Refused(TestCase):
             r"line 2: .* it is `set Traction' within `subsection Boundary 0'\.$",
         )
 
+    def test_names_of_fields(self):
+        self.refused(
+            "'Output/Additional fields' is 'total strain, stain'; it must be names "
+            "separated by commas, each one of total strain, irreversible strain, ",
+            **{"Output/Additional fields": "total strain, stain"},
+        )
+
     def test_unknown_law(self):
         self.refused("Material/Law' is 'burgers'", "one of elastic, maxwell",
                      **{"Material/Law": "burgers"})

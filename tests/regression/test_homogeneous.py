@@ -15,7 +15,9 @@ from harness import TestCase, main, run
 class CoulombBlock(TestCase):
     def test_slider_that_goes_and_returns(self):
         """2D: stick, slip, stick on the way back, slip the other way."""
-        result = run("coulomb_block_2d")
+        result = run(
+            "coulomb_block_2d", {"Output/Additional fields": "friction work"}
+        )
         mu, p_wave = 1 / 2.6, 0.3 / 1.3 / 0.4 + 2 / 2.6
         tau, foot, slip_work, area = [0.0], [0.0], [0.0], [None]
         t = result["t"]
@@ -55,10 +57,14 @@ class CoulombBlock(TestCase):
             contact.point_data["traction"][:, 0], -tau[-1], absolute=1e-8
         )
         self.assertClose(contact.point_data["bound"], 0.04, absolute=1e-8)
+        self.assertClose(
+            contact.point_data["friction_work"], slip_work[-1] / 2, 1e-6, 1e-9
+        )
         # accumulated slip: from zero to the end position
         self.assertClose(contact.point_data["slip"][:, 0], foot[-1], absolute=1e-8)
 
     def check_turning(self, **more):
+        more["Output/Additional fields"] = "friction work"
         result = run("coulomb_block_3d", more)
         mu = 0.5
         foot, tau, work = [np.zeros(2)], [np.zeros(2)], [0.0]
@@ -81,6 +87,11 @@ class CoulombBlock(TestCase):
             result.vector("friction_force")[:, :2], tau, absolute=1e-9, what="force"
         )
         self.assertClose(result["friction_dissipation"], work, absolute=1e-8)
+        self.assertClose(
+            result.fields("contact").point_data["friction_work"],
+            work[-1],
+            absolute=1e-7,
+        )
         # the force has turned by nearly 180 degrees
         first = tau[np.argmax(np.linalg.norm(tau, axis=1) > 0.0399)]
         self.assertLess(tau[-1] @ first, -0.8 * 0.04**2)

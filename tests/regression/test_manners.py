@@ -358,6 +358,9 @@ class Voice(Manners):
                 relative=1e-4,
                 what=name,
             )
+        # The loaded side moves most.
+        self.assertRegex(words("displacement"), r"at t = 1, x = \(0 0\.5\)$")
+        self.assertRegex(words("von Mises stress"), r"at t = 1, x = \(\S+ \S+\)$")
         # effects add up to the run
         phases = re.findall(r"^  (\S.*?) +(\d+\.\d+) +\d+ %", text, re.M)
         seconds = {name: float(value) for name, value in phases}

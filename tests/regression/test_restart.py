@@ -223,11 +223,20 @@ class Identical(RestartCase):
         self.check("slab_adaptive", overrides, (1, 6, 11))
 
     def test_adaptive_slab_two_ranks(self):
-        overrides = {"Time/Phases": "1: 8, 2: 8", "Output/Fields every": 3}
+        """With the work of friction, a sum over steps and meshes."""
+        overrides = {
+            "Time/Phases": "1: 8, 2: 8",
+            "Output/Fields every": 3,
+            "Output/Additional fields": "friction work, creep strain",
+        }
         self.check("slab_adaptive", overrides, (6, 11), ranks=2)
 
     def test_adaptive_pad(self):
-        overrides = {"Time/Phases": "1.5: 8", "Mesh refinement/Cell budget": 500}
+        overrides = {
+            "Time/Phases": "1.5: 8",
+            "Mesh refinement/Cell budget": 500,
+            "Output/Additional fields": "friction work",
+        }
         self.check("pad_adaptive", overrides, (1, 4))
 
     def test_adaptive_pad_two_ranks(self):

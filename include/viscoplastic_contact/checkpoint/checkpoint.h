@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/discretization/state.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -57,15 +58,17 @@ namespace Viscoplastic
   struct PackedFields
   {
     std::vector<std::string> meshes, fields;
-    bool                     has_initial_u, has_estimate;
+    /// Which of the nodal_fields() there are.
+    std::array<bool, 4> has_nodal_field;
+    bool                has_estimate;
     /// The number of fields at samples, of which none is missing before the
     /// last.
     unsigned int n_sample_fields;
   };
 
   /**
-   * The inverse, on the same mesh. Sets u, velocity, initial_u, friction and
-   * the fields at samples of @p state. Returns whether that was all that this
+   * The inverse, on the same mesh. Sets the fields at nodes, friction and
+   * those at samples of @p state. Returns whether that was all that this
    * rank needs. Throws ExcMessage for bytes that make no sense. Not collective
    * but for the exchange of ghost values at its end.
    */

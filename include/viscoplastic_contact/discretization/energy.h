@@ -7,11 +7,14 @@
 namespace Viscoplastic
 {
   /// Integrals over the stress of a state and of the step that led to it.
+  template <int dim>
   struct StressSummary
   {
     /// The von Mises stress of cell means, its largest value and its mean by
     /// volume.
     double max_von_mises = 0., mean_von_mises = 0.;
+    /// The center of the cell with the largest one.
+    Point<dim> von_mises_position;
     /// The largest (eps : eps)^(1/2) of cell means.
     double max_strain = 0.;
     /// (int sigma : sigma)^(1/2) of cell means.
@@ -30,7 +33,7 @@ namespace Viscoplastic
 
   /// Collective. Without a step (initial state), give the same state twice.
   template <int dim>
-  StressSummary
+  StressSummary<dim>
   summarize_stress(const FlowLaws<dim> &laws,
                    const State<dim>    &old_state,
                    const State<dim>    &state);

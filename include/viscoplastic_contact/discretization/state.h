@@ -37,6 +37,11 @@ namespace Viscoplastic
 
     /// u_0, Cartesian with ghosts; empty where zero.
     DistributedVector initial_u;
+
+    /// What friction has dissipated per area since t = 0, at the nodes of
+    /// Gamma_3 in the place of their first component, with ghosts. Empty unless
+    /// the scene asks for it, and before the first step.
+    DistributedVector friction_work;
   };
 
 
@@ -48,5 +53,16 @@ namespace Viscoplastic
   {
     return std::array<decltype(&state.z), 3>{
       {&state.z, &state.time_error, &state.rate_slope}};
+  }
+
+
+
+  /// The fields of a state that have values at nodes; absent ones are empty.
+  template <typename StateType>
+  auto
+  nodal_fields(StateType &state)
+  {
+    return std::array<decltype(&state.u), 4>{
+      {&state.u, &state.velocity, &state.initial_u, &state.friction_work}};
   }
 } // namespace Viscoplastic

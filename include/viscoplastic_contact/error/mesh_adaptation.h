@@ -120,8 +120,9 @@ namespace Viscoplastic
     parallel::distributed::Triangulation<dim> &triangulation;
     const unsigned int                         n_samples;
 
-    /// Old u, velocity, initial_u, multiplier density; absent ones are empty.
-    std::array<DistributedVector, 4> old_fields;
+    /// The old nodal_fields() and the multiplier density; absent ones are
+    /// empty.
+    std::array<DistributedVector, 5> old_fields;
     parallel::distributed::SolutionTransfer<dim, DistributedVector>
       field_transfer;
 

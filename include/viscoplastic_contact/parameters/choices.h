@@ -5,6 +5,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 
 namespace Viscoplastic
@@ -135,6 +136,27 @@ namespace Viscoplastic
 
 
 
+  /// What output has only where the scene asks for it.
+  enum class AdditionalField
+  {
+    total_strain,
+    irreversible_strain,
+    creep_strain,
+    creep_rate,
+    principal_stresses,
+    normal_traction,
+    friction_work
+  };
+
+  inline const char *
+  choices(AdditionalField)
+  {
+    return "total strain|irreversible strain|creep strain|creep rate|principal "
+           "stresses|normal traction|friction work";
+  }
+
+
+
   /// What a value is called in parameter files.
   template <typename Choice>
   std::string
@@ -162,6 +184,30 @@ namespace Viscoplastic
       const auto names = Utilities::split_string_list(choices(choice), '|');
       choice           = static_cast<Choice>(
         std::find(names.begin(), names.end(), value) - names.begin());
+    });
+  }
+
+
+
+  /// An entry with any number of the values, separated by commas.
+  template <typename Choice>
+  void
+  add_choices(ParameterHandler  &prm,
+              const std::string &entry,
+              std::set<Choice>  &chosen,
+              const std::string &documentation)
+  {
+    prm.declare_entry(entry,
+                      "",
+                      Patterns::MultipleSelection(choices(Choice())),
+                      documentation);
+    prm.add_action(entry, [&chosen](const std::string &value) {
+      chosen.clear();
+      const auto names = Utilities::split_string_list(choices(Choice()), '|');
+      for (const std::string &name : Utilities::split_string_list(value))
+        if (!name.empty())
+          chosen.insert(static_cast<Choice>(
+            std::find(names.begin(), names.end(), name) - names.begin()));
     });
   }
 } // namespace Viscoplastic

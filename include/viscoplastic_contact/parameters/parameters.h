@@ -221,11 +221,18 @@ namespace Viscoplastic
 
   struct OutputParameters
   {
-    std::string  directory;
-    unsigned int fields_every     = 1;
-    bool         reference_fields = false;
-    double       fields_interval  = 0.;
-    std::string  points;
+    std::string               directory;
+    unsigned int              fields_every     = 1;
+    bool                      reference_fields = false;
+    double                    fields_interval  = 0.;
+    std::string               points;
+    std::set<AdditionalField> additional_fields;
+
+    bool
+    has(const AdditionalField field) const
+    {
+      return additional_fields.count(field) > 0;
+    }
 
     void
     declare(ParameterHandler &prm);

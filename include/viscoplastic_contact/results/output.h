@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/state.h>
 #include <viscoplastic_contact/results/run_summary.h>
 
@@ -65,12 +66,13 @@ namespace Viscoplastic
     is_due(const TimeStep &step) const;
 
     /**
-     * Write the fields of a state. @p face is null without friction,
+     * Write the fields of a state, those of `Output/Additional fields' among
+     * them. @p face is null without friction,
      * @p squared_estimate without an estimator. Returns sentences about fields
      * that are beyond the range of the files for the first time. Collective.
      */
     std::vector<std::string>
-    write_fields(const StressSpace<dim> &stress_space,
+    write_fields(const FlowLaws<dim>    &laws,
                  const State<dim>       &state,
                  const ContactFace<dim> *face,
                  const Vector<double>   *squared_estimate);
@@ -78,13 +80,13 @@ namespace Viscoplastic
   private:
     // What these return: see write_fields().
     std::string
-    write_body(const StressSpace<dim> &stress_space,
-               const State<dim>       &state,
-               const Vector<double>   *squared_estimate);
+    write_body(const FlowLaws<dim>  &laws,
+               const State<dim>     &state,
+               const Vector<double> *squared_estimate);
     std::string
-    write_contact(const AdmissibleSpace<dim> &space,
-                  const State<dim>           &state,
-                  const ContactFace<dim>     *face);
+    write_contact(const StressSpace<dim> &stress_space,
+                  const State<dim>       &state,
+                  const ContactFace<dim> *face);
     /// Write the last output of a series: the piece of each rank and the record
     /// of them all. @p cut_off is of this rank.
     template <typename Data>

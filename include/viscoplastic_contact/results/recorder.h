@@ -227,7 +227,8 @@ namespace Viscoplastic
       archive & largest->value & largest->t;
     archive &run.friction_area;
     for (unsigned int d = 0; d < dim; ++d)
-      archive &run.critical_position[d];
+      archive &run.critical_position[d] & run.displacement_position[d] &
+        run.von_mises_position[d];
     for (SolutionNorms *norms : {&run.largest_error, &run.largest_exact})
       archive & norms->energy & norms->h1 & norms->stress & norms->multiplier;
     if (run.errors)

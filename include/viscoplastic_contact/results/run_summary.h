@@ -25,14 +25,15 @@ namespace Viscoplastic
   {
     double value = 0., t = 0.;
 
-    void
+    /// Whether the new value is larger.
+    bool
     update(const double new_value, const double new_t)
     {
-      if (new_value > value)
-        {
-          value = new_value;
-          t     = new_t;
-        }
+      if (!(new_value > value))
+        return false;
+      value = new_value;
+      t     = new_t;
+      return true;
     }
   };
 
@@ -74,6 +75,8 @@ namespace Viscoplastic
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,
       tension_area, utilization;
+    /// Where the displacement and the stress were that large.
+    Point<dim> displacement_position, von_mises_position;
     /// The area of all friction points on the mesh on which slip_area was
     /// reached.
     double friction_area = 0.;

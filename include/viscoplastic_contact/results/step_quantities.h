@@ -14,7 +14,7 @@ namespace Viscoplastic
   template <int dim>
   struct StepQuantities
   {
-    StressSummary stress;
+    StressSummary<dim> stress;
     /// The energy stored at the end of the step.
     double stored_energy = 0.;
     /// The work of loads, prescribed displacements and moving foundations in
@@ -29,8 +29,10 @@ namespace Viscoplastic
     /// Loads, reactions and friction on the body, which add up to zero, and the
     /// largest of them, or what rounding makes of them if that is more.
     Tensor<1, dim> sum_of_forces;
-    double         largest_force    = 0.;
-    double         max_displacement = 0.;
+    double         largest_force = 0.;
+    /// The largest length of a displacement, and the node that has it.
+    double     max_displacement = 0.;
+    Point<dim> displacement_position;
     /// The area on which bilateral contact pulls at the body.
     double tension_area = 0.;
     /// The estimate by which an adaptive mesh is refined; zero before the first

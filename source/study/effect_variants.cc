@@ -316,6 +316,8 @@ namespace Viscoplastic
           loads.emplace_back("Traction", data.traction);
         if (data.role == "displacement")
           loads.emplace_back("Displacement", data.displacement);
+        if (data.role == "traction" || data.role == "displacement")
+          loads.emplace_back("Pressure", data.pressure);
         const auto add_over_space = [&](const std::string &name,
                                         const std::string &components) {
           if (!is_zero(components))

@@ -285,6 +285,8 @@ namespace Viscoplastic
   std::vector<double>
   ContactFace<dim>::bounds_by_id(const double t) const
   {
+    if (constant_bounds_by_id)
+      return *constant_bounds_by_id;
     std::vector<std::size_t> first{0};
     for (const auto &ids : boundary_ids)
       first.push_back(first.back() + ids.size());
@@ -304,6 +306,8 @@ namespace Viscoplastic
               if (boundary_ids[p][i] == id)
                 result[first[p] + i] = part[p];
         }
+    if (!bounds_vary && space.scene.parameters.solver.reuse_unchanged)
+      constant_bounds_by_id = result;
     return result;
   }
 

@@ -94,6 +94,20 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  FlowLaws<dim>::are_autonomous() const
+  {
+    return source_solution == nullptr &&
+           std::none_of(materials.begin(),
+                        materials.end(),
+                        [](const Entry &entry) {
+                          return entry.varies_in_time;
+                        });
+  }
+
+
+
+  template <int dim>
   void
   FlowLaws<dim>::check(const double t) const
   {

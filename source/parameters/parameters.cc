@@ -368,6 +368,13 @@ namespace Viscoplastic
                       maximal_iterations,
                       "The run ends with an error when a step needs more.",
                       Patterns::Integer(1));
+    prm.add_parameter("Reuse unchanged",
+                      reuse_unchanged,
+                      "Keep what a step does not change instead of computing "
+                      "it again: the solution where neither loads, prescribed "
+                      "displacements, bounds and foundations nor the "
+                      "irreversible stress have changed, with its forces, "
+                      "rates and estimates. Nothing is neglected.");
   }
 
 

@@ -139,6 +139,7 @@ namespace Viscoplastic
     plain_solve_seconds += step.report.plain_seconds;
     newton_iterations += step.newton_iterations;
     implicit_steps += step.is_implicit;
+    run.unchanged_steps += step.is_unchanged;
 
     effects.note(*discretization, step);
     judge(step, quantities);
@@ -289,6 +290,8 @@ namespace Viscoplastic
     if (d.face)
       row.add("contact_iterations", step.report.iterations);
     row.add("linear_iterations", step.report.linear_iterations);
+    if (scene.parameters.solver.reuse_unchanged)
+      row.add("unchanged", step.is_unchanged);
     if (d.face)
       {
         row.add("duality_gap", step.report.duality_gap);

@@ -171,6 +171,9 @@ namespace Viscoplastic
     void
     print_steps(std::ostream &out, const RunSummary<dim> &run)
     {
+      if (run.unchanged_steps > 0)
+        out << "Steps in which nothing changed, without a solve: "
+            << run.unchanged_steps << " of " << run.n_steps << '\n';
       if (run.steps)
         {
           std::string text = std::to_string(run.n_steps) + " accepted";

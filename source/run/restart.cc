@@ -98,6 +98,9 @@ namespace Viscoplastic
     // What record() and estimate() make anew in each step is not here.
     State<dim> &state = accepted.state;
     archive &state.n &state.t &state.k &accepted.is_solution;
+    ContactReport                      &report = accepted.report;
+    archive &report.duality_gap &report.relative_error &report.error &report
+      .tolerance;
     control.exchange(archive);
     if (budget)
       archive & budget->expected_size;

@@ -335,6 +335,18 @@ namespace Viscoplastic
 
   template <int dim>
   bool
+  Scene<dim>::has_constant_loads() const
+  {
+    for (const auto &pair : boundary)
+      if (pair.second.load_depends_on_time())
+        return false;
+    return !body_force || !body_force->depends_on_time();
+  }
+
+
+
+  template <int dim>
+  bool
   Scene<dim>::has_friction() const
   {
     for (const auto &pair : boundary)

@@ -1,12 +1,31 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
+
+#include <algorithm>
 
 namespace Viscoplastic
 {
   namespace
   {
+    /// Whether all multipliers are in their balls, and so a solution at rest.
+    bool
+    holds_at_rest(const FrictionState &old, const std::vector<double> &bounds)
+    {
+      if (old.n_points() != bounds.size())
+        return false;
+      for (unsigned int p = 0; p < bounds.size(); ++p)
+        if (!(bounds[p] >= old.bound[p] ||
+              old.multiplier[p].norm() <= bounds[p]))
+          return false;
+      return true;
+    }
+
+
+
     /// Explicit steps up to the stability limit 2/r, implicit ones beyond it.
     template <int dim>
     class ExplicitUpToTheLimit : public StepMethod<dim>
@@ -74,6 +93,64 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  StepSolution<dim>::stay(const StepProblem<dim>     &problem,
+                          const AdmissibleSpace<dim> &space)
+  {
+    const State<dim> &old   = problem.old.state;
+    state.u                 = old.u;
+    state.velocity          = space.ghosted_vector();
+    state.friction          = old.friction;
+    FrictionState &friction = state.friction;
+    friction.bound          = problem.bounds;
+    for (unsigned int p = 0; p < friction.n_points(); ++p)
+      {
+        friction.slip[p]   = Tensor<1, 2>();
+        friction.sticks[p] = friction.bound[p] > 0.;
+      }
+    // The bound on the error is that of the solve.
+    report            = problem.old.report;
+    report.iterations = report.linear_iterations = 0;
+    report.seconds = report.plain_seconds = 0.;
+    is_unchanged                          = true;
+  }
+
+
+
+  template <int dim>
+  bool
+  data_are_unchanged(const Discretization<dim> &discretization,
+                     const StepProblem<dim>    &problem)
+  {
+    const EvaluatedState<dim> &old = problem.old;
+    if (!discretization.scene().parameters.solver.reuse_unchanged ||
+        !old.is_solution || old.report.relative_error > problem.tolerance)
+      return false;
+    const auto same = [](const DistributedVector &a,
+                         const DistributedVector &b) {
+      return std::equal(a.begin(),
+                        a.begin() + a.locally_owned_size(),
+                        b.begin());
+    };
+    bool unchanged = same(problem.load.values, old.forces.load.values);
+    if (unchanged)
+      {
+        DistributedVector u(problem.old_u());
+        discretization.space.set_prescribed(problem.time_step.t, u);
+        unchanged = same(u, problem.old_u());
+      }
+    if (discretization.face)
+      unchanged = unchanged &&
+                  holds_at_rest(old.state.friction, problem.bounds) &&
+                  (problem.foundation_step.size() == 0 ||
+                   problem.foundation_step.all_zero());
+    return Utilities::MPI::min(unchanged ? 1 : 0,
+                               discretization.space.communicator) == 1;
+  }
+
+
+
+  template <int dim>
   std::unique_ptr<StepMethod<dim>>
   make_step_method(const Discretization<dim> &discretization,
                    TimerOutput               &timer)
@@ -88,6 +165,14 @@ namespace Viscoplastic
 
 
 
+  template void
+  StepSolution<2>::stay(const StepProblem<2> &, const AdmissibleSpace<2> &);
+  template void
+  StepSolution<3>::stay(const StepProblem<3> &, const AdmissibleSpace<3> &);
+  template bool
+  data_are_unchanged(const Discretization<2> &, const StepProblem<2> &);
+  template bool
+  data_are_unchanged(const Discretization<3> &, const StepProblem<3> &);
   template std::unique_ptr<StepMethod<2>>
   make_step_method(const Discretization<2> &, TimerOutput &);
   template std::unique_ptr<StepMethod<3>>

@@ -52,6 +52,7 @@ namespace Viscoplastic
     , space_estimator(SpaceEstimator<dim>::is_needed(scene) ?
                         std::make_unique<SpaceEstimator<dim>>(discretization) :
                         nullptr)
+    , estimate_is_of_state_alone(scene.has_constant_loads())
     , step_method(make_step_method(discretization, timer))
     , quantity_estimator(
         scene.quantity ?
@@ -177,6 +178,7 @@ namespace Viscoplastic
         problem.foundation_step =
           d.face->foundation_step(time_step.t_old, time_step.t);
       }
+    problem.data_are_unchanged = data_are_unchanged(d, problem);
     return problem;
   }
 
@@ -198,11 +200,26 @@ namespace Viscoplastic
     static_cast<StepOutcome &>(step) = solution;
     step.time_step                   = time_step;
     step.end.state                   = std::move(solution.state);
-    step.end.forces      = evaluate_forces(discretization.stress_space,
-                                      discretization.matrix,
-                                      std::move(problem.load),
-                                      step.end.state);
+    if (step.is_unchanged)
+      {
+        step.end.forces      = accepted.forces;
+        step.end.forces.load = std::move(problem.load);
+      }
+    else
+      step.end.forces = evaluate_forces(discretization.stress_space,
+                                        discretization.matrix,
+                                        std::move(problem.load),
+                                        step.end.state);
     step.end.is_solution = true;
+    step.end.report      = step.report;
+    // G at the end of this step is that at the start of the next one.
+    if (needs_rate() && scene.parameters.solver.reuse_unchanged)
+      {
+        if (step.is_unchanged && discretization.laws.are_autonomous())
+          step.end.rate = *old_rate;
+        else if (!scene.has_source()) // which jumps between steps
+          step.end.rate = std::move(solution.end_rate);
+      }
     step.foundation_step = std::move(problem.foundation_step);
     return step;
   }
@@ -217,10 +234,13 @@ namespace Viscoplastic
   {
     EvaluatedState<dim> &end   = step.end;
     const State<dim>    &state = end.state;
-    estimate(end);
+    if (step.is_unchanged && estimate_is_of_state_alone)
+      end.space_estimate = accepted.space_estimate;
+    else
+      estimate(end);
     if (error_estimator == nullptr)
       return {};
-    if (scene.has_viscosity())
+    if (scene.has_viscosity() && !end.rate)
       {
         // The step may have gone where the law has no value.
         TimerOutput::Scope phase(timer, "rate");
@@ -314,6 +334,7 @@ namespace Viscoplastic
     initial.state.u            = std::move(solution.state.u);
     initial.state.initial_u    = initial.state.u;
     initial.is_solution        = true;
+    initial.report             = solution.report;
     initial.forces =
       evaluate_forces(d.stress_space, d.matrix, problem.load, initial.state);
     return solution.report;

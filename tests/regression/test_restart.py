@@ -271,6 +271,18 @@ class Identical(RestartCase):
         """A step without change is not solved; the restart knows that."""
         self.check("elastic_frictionless", {}, (2,))
 
+    def test_bodies_that_rest_on_friction(self):
+        """From the middle of a time at rest, and from before it."""
+        held = {**SLAB, "Boundary 0/Traction": "0.3*min(t, 0.5); 0"}
+        for law in "elastic", "perzyna":
+            overrides = {
+                **held,
+                "Material/Law": law,
+                "Material/perzyna/Yield radius": 10,
+                "Solver/Linear solver": "multigrid",
+            }
+            self.check("slab", overrides, (3, 6))
+
 
 class OtherRanks(RestartCase):
     AGREE = 1e-7

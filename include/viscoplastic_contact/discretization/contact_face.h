@@ -167,6 +167,7 @@ namespace Viscoplastic
     std::shared_ptr<const Utilities::MPI::Partitioner> numbers;
     std::vector<double>                                point_weights;
     bool                                               bounds_vary;
-    mutable std::optional<std::vector<double>>         constant_bounds;
+    mutable std::optional<std::vector<double>>         constant_bounds,
+      constant_bounds_by_id;
   };
 } // namespace Viscoplastic

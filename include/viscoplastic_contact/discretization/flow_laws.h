@@ -33,6 +33,10 @@ namespace Viscoplastic
     bool
     have_constant_tangents() const;
 
+    /// Whether G depends on the state alone, not on t.
+    bool
+    are_autonomous() const;
+
     /// The exact solution whose source is added to G; null if there is none.
     const ExactSolution<dim> *const source_solution;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 #include <viscoplastic_contact/discretization/state.h>
@@ -29,5 +30,7 @@ namespace Viscoplastic
     /// Whether u solves the step of this state on the present mesh: neither
     /// initial data do nor what has been carried over from another mesh.
     bool is_solution = false;
+    /// Of the solve that has given u, which may be that of an earlier step.
+    ContactReport report;
   };
 } // namespace Viscoplastic

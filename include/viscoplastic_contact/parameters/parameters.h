@@ -139,6 +139,7 @@ namespace Viscoplastic
     /// 0: coupled to the estimated discretization error.
     double       contact_tolerance  = 0.;
     unsigned int maximal_iterations = 200;
+    bool         reuse_unchanged    = true;
 
     /// Where there is no estimate to be coupled to.
     double

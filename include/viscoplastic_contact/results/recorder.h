@@ -215,6 +215,7 @@ namespace Viscoplastic
     balance.exchange(archive);
     archive &largest_force &contact_iterations &linear_iterations
       &newton_iterations &implicit_steps;
+    archive              &run.unchanged_steps;
     effects.exchange(archive);
     for (Largest *largest : {&run.displacement,
                              &run.strain,

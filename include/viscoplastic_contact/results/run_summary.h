@@ -85,7 +85,9 @@ namespace Viscoplastic
     Point<dim> critical_position;
     /// The number of steps, and what step control did to them; absent where the
     /// steps are those of the phases.
-    unsigned int                n_steps = 0;
+    unsigned int n_steps = 0;
+    /// Steps in which nothing has changed, which took no solve.
+    unsigned int                unchanged_steps = 0;
     std::optional<StepCounts>   steps;
     std::optional<unsigned int> implicit_steps;
     /// Against an exact solution; zero without one.

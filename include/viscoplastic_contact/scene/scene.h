@@ -116,6 +116,10 @@ namespace Viscoplastic
     bool
     has_moving_foundation() const;
 
+    /// Whether no load depends on time.
+    bool
+    has_constant_loads() const;
+
     bool
     is_adaptive() const
     {

@@ -48,9 +48,11 @@ namespace Viscoplastic
           const State<dim>       &guess,
           StepSolution<dim>      &solution);
 
-    /// Whether an elastic body has the same data as in the state before.
+    /// Whether the body has the same data and the same z as in the state
+    /// before. Collective.
     bool
-    nothing_has_changed(const StepProblem<dim> &problem) const;
+    nothing_has_changed(const StepProblem<dim>   &problem,
+                        const IrreversibleStress &z) const;
 
     const Discretization<dim> &discretization;
     const bool                 is_heun;

@@ -61,6 +61,11 @@ namespace Viscoplastic
   private:
     class Newton;
 
+    /// The solution of a step without change, of a body that does not flow
+    /// either; nothing if it is none. Collective.
+    std::optional<StepSolution<dim>>
+    rest(const StepProblem<dim> &problem) const;
+
     /// The matrix and the solver for tangents at a strain, as a function of
     /// what is given and the mesh alone.
     void

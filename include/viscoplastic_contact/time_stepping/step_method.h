@@ -57,6 +57,15 @@ namespace Viscoplastic
 
 
 
+  /// Whether the old solution is that of the problem, too, if z does not
+  /// change; see StepProblem. Collective.
+  template <int dim>
+  bool
+  data_are_unchanged(const Discretization<dim> &discretization,
+                     const StepProblem<dim>    &problem);
+
+
+
   /**
    * The scheme that a scene asks for: explicit, implicit, or explicit up to the
    * stability limit and implicit beyond it. @p discretization has its matrix;

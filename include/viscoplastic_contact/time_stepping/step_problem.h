@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/parameters/time_schedule.h>
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace Viscoplastic
@@ -36,6 +37,13 @@ namespace Viscoplastic
     const EvaluatedState<dim> &old;
     const FlowRate            *old_rate;
 
+    /// Whether u_{n-1} and its multipliers satisfy (3.20) of this step as well
+    /// as that of their own unless z changes: neither loads, prescribed
+    /// displacements nor foundations have moved, no bound has come below a
+    /// multiplier, and the tolerance allows their error. The same on all
+    /// ranks.
+    bool data_are_unchanged = false;
+
     /// u_{n-1} in frames.
     const DistributedVector &
     old_u() const
@@ -60,6 +68,8 @@ namespace Viscoplastic
     /// Whether it is a step of backward Euler, and of how many iterations.
     bool         is_implicit       = false;
     unsigned int newton_iterations = 0;
+    /// Whether the state is that of the step before, without a solve.
+    bool is_unchanged = false;
 
     /// Take notice of G somewhere in the step.
     void
@@ -73,6 +83,8 @@ namespace Viscoplastic
   struct StepSolution : public StepOutcome
   {
     State<dim> state;
+    /// G at the end of the step, where the scheme has evaluated it.
+    std::optional<FlowRate> end_rate;
 
     explicit StepSolution(const StepProblem<dim> &problem)
     {
@@ -81,5 +93,10 @@ namespace Viscoplastic
       state.k         = problem.time_step.k;
       state.initial_u = problem.old.state.initial_u;
     }
+
+    /// The body stays where it is: the state becomes the old one, at rest, but
+    /// for z.
+    void
+    stay(const StepProblem<dim> &problem, const AdmissibleSpace<dim> &space);
   };
 } // namespace Viscoplastic

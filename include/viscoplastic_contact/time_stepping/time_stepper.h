@@ -132,7 +132,9 @@ namespace Viscoplastic
     TimerOutput               &timer;
     /// The estimator; null where a scene asks for no estimate.
     std::unique_ptr<SpaceEstimator<dim>> space_estimator;
-    std::unique_ptr<StepMethod<dim>>     step_method;
+    /// Whether no load that it looks at depends on time.
+    const bool                       estimate_is_of_state_alone;
+    std::unique_ptr<StepMethod<dim>> step_method;
     /// Null where a scene asks for no quantity.
     std::unique_ptr<QuantityEstimator<dim>> quantity_estimator;
     /// If the steps have other matrices; made when it is needed.

@@ -89,6 +89,21 @@ namespace Viscoplastic
 
 
 
+    /// Whether all points with friction do the same, stick or slip. Collective.
+    bool
+    all_do_the_same(const FrictionFace &face, const FrictionState &state)
+    {
+      bool any_sticks = false, any_slips = false;
+      for (unsigned int p = 0; p < state.n_points(); ++p)
+        if (state.bound[p] > 0.)
+          (state.sticks[p] ? any_sticks : any_slips) = true;
+      any_sticks = face.any(any_sticks);
+      any_slips  = face.any(any_slips);
+      return !(any_sticks && any_slips);
+    }
+
+
+
     /// The functional of friction j(v) = sum_c rho_c |v_c| along a line:
     /// j(s + step w) - j(s) and its derivative to the right. Collective.
     struct FrictionAlongLine
@@ -374,6 +389,8 @@ namespace Viscoplastic
     /// sticking points.
     FaceTruncation truncation;
     bool           same_sets = false;
+    /// The sets of the start.
+    const std::vector<bool> first_sets;
     /// Bound on the error and size of the solution in the energy norm.
     double error = 0., size = 0.;
     double best_error = std::numeric_limits<double>::max();
@@ -404,6 +421,7 @@ namespace Viscoplastic
     , residual(face.n_dofs())
     , force(face.n_dofs())
     , w(face.n_dofs())
+    , first_sets(state.sticks)
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
@@ -531,7 +549,14 @@ namespace Viscoplastic
     fit_multipliers(face, residual, state, force);
     FaceTruncation last = std::move(truncation);
     truncation          = make_truncation(face, state, inverse_diagonal);
-    same_sets           = truncation.blocks_as(last, face);
+    // A face that sticks or slips altogether, and whose slip does not turn,
+    // makes a linear problem: unless the first sweep has found otherwise, it
+    // takes no more than a plain solve.
+    same_sets = report.iterations == 0 ?
+                  !face.any(state.sticks != first_sets) &&
+                    all_do_the_same(face, state) &&
+                    !truncation.has_springs(face) :
+                  truncation.blocks_as(last, face);
     bulk.set_truncation(truncation);
     const Certificate certificate =
       certify(face, residual, diagonal, state, force, bulk.rounding_error());

@@ -3,6 +3,7 @@
 
 import itertools
 import math
+import re
 
 import matplotlib
 import numpy as np
@@ -29,8 +30,8 @@ MANY = 3000  # cells beyond which mesh lines would hide the colours
 VIEW = (22.0, -55.0)  # elevation and azimuth in degrees
 BOX = list(itertools.product((False, True), repeat=3))  # corners of a box
 
-CELL_DATA = ("stress_", "irreversible_stress_", "von_mises", "pressure", "estimator",
-             "error_energy", "recovery", "subdomain")
+CELL_DATA = ("stress_", "irreversible_", "strain_", "creep_", "principal_stress_",
+             "von_mises", "pressure", "estimator", "error_energy", "recovery", "subdomain")
 
 
 def available_fields(body):
@@ -46,6 +47,10 @@ def available_fields(body):
     return names
 
 
+# The end of the name of a component of a tensor, or of a principal value.
+COMPONENT = re.compile("[xyz][xyz]|[123]")
+
+
 def order(name):
     first = ("von_mises", "displacement", "velocity", "stress_", "irreversible_")
     return [not name.startswith(start) for start in first], name
@@ -57,7 +62,14 @@ def field(body, name):
     if name in body and body[name].ndim == 2:
         return np.linalg.norm(body[name], axis=1)
     if name in body:
-        group = [body[other] for other in body.data if other.rpartition("_")[0] == stem]
+        if not COMPONENT.fullmatch(axis):
+            return body[name]
+        group = [
+            body[other]
+            for other in body.data
+            if other.rpartition("_")[0] == stem
+            and COMPONENT.fullmatch(other.rpartition("_")[2])
+        ]
         return without_rounding(body[name], group)
     if name == "pressure" and "stress_zz" in body:
         return -sum(body[f"stress_{c}"] for c in ("xx", "yy", "zz")) / 3.0

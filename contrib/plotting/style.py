@@ -34,6 +34,8 @@ STATE_NAMES = {SLIPPING: "slip", STICKING: "stick", NO_FRICTION: "no friction"}
 
 SCALARS = {
     "von_mises": r"von Mises stress $\sigma_\mathrm{vM}$",
+    "creep_strain": r"equivalent creep strain $\varepsilon_\mathrm{c}$",
+    "creep_rate": r"equivalent creep rate $\dot\varepsilon_\mathrm{c}$",
     "pressure": r"pressure $-\mathrm{tr}\,\sigma/3$",
     "estimator": r"error estimator $\eta_K$",
     "error_energy": r"true error $\Vert u-u_h\Vert_{a,K}$",
@@ -47,6 +49,9 @@ VECTORS = {
 TENSORS = {
     "stress": ("stress", r"\sigma"),
     "irreversible_stress": ("irreversible stress", "z"),
+    "strain": ("strain", r"\varepsilon"),
+    "irreversible_strain": ("irreversible strain", r"\varepsilon^\mathrm{i}"),
+    "principal_stress": ("principal stress", r"\sigma"),
 }
 
 

@@ -36,7 +36,7 @@ from plotting import (
 from matplotlib.quiver import Quiver, QuiverKey
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d
-from plotting.body import MANY, VIEW, numbers_at, tiles
+from plotting.body import MANY, VIEW, field, numbers_at, tiles
 from plotting.expression import evaluate
 from plotting.faces import lines, planes, state_runs
 from plotting.results import (
@@ -282,6 +282,22 @@ class Figures(TestCase):
 
 
 class Numbers(TestCase):
+    def test_rounding_is_that_of_components(self):
+        """A component of rounding in its tensor is zero; fields whose names begin
+        alike have nothing to do with each other."""
+
+        class Body(dict):
+            data = property(lambda self: self)
+
+        body = Body(
+            stress_xx=np.ones(2),
+            stress_xy=np.full(2, 1e-9),
+            creep_strain=np.ones(2),
+            creep_rate=np.full(2, 1e-11),
+        )
+        self.assertEqual(field(body, "stress_xy").tolist(), [0.0, 0.0])
+        self.assertEqual(field(body, "creep_rate").tolist(), [1e-11, 1e-11])
+
     def test_edges_once(self):
         """Cells have points of their own; those of an edge count as one."""
         mesh = block(2.0, 1.0, cells=(3, 2)).body(0)

@@ -335,7 +335,9 @@ namespace Viscoplastic
       if (is_entry(child.second))
         top.push_back(child);
     print_section(out, top, "", true);
-    std::set<std::string> explained; // one of each kind of numbered sections
+    // One of each kind of numbered sections; of a scene, whose values may
+    // differ in each, all of them.
+    std::set<std::string> explained;
     for (const auto &[name, section] : tree)
       {
         if (is_entry(section))
@@ -356,7 +358,7 @@ namespace Viscoplastic
         print_section(out,
                       section,
                       "  ",
-                      explained.insert(kind_of(name)).second);
+                      !files.empty() || explained.insert(kind_of(name)).second);
         out << "end\n";
       }
     return out.str();

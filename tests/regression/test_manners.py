@@ -128,6 +128,21 @@ class Description(Manners):
         for comment, name in blocks:
             self.assertIn("Default:", comment, name)
 
+    def test_of_a_scene_is_that_scene(self):
+        """With the values of all numbered sections and of their laws."""
+        scene = str(scene_file("layers"))
+        records = []
+        text = self.call("--describe", scene, "--set", "Time/Phases=1: 1").stdout
+        (self.work / "described.prm").write_text(text)
+        self.assertRegex(text, r"# Unit: stress\.\n.*\n +set Young's modulus")
+        for name, *options in (
+            (scene, "--set", "Time/Phases=1: 1"),
+            ("described.prm",),
+        ):
+            self.call(name, *options, "--set", "Output/Directory=results")
+            records.append((self.work / "results/parameters.prm").read_text())
+        self.assertEqual(*records)
+
     def test_the_manual_is_up_to_date(self):
         written = SOURCE / "doc" / "parameters.md"
         self.assertEqual(

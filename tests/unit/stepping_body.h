@@ -20,7 +20,17 @@ namespace Viscoplastic::Testing
   {
     explicit SteppingBody(const std::string &more,
                           const std::string &friction_bound = "0.03")
-      : Body<dim>(scene_text(more, friction_bound))
+      : SteppingBody(WholeScene{scene_text(more, friction_bound)})
+    {}
+
+    struct WholeScene
+    {
+      std::string text;
+    };
+
+    /// Another scene on the same mesh.
+    explicit SteppingBody(const WholeScene &whole)
+      : Body<dim>(whole.text)
     {
       this->refine_where(
         [](const Point<dim> &x) { return x[0] < 0.6 && x[dim - 1] < 0.6; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/resources.h>
-#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/base/source_directory.h>
 
 #include <filesystem>
 

@@ -608,7 +608,7 @@ class Damaged(RestartCase):
     def test_other_format(self):
         def damage(step):
             file = step / "manifest.txt"
-            file.write_text(file.read_text().replace("checkpoint 3", "checkpoint 2"))
+            file.write_text(file.read_text().replace("checkpoint 4", "checkpoint 3"))
 
         self.falls_back(damage)
 
@@ -910,7 +910,7 @@ class Begin(RestartCase):
 class Foreign(RestartCase):
     """Among checkpoints there may be what the program has not written."""
 
-    MANIFEST = "viscoplastic_contact checkpoint 3\n"
+    MANIFEST = "viscoplastic_contact checkpoint 4\n"
     LIST = "viscoplastic_contact list of files 1\n"
 
     def add(self, job, files):

@@ -102,7 +102,7 @@ namespace
     refusal("set Poisson's ratio = -1", "'Material 2/Poisson's ratio' is -1;");
     refusal("set Poisson's ratio = z",
             "The expression 'z' of 'Material 2/Poisson's ratio' cannot be "
-            "parsed: Unexpected token \"z\" found at position 0.");
+            "parsed: there is no 'z'; its variables are x, y and t, and");
     const auto material = make_material<2>("set Young's modulus = 1 - x\n"
                                            "set Poisson's ratio = 1/y");
     expect_refusal([&] { material.stiffness(Point<2>(1., 4.)); },

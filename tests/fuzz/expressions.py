@@ -9,6 +9,7 @@ from scenes import SCENES, as_prm
 PLACES = (
     ("elastic", "Boundary 0/Traction", "{}; 0", "xyt"),
     ("elastic", "Boundary 0/Traction", "0; {}", "xyt"),
+    ("elastic", "Boundary 0/Pressure", "{}", "xyt"),
     ("elastic", "Boundary 2/Friction bound", "{}", "xyt"),
     ("elastic", "Material/Young's modulus", "{}", "xy"),
     ("elastic", "Material/Poisson's ratio", "{}", "xy"),

@@ -418,7 +418,10 @@ class Scene:
             ]
             self.set(entry("Displacement"), "; ".join(parts))
         elif role == "traction":
-            self.set(entry("Traction"), self.vector(self.traction))
+            if self.chance(0.3):
+                self.set(entry("Pressure"), self.datum(self.traction()))
+            else:
+                self.set(entry("Traction"), self.vector(self.traction))
         elif role in ("contact", "glued"):
             laws = ("tresca",) * 3 + ("coulomb",) * 2 + ("none", "glued")
             self.contact(entry, "glued" if role == "glued" else self.random.choice(laws))

@@ -312,6 +312,20 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<double>
+  Expression<dim>::rows_of_tables() const
+  {
+    std::vector<double> result;
+    for (const auto &column : columns_in(text))
+      result.insert(result.end(),
+                    column->nodes().begin(),
+                    column->nodes().end());
+    return result;
+  }
+
+
+
+  template <int dim>
   bool
   Expression<dim>::may_have_kinks() const
   {

@@ -543,11 +543,16 @@ namespace Viscoplastic
         if (old == old_values.end())
           changes.forbidden.push_back("'" + path + "' is new");
         else if (old->second != value)
-          (is_fixed(path) || is_switched(path, old->second, value) ?
-             changes.forbidden :
-             changes.allowed)
-            .push_back("'" + path + "' is " + quoted(value) + " (was " +
-                       quoted(old->second) + ")");
+          {
+            (is_fixed(path) || is_switched(path, old->second, value) ?
+               changes.forbidden :
+               changes.allowed)
+              .push_back("'" + path + "' is " + quoted(value) + " (was " +
+                         quoted(old->second) + ")");
+            for (const std::string section :
+                 {"Boundary", "Material", "Loads", "Exact solution"})
+              changes.of_data |= path.compare(0, section.size(), section) == 0;
+          }
       }
     for (const auto &[path, value] : old_values)
       if (new_values.count(path) == 0)

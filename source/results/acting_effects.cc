@@ -76,13 +76,23 @@ namespace Viscoplastic
     for (const auto &[id, condition] : scene.boundary)
       {
         const std::string section = "Boundary " + std::to_string(id);
-        if ((condition.traction || condition.normal_stress) &&
-            loads.count(id) == 0)
-          result.push_back("the load on " + section + " has never acted: '" +
-                           section + '/' +
-                           (condition.traction ? "Traction" : "Normal stress") +
-                           "' has been zero everywhere and at all times, and "
-                           "'Role' = free gives the same for less.");
+        std::string       entries;
+        for (const auto &[name, is_given] :
+             {std::make_pair("Traction", condition.traction.has_value()),
+              std::make_pair("Pressure", condition.pressure.has_value()),
+              std::make_pair("Normal stress",
+                             condition.normal_stress.has_value())})
+          if (is_given)
+            entries +=
+              (entries.empty() ? "'" : " and '") + section + '/' + name + "'";
+        if (!entries.empty() && loads.count(id) == 0)
+          result.push_back("the load on " + section +
+                           " has never acted: what " + entries +
+                           " gives has been zero everywhere and at all "
+                           "times, and " +
+                           (condition.role == BoundaryRole::displacement ?
+                              "can go." :
+                              "'Role' = free gives the same for less."));
         if (scene.has_friction() && !foundation_has_moved &&
             condition.has_friction() && condition.foundation_motion)
           result.push_back("the motion of the foundation has never acted: no "

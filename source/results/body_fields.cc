@@ -125,7 +125,7 @@ namespace Viscoplastic
     if (needs_creep)
       {
         // What the initial data have of it has not crept.
-        if (!state.z.empty() &&
+        if (scene.has_irreversible_stress() && // collective, also without cells
             (scene.initial_stress || scene.initial_displacement))
           {
             const Strains initial =

@@ -290,8 +290,7 @@ namespace Viscoplastic
     if (d.face)
       row.add("contact_iterations", step.report.iterations);
     row.add("linear_iterations", step.report.linear_iterations);
-    if (scene.parameters.solver.reuse_unchanged)
-      row.add("unchanged", step.is_unchanged);
+    row.add("unchanged", step.is_unchanged);
     if (d.face)
       {
         row.add("duality_gap", step.report.duality_gap);

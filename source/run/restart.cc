@@ -98,6 +98,7 @@ namespace Viscoplastic
     // What record() and estimate() make anew in each step is not here.
     State<dim> &state = accepted.state;
     archive &state.n &state.t &state.k &accepted.is_solution;
+    archive                            &accepted.space_estimate.residual;
     ContactReport                      &report = accepted.report;
     archive &report.duality_gap &report.relative_error &report.error &report
       .tolerance;
@@ -299,7 +300,8 @@ namespace Viscoplastic
                   archive.is_at_end(),
                 ExcMessage(name + "' does not fit the scene."));
     time_stepper->method().restore(accepted, preconditioner);
-    accepted.is_solution = is_solution;
+    // Of these data: with others nothing may stay as it is.
+    accepted.is_solution = is_solution && !changes.of_data;
     accepted.forces      = evaluate_forces(d.stress_space,
                                       d.matrix,
                                       d.loads.assemble(state.t),

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/scene/kinks_in_time.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace Viscoplastic
 {
@@ -55,12 +55,7 @@ namespace Viscoplastic
               times.push_back(phase.start + i * (phase.end - phase.start) / n);
             times.push_back(phase.end);
           }
-        // Windows on both sides of each row of a table.
-        for (const auto &table : tables_in_use())
-          for (const double t : table->nodes())
-            if (t > 0. && t < end_time && datum.may_have_kinks())
-              times.push_back(t);
-        std::sort(times.begin(), times.end());
+        add_rows_of_tables(times);
         std::vector<double> before = values(0.);
         paths.resize(before.size());
         for (std::size_t i = 1; i < times.size(); ++i)
@@ -80,6 +75,23 @@ namespace Viscoplastic
       std::vector<Kink> kinks;
 
     private:
+      /// Windows on both sides of each row of the tables that the datum calls,
+      /// unless it is inside of one already: next to one of @p times.
+      void
+      add_rows_of_tables(std::vector<double> &times) const
+      {
+        std::set<double> all(times.begin(), times.end());
+        for (const double t : datum.rows_of_tables())
+          if (t > 0. && t < end_time)
+            {
+              const auto   next  = all.upper_bound(t);
+              const double after = *next, before = *std::prev(next);
+              if (std::min(t - before, after - t) > 0.01 * (after - before))
+                all.insert(t);
+            }
+        times.assign(all.begin(), all.end());
+      }
+
       std::vector<double>
       values(const double t) const
       {

@@ -335,10 +335,11 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  Scene<dim>::has_constant_loads() const
+  Scene<dim>::has_constant_loads_and_bounds() const
   {
-    for (const auto &pair : boundary)
-      if (pair.second.load_depends_on_time())
+    for (const auto &[id, condition] : boundary)
+      if (condition.load_depends_on_time() ||
+          (condition.has_friction() && condition.bound_depends_on_time()))
         return false;
     return !body_force || !body_force->depends_on_time();
   }

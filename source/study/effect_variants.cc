@@ -74,6 +74,11 @@ namespace Viscoplastic
 
 
 
+    /// muParser refuses expressions of 20000 characters.
+    constexpr std::size_t longest_text = 15000;
+
+
+
     /// Collects the variants of one scene.
     class Variants
     {
@@ -139,7 +144,7 @@ namespace Viscoplastic
                           const std::string                &entry,
                           const std::optional<std::string> &mean)
       {
-        if (mean)
+        if (mean && mean->size() < longest_text)
           add(what + " over space", "its mean", {entry + '=' + *mean});
       }
 
@@ -149,7 +154,7 @@ namespace Viscoplastic
                          const std::string &components)
       {
         const auto mean = means.over_time(components);
-        if (!mean)
+        if (!mean || mean->size() >= longest_text)
           return;
         std::vector<std::string> overrides{entry + '=' + *mean};
         // What is there from the beginning needs stresses to hold it.
@@ -227,8 +232,13 @@ namespace Viscoplastic
             {
               const std::string what =
                 in_a_sentence(path.substr(of_law.size())) + of;
-              add_mean_over_space(what, path, means.over_body(text, id));
-              add_mean_over_time(what, path, text);
+              try
+                {
+                  add_mean_over_space(what, path, means.over_body(text, id));
+                  add_mean_over_time(what, path, text);
+                }
+              catch (const ExpressionError &)
+                {} // laws of shared libraries may have choices, too
             }
       }
 

@@ -135,11 +135,11 @@ namespace Viscoplastic
                         const double     expected_seconds)
   {
     Attempt    attempt;
-    const auto find_or_make = [&](const RunKey &key) {
+    const auto find_or_make = [&](const RunKey &key, const double expected) {
       auto record = runs.find(key);
       if (record)
         return record;
-      attempt.is_too_long = !is_affordable(expected_seconds);
+      attempt.is_too_long = !is_affordable(expected);
       if (attempt.is_too_long)
         return record;
       StudyRuns::Outcome outcome = runs.make(key);
@@ -148,7 +148,7 @@ namespace Viscoplastic
       return outcome.record;
     };
     RunKey     key    = key_of(runs, level);
-    const auto record = find_or_make(key);
+    const auto record = find_or_make(key, expected_seconds);
     if (!record)
       return attempt;
     const double seconds = record->number("seconds_total"),
@@ -168,7 +168,7 @@ namespace Viscoplastic
         return attempt;
       }
     key.is_timing = true;
-    if (const auto again = find_or_make(key))
+    if (const auto again = find_or_make(key, seconds))
       {
         const double seconds_again = again->number("seconds_total"),
                      memory_again  = own_memory(*again);
@@ -205,7 +205,7 @@ namespace Viscoplastic
       failure = attempt.failure;
     if (attempt.computed)
       of_scene.emplace(level, std::move(*attempt.computed));
-    return of_scene.count(level) > 0;
+    return interruption.empty() && of_scene.count(level) > 0;
   }
 
 
@@ -242,17 +242,21 @@ namespace Viscoplastic
     result.level   = level;
     result.cells   = with.record.number("cells");
     result.with    = with.cost;
-    Attempt attempt;
+    Attempt                    attempt;
+    std::unique_ptr<StudyRuns> runs;
     try
       {
-        attempt = compute(*runs_of(variant, level),
-                          level,
-                          with.record.number("seconds_total"));
+        // What is wrong with its entries is so on all ranks. What is thrown
+        // later, one rank alone may have met.
+        runs = runs_of(variant, level);
+        runs->find(key_of(*runs, level));
       }
     catch (const std::exception &exception)
       {
         attempt.failure = reason(exception);
       }
+    if (attempt.failure.empty())
+      attempt = compute(*runs, level, with.record.number("seconds_total"));
     interruption = attempt.interruption;
     if (!interruption.empty() || attempt.is_too_long)
       return {};
@@ -326,6 +330,28 @@ namespace Viscoplastic
 
 
   void
+  EffectsStudy::judge_on(const int level, std::vector<EffectVariant> &open)
+  {
+    std::vector<EffectVariant> undecided;
+    for (const EffectVariant &variant : open)
+      {
+        const auto result = compare(variant, level);
+        if (!interruption.empty())
+          return;
+        if (result)
+          keep(*result);
+        // What cannot be computed here may be so with smaller steps.
+        if (!result || result->is_open() ||
+            (!result->failure.empty() && level < 0))
+          undecided.push_back(variant);
+        write(false);
+      }
+    open = std::move(undecided);
+  }
+
+
+
+  void
   EffectsStudy::judge_all(std::vector<EffectVariant> open)
   {
     const std::vector<int> all_levels = levels();
@@ -336,9 +362,12 @@ namespace Viscoplastic
           {
             if (!interruption.empty())
               return;
-            if (has_coarser)
-              break;
-            continue; // too coarse
+            if (!has_coarser)
+              continue; // too coarse
+            // With the error bar in the place of a coarser run.
+            if (results.empty())
+              judge_on(level - 1, open);
+            break;
           }
         if (open.empty())
           {
@@ -350,22 +379,9 @@ namespace Viscoplastic
                 << " simplifications" << std::endl;
           }
         // The first one is what the next is compared with.
-        if (!has_coarser && level != all_levels.back())
-          continue;
-        std::vector<EffectVariant> undecided;
-        for (const EffectVariant &variant : open)
-          {
-            const auto result = compare(variant, level);
-            if (!interruption.empty())
-              return;
-            if (result)
-              keep(*result);
-            if (!result || result->is_open())
-              undecided.push_back(variant);
-            write(false);
-          }
-        open = std::move(undecided);
-        if (open.empty())
+        if (has_coarser || level == all_levels.back())
+          judge_on(level, open);
+        if (open.empty() || !interruption.empty())
           return;
       }
     AssertThrow(!of_scene.empty(),

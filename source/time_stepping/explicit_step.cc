@@ -134,7 +134,11 @@ namespace Viscoplastic
     // A body does not move unless its data or its z change.
     if (nothing_has_changed(problem, state.z))
       {
+        // The predictor of Heun's method may have been another one.
+        const ContactReport earlier = solution.report;
         solution.stay(problem, d.space);
+        solution.report.add_earlier(earlier);
+        solution.is_unchanged = earlier.linear_iterations == 0;
         return;
       }
     solution.is_unchanged = false;

@@ -52,7 +52,8 @@ namespace Viscoplastic
     , space_estimator(SpaceEstimator<dim>::is_needed(scene) ?
                         std::make_unique<SpaceEstimator<dim>>(discretization) :
                         nullptr)
-    , estimate_is_of_state_alone(scene.has_constant_loads())
+    , estimate_is_of_state_alone(scene.has_constant_loads_and_bounds() &&
+                                 !scene.quantity)
     , step_method(make_step_method(discretization, timer))
     , quantity_estimator(
         scene.quantity ?
@@ -178,7 +179,6 @@ namespace Viscoplastic
         problem.foundation_step =
           d.face->foundation_step(time_step.t_old, time_step.t);
       }
-    problem.data_are_unchanged = data_are_unchanged(d, problem);
     return problem;
   }
 
@@ -192,6 +192,7 @@ namespace Viscoplastic
   {
     StepProblem<dim>  problem  = make_problem(accepted, old_rate, time_step);
     StepSolution<dim> solution = as_part_of_step(time_step.n, time_step.t, [&] {
+      problem.data_are_unchanged = data_are_unchanged(discretization, problem);
       return step_method->advance(problem);
     });
 

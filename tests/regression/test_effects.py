@@ -21,7 +21,7 @@ from plotting.results import read_statistics
 SLAB = {
     "Geometry__Arguments": "16, 8 : 0, 0 : 2, 1 : true",
     "Time__Phases": "1: 8, 2: 8",
-    "Study__Budget": 100,
+    "Study__Budget": 1e5,
 }
 
 
@@ -231,7 +231,7 @@ class Effects(TestCase):
             VERIFICATION / "slab.prm",
             Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
             Error_control__Tolerance=0.05,
-            Study__Budget=100,
+            Study__Budget=1e5,
         ) as scene:
             process = scene.run("effects")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -284,7 +284,7 @@ class Effects(TestCase):
         with tempfile.TemporaryDirectory() as work:
             beam = Path(work) / "beam.prm"
             beam.write_text(as_prm(entries))
-            with Scene(beam, Study__Budget=100) as scene:
+            with Scene(beam, Study__Budget=1e5) as scene:
                 process = scene.run("effects")
                 self.assertEqual(process.returncode, 0, process.stderr)
                 verdicts = scene.verdicts()

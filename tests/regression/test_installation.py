@@ -87,7 +87,9 @@ class Installation(TestCase):
         )
         self.assertIn("subsection garofalo", text)
         # nothing of the source tree
-        commands = self.call("cmake", "--build", project / "build", "--", "-n")
+        self.call("cmake", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", project / "build")
+        commands = (project / "build" / "compile_commands.json").read_text()
+        self.assertIn(str(self.prefix / "include"), commands)
         self.assertNotIn(str(SOURCE / "include"), commands)
 
     def test_package_has_the_version(self):

@@ -144,20 +144,19 @@ class Runs(TestCase):
             str(caught.exception), r"^--set 'Material/Law=maxwel': .*'maxwell'\?$"
         )
         with self.assertRaisesRegex(RunError, "no subsection 'Tyme'; did"):
-            self.program.check({"Tyme": {"Phases": 1}}, self.work / "wrong")
+            self.program.check({"Tyme": {"Phases": 1}})
 
     def test_check_computes_nothing(self):
-        text = self.program.check(page_scene(), self.work / "checked", SHORT)
+        before = sorted(Path.cwd().iterdir())
+        text = self.program.check(page_scene(), SHORT)
         self.assertIn("32 cells", text)
-        self.assertEqual(
-            [path.name for path in (self.work / "checked").iterdir()], ["scene.prm"]
-        )
+        self.assertEqual(sorted(Path.cwd().iterdir()), before)
 
     def test_study(self):
         overrides = {**SHORT, "Study/Levels": 3, "Study/Ladders": "space"}
         study = self.program.study(page_scene(), self.work / "study", overrides)
         self.assertGreaterEqual(len(study["h"]), 2)
-        self.assertIn("fits", study.about)
+        self.assertTrue(study.about["fits"])
 
     def test_pandas_where_it_is_installed(self):
         made = mock.Mock()

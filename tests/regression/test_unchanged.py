@@ -9,6 +9,7 @@ import unittest
 import numpy as np
 
 from harness import TestCase, main, run
+from test_restart import EVERY_STEP, Job
 
 FULL = {"Solver/Reuse unchanged": "false"}
 # Loads grow for two steps and are held for three; then they are another.
@@ -21,6 +22,12 @@ PUSHED_PAD = {
     **STEPS,
     "Geometry/Arguments": "3, 3, 3 : 0, 0, 0 : 1, 1, 1 : true",
     "Boundary 0/Traction": f"0.3*({HELD}); 0.2*({HELD}); 0",
+}
+CONSTANT = {
+    **SMALL,
+    "Material/Law": "elastic",
+    "Boundary 0/Traction": "0.3; 0",
+    "Initial state/Equilibrate": "true",
 }
 # Of the clock and the iterations; and a point at the edge of slip, as those are
 # that slipped in the step before, may stick or slip as rounding will.
@@ -45,7 +52,7 @@ class Steps(TestCase):
         """All numbers of both runs, beside the largest of their kind."""
         result = run(scene, overrides, ranks)
         full = run(scene, {**overrides, **FULL}, ranks)
-        self.assertNotIn("unchanged", full.statistics)
+        self.assertFalse(full["unchanged"].any())
         if held is None:
             held = result["unchanged"] == 1
         np.testing.assert_array_equal(result["unchanged"], held)
@@ -143,6 +150,9 @@ class Steps(TestCase):
         self.assertFalse(drops["unchanged"].any())
         self.assertGreater(drops["slip_area"][5], 0)
         self.compare("slab", {**elastic, "Boundary 2/Friction bound": "0.05 + t"})
+        # The estimate knows the bound.
+        varies = {"Boundary 2/Friction bound": "(0.05 + t)*if(x < 0.5, 1, 3)"}
+        self.compare("slab", {**CONSTANT, **varies}, held=None)
 
     def test_a_foundation_that_moves(self):
         overrides = {
@@ -153,6 +163,33 @@ class Steps(TestCase):
             "Boundary 2/Foundation motion": f"{HELD}; 0",
         }
         self.compare("conveyor_2d", overrides)
+
+
+class Restarts(TestCase):
+    def check_unchanged(self, result, expected):
+        for column, values in expected.statistics.items():
+            if not column.startswith("wall_"):
+                np.testing.assert_array_equal(result[column], values, column)
+
+    def test_go_on_as_runs_in_one_piece(self):
+        """With the estimate that unchanged steps take over."""
+        with Job("slab", {**CONSTANT, **EVERY_STEP}) as job:
+            whole = job.run()
+            job.forget_after(3)
+            again = job.run("--restart")
+            self.assertTrue(again["unchanged"][3:].all())
+            self.assertGreater(again["estimate_space"][-1], 0)
+            self.check_unchanged(again, whole)
+
+    def test_other_loads_move_the_body(self):
+        with Job("slab", {**CONSTANT, **EVERY_STEP}) as job:
+            job.run()
+            job.forget_after(3)
+            more = {"Boundary 0__Traction": "0.4; 0"}
+            again = job.run("--restart", overrides=more)
+            self.assertFalse(again["unchanged"][4])
+            before, after = again["max_displacement"][3:5]
+            self.assertGreater(after, 1.2 * before)
 
 
 if __name__ == "__main__":

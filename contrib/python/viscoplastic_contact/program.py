@@ -4,6 +4,7 @@
 import os
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 from .results import Results
@@ -108,10 +109,11 @@ class Program:
         """The line of --version."""
         return self.call("--version").strip()
 
-    def check(self, scene, directory=".", overrides=None):
+    def check(self, scene, overrides=None):
         """What --check prints: effects, size, solver and memory."""
-        files = parameter_files(scene, directory)
-        return self.call("--check", *files, *set_options(overrides))
+        with tempfile.TemporaryDirectory() as directory:
+            files = parameter_files(scene, directory)
+            return self.call("--check", *files, *set_options(overrides))
 
     def run(self, scene, directory, overrides=None, restart=False, log=None):
         """The Results of a run, which go to this directory. With restart it goes

@@ -111,6 +111,10 @@ namespace Viscoplastic
     bool
     may_have_kinks() const;
 
+    /// The arguments at which tables that it calls have a row.
+    std::vector<double>
+    rows_of_tables() const;
+
     /// The parameter that gives it.
     const std::string &
     name_of_entry() const

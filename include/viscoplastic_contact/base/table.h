@@ -61,6 +61,12 @@ namespace Viscoplastic
       std::string
       explain_gap(const double argument) const;
 
+      const std::vector<double> &
+      nodes() const
+      {
+        return table.nodes();
+      }
+
       bool
       may_jump() const
       {

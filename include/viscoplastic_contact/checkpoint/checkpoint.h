@@ -108,6 +108,8 @@ namespace Viscoplastic
     /// "'Time/Phases' is 2: 20 (was 1: 10)", those that a run may go on with
     /// and those with which it cannot.
     std::vector<std::string> allowed, forbidden;
+    /// Whether loads, conditions or laws are among those that are allowed.
+    bool of_data = false;
   };
 
   ParameterChanges

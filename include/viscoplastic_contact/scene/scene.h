@@ -116,9 +116,9 @@ namespace Viscoplastic
     bool
     has_moving_foundation() const;
 
-    /// Whether no load depends on time.
+    /// Whether neither loads nor friction bounds depend on time.
     bool
-    has_constant_loads() const;
+    has_constant_loads_and_bounds() const;
 
     bool
     is_adaptive() const

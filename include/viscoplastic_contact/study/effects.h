@@ -99,6 +99,10 @@ namespace Viscoplastic
     add_errors(std::vector<QuantityChange> &changes, const int level) const;
 
     /// Judge all variants, on as fine levels as they need.
+    /// Judge these variants on a level; those that are not settled are left.
+    void
+    judge_on(const int level, std::vector<EffectVariant> &open);
+
     void
     judge_all(std::vector<EffectVariant> open);
 

@@ -251,11 +251,11 @@ class Effects(TestCase):
             self.assertIn(sentence, process.stderr)
 
     def test_steps_by_their_error(self):
-        """Step control: coarser levels have larger tolerances; three ranks."""
+        """Step control: coarser levels have larger tolerances; two ranks."""
         with Scene(
-            VERIFICATION / "slab.prm", **SLAB, Step_control__Tolerance=0.01
+            VERIFICATION / "slab.prm", **SLAB, Step_control__Tolerance=0.05
         ) as scene:
-            process = scene.run("effects", ranks=3)
+            process = scene.run("effects", ranks=2)
             self.assertEqual(process.returncode, 0, process.stderr)
             about = scene.about()
             verdicts = scene.verdicts()
@@ -265,7 +265,7 @@ class Effects(TestCase):
                 len(self.table(scene, {"level": level})["t"]) for level in (-2, -1)
             ]
             self.assertLess(steps[0], steps[1])
-            self.assertEqual(about["ranks"], 3)
+            self.assertEqual(about["ranks"], 2)
 
     def test_in_space_on_adaptive_meshes(self):
         """Without friction, with moduli and loads that are no constants."""

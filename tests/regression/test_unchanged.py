@@ -152,7 +152,10 @@ class Steps(TestCase):
         self.compare("slab", {**elastic, "Boundary 2/Friction bound": "0.05 + t"})
         # The estimate knows the bound.
         varies = {"Boundary 2/Friction bound": "(0.05 + t)*if(x < 0.5, 1, 3)"}
-        self.compare("slab", {**CONSTANT, **varies}, held=None)
+        held = run("slab", {**CONSTANT, **varies})
+        full = run("slab", {**CONSTANT, **varies, **FULL})
+        self.assertTrue(held["unchanged"][1:].all())
+        self.assertClose(held["estimate_space"], full["estimate_space"], 1e-9)
 
     def test_a_foundation_that_moves(self):
         overrides = {

@@ -7,6 +7,8 @@
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -59,6 +61,23 @@ namespace Viscoplastic
         text.erase(0, 3);
       std::replace(text.begin(), text.end(), '\t', ' ');
       return text;
+    }
+
+
+
+    /// What is written as JSON must be so.
+    bool
+    is_utf8(const std::string &text)
+    {
+      try
+        {
+          nlohmann::json(text).dump();
+          return true;
+        }
+      catch (const nlohmann::json::type_error &)
+        {
+          return false;
+        }
     }
 
 
@@ -229,6 +248,10 @@ namespace Viscoplastic
             require(line.value.find('{') == std::string::npos,
                     line.origin() + ": '" + excerpt(path) + "' is '" +
                       excerpt(line.value) + "'; a value cannot contain `{'.");
+            require(is_utf8(line.value),
+                    line.origin() + ": '" + excerpt(path) +
+                      "' has bytes that are no text in UTF-8; save the file in "
+                      "that encoding.");
           }
         lines.push_back(std::move(line));
       }

@@ -291,6 +291,9 @@ namespace
     refused("subsection Time\nend Time",
             "line 2: `end' stands alone on its line, but 'Time' follows.");
     refused("subsection", "line 1: `subsection' needs a name after it.");
+    refused("subsection Geometry\nset Material ids = \xab\nend",
+            "line 2: 'Geometry/Material ids' has bytes that are no text in "
+            "UTF-8");
     refused("include #", "line 1: `include' needs a file after it.");
     // Materials with numbers and one for all.
     refused(subsection("Material", "set Law = maxwell") +

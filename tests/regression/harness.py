@@ -15,6 +15,7 @@ import atexit
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -199,8 +200,8 @@ class Run:
 
 def run_program(arguments, ranks, work):
     """The finished program as a subprocess.CompletedProcess; that of a server
-    where there is one."""
-    if SERVER:
+    where there is one, which takes no arguments with blanks."""
+    if SERVER and not any(re.search(r"\s", str(word)) for word in arguments):
         code = server(ranks).run(work, arguments)
         words = [
             (work / name).read_text(errors="replace") for name in ("stdout", "stderr")

@@ -24,6 +24,7 @@ STATISTICS_2D = [
     "tension_area",
     "contact_iterations",
     "linear_iterations",
+    "unchanged",
     "duality_gap",
     "algebraic_error",
     "stick_area",

@@ -93,11 +93,26 @@ class NeverActed(TestCase):
                 "Loads/Body force": "0; t - t",
             },
             (
-                "load on Boundary 0 has never acted: 'Boundary 0/Traction'",
+                "load on Boundary 0 has never acted: what 'Boundary 0/Traction' gives",
                 "the body force has never acted: 'Loads/Body force'",
             ),
             ("load on Boundary 1",),
             ranks=2,
+        )
+
+    def test_loads_where_displacements_are_given(self):
+        """The support stays."""
+        self.check(
+            "slab",
+            {
+                **SMALL,
+                "Boundary 1/Role": "displacement",
+                "Boundary 1/Displacement": "free; 0",
+                "Boundary 1/Traction": "0*t; 0",
+                "Boundary 1/Pressure": "0*t",
+            },
+            ("what 'Boundary 1/Traction' and 'Boundary 1/Pressure' gives",),
+            ("'Role' = free",),
         )
 
     def test_friction_without_bound(self):

@@ -102,7 +102,8 @@ namespace
     Console console(MPI_COMM_WORLD,
                     command_line.quiet,
                     command_line.log,
-                    has_terminal);
+                    has_terminal,
+                    command_line.verbose);
     try
       {
         const std::string interruption = run(command_line, console);

@@ -29,9 +29,11 @@ namespace Viscoplastic
   Console::Console(const MPI_Comm     communicator,
                    const bool         quiet,
                    const std::string &log_name,
-                   const bool         has_terminal)
+                   const bool         has_terminal,
+                   const bool         verbose)
     : speaks(!quiet && Utilities::MPI::this_mpi_process(communicator) == 0)
     , is_terminal(speaks && has_terminal)
+    , verbose(verbose)
     , log_name(log_name)
     , buffer(*this)
     , everywhere(&buffer)

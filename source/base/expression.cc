@@ -474,6 +474,7 @@ namespace Viscoplastic
   parse_point<2>(const std::string &, const std::string &);
   template Point<3>
   parse_point<3>(const std::string &, const std::string &);
+  template class Expression<1>;
   template class Expression<2>;
   template class Expression<3>;
   template class VectorExpression<2>;

@@ -20,29 +20,15 @@ namespace Viscoplastic
 
 
 
-    /// The step in words, or, if @p width is not 0, in that many characters:
-    /// what matters least is left out first.
-    std::string
-    description(const StepProgress &step,
-                const unsigned int  n_steps,
-                const double        elapsed,
-                const double        left,
-                const std::size_t   width)
+    /// What there is to tell of a step beside its time, each part with the
+    /// order of its omission.
+    std::vector<std::pair<unsigned int, std::string>>
+    state_of(const StepProgress &step,
+             const std::string  &time_unit,
+             const bool          brief)
     {
-      const bool        brief = width > 0;
-      const std::string all =
-        step.expected_steps ?
-          "~" + number(std::floor(*step.expected_steps), 18) :
-          std::to_string(n_steps);
-      std::ostringstream count;
-      count << "Step " << std::setw(static_cast<int>(all.size())) << step.n
-            << '/' << all;
-
-      // In the order of appearance, with the order of omission.
       std::vector<std::pair<unsigned int, std::string>> parts{
-        {8, count.str()},
-        {6, "t = " + number(step.t, brief ? 4 : 5)},
-        {2, "k = " + number(step.k, brief ? 2 : 3)},
+        {2, "k = " + number(step.k, brief ? 2 : 3) + time_unit},
         {3, "cells " + number(step.n_cells, 18)}};
       const std::string error = brief ? "error " : "error estimate ";
       if (step.contact_iterations)
@@ -61,10 +47,44 @@ namespace Viscoplastic
         parts.emplace_back(5,
                            error + number(100. * *step.relative_error, 2) +
                              " %");
+      return parts;
+    }
+
+
+
+    /// The step in words, or, if @p width is not 0, in that many characters:
+    /// what matters least is left out first.
+    std::string
+    description(const StepProgress &step,
+                const unsigned int  n_steps,
+                const std::string  &time_unit,
+                const double        elapsed,
+                const double        left,
+                const std::size_t   width)
+    {
+      const bool        brief = width > 0;
+      const std::string all =
+        step.expected_steps ?
+          "~" + number(std::floor(*step.expected_steps), 18) :
+          std::to_string(n_steps);
+      const bool         is_known = !step.done || step.expected_steps;
+      std::ostringstream count;
+      count << "Step ";
+      if (is_known)
+        count << std::setw(static_cast<int>(all.size())) << step.n << '/'
+              << all;
+      else
+        count << step.n;
+
+      // In the order of appearance, with the order of omission.
+      std::vector<std::pair<unsigned int, std::string>> parts{
+        {8, count.str()},
+        {6, "t = " + number(step.t, brief ? 4 : 5) + time_unit}};
+      const auto state = state_of(step, time_unit, brief);
+      parts.insert(parts.end(), state.begin(), state.end());
       parts.emplace_back(1, "elapsed " + duration(elapsed));
-      parts.emplace_back(7,
-                         (step.steps_grow ? "left < " : "left ") +
-                           duration(left));
+      if (is_known)
+        parts.emplace_back(7, "left " + duration(left));
 
       std::string line;
       for (unsigned int omitted = 0; omitted < 8; ++omitted)
@@ -90,25 +110,84 @@ namespace Viscoplastic
     last_elapsed = elapsed;
     if (step.n == 0)
       return;
-    const bool   varies  = step.expected_steps.has_value();
-    const double all     = varies ? *step.expected_steps : n_steps;
+    const double all     = step.expected_steps.value_or(n_steps);
     const double left    = remaining.seconds(all - step.n, step.n_cells);
-    const bool   is_last = varies ? step.done >= 1. : step.n == n_steps;
+    const bool   is_last = step.done ? *step.done >= 1. : step.n == n_steps;
 
-    // A line for each of max_lines equal parts of the run.
-    const double part = std::floor(
-      varies ? max_lines * step.done : double(max_lines) * step.n / n_steps);
-    if (step.n == 1 || is_last || part > last_part)
-      (console.has_status() && !is_last ? console.log() : console.stream())
-        << description(step, n_steps, elapsed, left, 0) << std::endl;
-    last_part = part;
+    std::string text;
+    for (const auto &part : state_of(step, time_unit, /* brief = */ false))
+      text += part.second + "  ";
+    const double done =
+      is_last ? 1. : step.done.value_or(static_cast<double>(step.n) / n_steps);
+    // Asked in each step: it keeps count.
+    if (is_worth_a_line(step, text, done) || is_last || console.is_verbose())
+      {
+        std::ostream &out =
+          console.has_status() && !is_last ? console.log() : console.stream();
+        out << description(step, n_steps, time_unit, elapsed, left, 0);
+        if (n_left_out > 0)
+          out << "  (" << n_left_out << (n_left_out == 1 ? " step" : " steps")
+              << (n_left_out_alike == n_left_out ? " like the line above" : "")
+              << " left out)";
+        out << std::endl;
+        last_text        = text;
+        done_at_line     = done;
+        n_left_out       = 0;
+        n_left_out_alike = 0;
+      }
+    else
+      {
+        ++n_left_out;
+        n_left_out_alike += text == last_text;
+      }
     // Ten changes a second are enough.
     if (console.has_status() && !is_last && elapsed - last_shown >= 0.1)
       {
-        console.show_status(
-          description(step, n_steps, elapsed, left, console.width() - 1));
+        console.show_status(description(
+          step, n_steps, time_unit, elapsed, left, console.width() - 1));
         last_shown = elapsed;
       }
+  }
+
+
+
+  bool
+  Progress::is_worth_a_line(const StepProgress &step,
+                            const std::string  &text,
+                            const double        done)
+  {
+    constexpr double rounding         = 1e-9;
+    const auto       is_in_later_part = [done](const double than) {
+      return std::floor(max_lines * (done + rounding)) >
+             std::floor(max_lines * (than + rounding));
+    };
+    const double slipping = step.slipping.value_or(0.);
+    const int    slip     = slipping >= 1. ? 2 : slipping > 0. ? 1 : 0;
+    const bool   is_first = done_at_line < 0.;
+    const bool   is_event = !is_first &&
+                          (step.n_cells != last_cells || slip != last_slip) &&
+                          is_in_later_part(done_at_event);
+    last_cells = step.n_cells;
+    last_slip  = slip;
+    if (is_event)
+      done_at_event = done;
+
+    const bool repeats = text == last_text;
+    const bool is_due  = !repeats || n_left_out + 1 >= next_distance ||
+                        done >= done_at_line + 0.1 - rounding;
+    if (!is_first && !is_event && !(is_due && is_in_later_part(done_at_line)))
+      return false;
+    // 1, 2, 5, 10, 20, 50, ...
+    if (!repeats)
+      next_distance = 1;
+    else
+      {
+        unsigned int digit = next_distance;
+        while (digit >= 10)
+          digit /= 10;
+        next_distance = digit == 2 ? next_distance / 2 * 5 : 2 * next_distance;
+      }
+    return true;
   }
 
 

@@ -13,10 +13,28 @@ namespace Viscoplastic
                     const FrictionState &state,
                     const bool           from_kink)
   {
-    double n_points = 0., n_old = 0., n_new = 0.;
-    bool   turns_back = false;
+    // What may begin, cover all points, and end: slip, and contact.
+    const auto has_event_of = [&](double n_points, double n_old, double n_new) {
+      n_points          = face.sum(n_points);
+      n_old             = face.sum(n_old);
+      n_new             = face.sum(n_new);
+      const bool begins = n_old == 0. && n_new > 0.,
+                 covers =
+                   n_old < n_points && n_new == n_points && n_points > 0.,
+                 ends = n_old > 0. && n_new == 0.;
+      return begins || covers || (ends && !from_kink);
+    };
+    double n_points = 0., n_old = 0., n_new = 0., n_obstacles = 0.,
+           n_old_touch = 0., n_touch = 0.;
+    bool turns_back = false;
     for (unsigned int p = 0; p < state.n_points(); ++p)
-      if (state.bound[p] > 0. && std::isfinite(state.bound[p]))
+      if (face.points[p].is_obstacle)
+        {
+          ++n_obstacles;
+          n_old_touch += old_state.multiplier[p][0] > 0.;
+          n_touch += state.multiplier[p][0] > 0.;
+        }
+      else if (state.bound[p] > 0. && std::isfinite(state.bound[p]))
         {
           const bool slipped = !old_state.sticks[p], slips = !state.sticks[p];
           ++n_points;
@@ -27,13 +45,11 @@ namespace Viscoplastic
           turns_back |= slipped && slips && !from_kink &&
                         old_state.multiplier[p] * state.multiplier[p] < 0.;
         }
-    n_points          = face.sum(n_points);
-    n_old             = face.sum(n_old);
-    n_new             = face.sum(n_new);
-    const bool begins = n_old == 0. && n_new > 0.,
-               covers = n_old < n_points && n_new == n_points && n_points > 0.,
-               ends   = n_old > 0. && n_new == 0.;
-    return face.any(turns_back) || begins || covers || (ends && !from_kink);
+    const bool of_slip    = has_event_of(n_points, n_old, n_new),
+               of_contact = face.has_obstacles &&
+                            has_event_of(n_obstacles, n_old_touch, n_touch) &&
+                            !(from_kink && face.sum(n_old_touch) == 0.);
+    return face.any(turns_back) || of_slip || of_contact;
   }
 
 
@@ -51,8 +67,8 @@ namespace Viscoplastic
         const Tensor<1, 2> &old = old_state.multiplier[p],
                            &now = state.multiplier[p];
         const double force      = stable_norm(now);
-        if (old_state.sticks[p] || state.sticks[p] || force == 0. ||
-            stable_norm(old) == 0.)
+        if (face.points[p].is_obstacle || old_state.sticks[p] ||
+            state.sticks[p] || force == 0. || stable_norm(old) == 0.)
           continue;
         const double cosine = (old / stable_norm(old)) * (now / force);
         work += force * stable_norm(slips[p]) * std::clamp(1. - cosine, 0., 1.);

@@ -3,8 +3,10 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/contact/kink_search.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -45,11 +47,14 @@ namespace Viscoplastic
     {
       for (unsigned int p = 0; p < face.points.size(); ++p)
         {
-          state.slip[p] = Tensor<1, 2>();
-          if (!state.sticks[p])
-            state.slip[p] =
-              slip(face.points[p], face.node_values(x, face.points[p].node));
-          if (state.bound[p] > 0. && state.slip[p].norm() == 0.)
+          const FrictionFace::Point &point = face.points[p];
+          state.slip[p]                    = Tensor<1, 2>();
+          if (!state.sticks[p] || point.is_obstacle)
+            state.slip[p] = slip(point, face.node_values(x, point.node));
+          if (point.gives_way())
+            state.sticks[p] = state.penetration(p) > 0.;
+          if (!point.is_obstacle && state.bound[p] > 0. &&
+              state.slip[p].norm() == 0.)
             state.sticks[p] = true;
         }
     }
@@ -70,7 +75,7 @@ namespace Viscoplastic
       for (unsigned int node = 0; node < face.n_nodes(); ++node)
         {
           const unsigned int p = face.first_point[node];
-          if (face.n_node_points(node) != 1 || state.sticks[p] ||
+          if (!face.has_plain_friction(node) || state.sticks[p] ||
               state.bound[p] == 0.)
             continue;
           const Tensor<1, 3> here = face.node_values(x, node);
@@ -89,168 +94,26 @@ namespace Viscoplastic
 
 
 
-    /// Whether all points with friction do the same, stick or slip. Collective.
+    /// Whether all points with friction do the same, stick or slip, and all
+    /// obstacles are touched or none. Collective.
     bool
     all_do_the_same(const FrictionFace &face, const FrictionState &state)
     {
-      bool any_sticks = false, any_slips = false;
+      std::array<bool, 4> any{};
       for (unsigned int p = 0; p < state.n_points(); ++p)
-        if (state.bound[p] > 0.)
-          (state.sticks[p] ? any_sticks : any_slips) = true;
-      any_sticks = face.any(any_sticks);
-      any_slips  = face.any(any_slips);
-      return !(any_sticks && any_slips);
+        if (face.points[p].is_obstacle)
+          any[state.sticks[p] ? 2 : 3] = true;
+        else if (state.bound[p] > 0.)
+          any[state.sticks[p] ? 0 : 1] = true;
+      for (unsigned int kind = 0; kind < (face.has_obstacles ? 4 : 2); ++kind)
+        any[kind] = face.any(any[kind]);
+      return !(any[0] && any[1]) && !(any[2] && any[3]);
     }
 
 
 
-    /// The functional of friction j(v) = sum_c rho_c |v_c| along a line:
-    /// j(s + step w) - j(s) and its derivative to the right. Collective.
-    struct FrictionAlongLine
-    {
-      struct Term
-      {
-        double       bound;
-        Tensor<1, 2> slip, change;
-      };
-      const FrictionFace &face;
-      std::vector<Term>   terms; // of this rank
-
-      double
-      value(const double step) const
-      {
-        double sum = 0.;
-        for (const Term &term : terms)
-          sum += term.bound *
-                 ((term.slip + step * term.change).norm() - term.slip.norm());
-        return face.sum(sum);
-      }
-
-      double
-      derivative(const double step) const
-      {
-        double sum = 0.;
-        for (const Term &term : terms)
-          {
-            const Tensor<1, 2> s    = term.slip + step * term.change;
-            const double       size = s.norm();
-            sum += term.bound * (size > 1e-14 * term.change.norm() ?
-                                   (s * term.change) / size :
-                                   term.change.norm());
-          }
-        return face.sum(sum);
-      }
-    };
-
-
-
-    FrictionAlongLine
-    friction_along(const FrictionFace   &face,
-                   const FrictionState  &state,
-                   const Vector<double> &direction)
-    {
-      FrictionAlongLine friction{face, {}};
-      for (unsigned int p = 0; p < face.points.size(); ++p)
-        if (!state.sticks[p] && state.bound[p] > 0.)
-          friction.terms.push_back(
-            {state.bound[p],
-             state.slip[p],
-             slip(face.points[p],
-                  face.node_values(direction, face.points[p].node))});
-      return friction;
-    }
-
-
-
-    /// Whether a correction @p w makes the slip of a node change sides. At
-    /// corners, where points share a node, the line search alone decides.
-    bool
-    reverses(const FrictionFace   &face,
-             const FrictionState  &state,
-             const Vector<double> &w,
-             const unsigned int    node)
-    {
-      const unsigned int p = face.first_point[node];
-      if (face.n_node_points(node) != 1 || state.sticks[p] ||
-          state.bound[p] == 0.)
-        return false;
-      const Tensor<1, 2> end =
-        state.slip[p] + slip(face.points[p], face.node_values(w, node));
-      return state.slip[p] * end < 0.;
-    }
-
-
-
-    /// Shorten a correction @p w where a slip would change sides, so that it
-    /// ends at rest instead. Returns whether there is such a slip. Collective.
-    bool
-    stop_at_reversal(const FrictionFace   &face,
-                     const FrictionState  &state,
-                     const Vector<double> &x,
-                     Vector<double>       &w)
-    {
-      bool any = false;
-      for (unsigned int node = 0; node < face.n_nodes(); ++node)
-        if (reverses(face, state, w, node))
-          {
-            face.set_node_values(-1. * face.node_values(x, node), node, w);
-            any = true;
-          }
-      return face.any(any);
-    }
-
-
-
-    /// A step along a line, and what it does to J.
-    struct SearchResult
-    {
-      double step, energy_change;
-    };
-
-
-
-    /**
-     * The step in (0, 2] that minimizes J along the correction; 1 if that is as
-     * good up to inexact linear solves, 0 if there is no descent.
-     */
-    SearchResult
-    line_search(const BulkSolver::SearchTerms &bulk,
-                const FrictionAlongLine       &friction)
-    {
-      const auto at = [&](const double step) {
-        return SearchResult{step,
-                            (0.5 * bulk.curvature * step - bulk.slope) * step +
-                              friction.value(step)};
-      };
-      const auto derivative = [&](const double step) {
-        return bulk.curvature * step - bulk.slope + friction.derivative(step);
-      };
-      const double initial = derivative(0.);
-      if (!(initial < 0.) || !(bulk.curvature > 0.))
-        return {0., 0.};
-      if (std::abs(derivative(1.)) <= 0.1 * std::abs(initial) &&
-          at(1.).energy_change <= 0.)
-        return at(1.);
-      double left = 0., right = 1.;
-      if (derivative(1.) < 0.)
-        {
-          left  = 1.;
-          right = 2.;
-          if (derivative(2.) < 0.)
-            return at(2.);
-        }
-      for (unsigned int bisection = 0; bisection < 60; ++bisection)
-        {
-          const double middle                      = 0.5 * (left + right);
-          (derivative(middle) < 0. ? left : right) = middle;
-        }
-      return at(left);
-    }
-
-
-
-    /// A correction that begins with stopping the slips that would reverse.
-    struct RestStep
+    /// A correction that begins with bringing nodes to kinks of J.
+    struct KinkStep
     {
       Vector<double> correction;
       SearchResult   search;
@@ -258,54 +121,42 @@ namespace Viscoplastic
     };
 
     /**
-     * Bring the points whose slip the correction @p w reverses to rest, solve
-     * with them sticking, and search along that correction. If J is lower then,
-     * the stop is made (@p x and @p state change) and the step is returned, to
-     * be taken; otherwise everything is as before but the correction.
+     * Bring the nodes that the correction @p w takes beyond a kink of J there,
+     * solve with them held, and search along that correction. If J is lower
+     * then, the stop is made (@p x and @p state change) and the step is
+     * returned, to be taken; otherwise everything is as before but the
+     * correction.
      */
-    std::optional<RestStep>
-    step_from_rest(BulkSolver                      &bulk,
-                   const FrictionFace              &face,
-                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
-                   const Vector<double>            &residual,
-                   const Vector<double>            &w,
-                   Vector<double>                  &x,
-                   FrictionState                   &state)
+    std::optional<KinkStep>
+    step_from_kinks(BulkSolver                      &bulk,
+                    const FrictionFace              &face,
+                    const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                    const Vector<double>            &residual,
+                    const Vector<double>            &w,
+                    Vector<double>                  &x,
+                    FrictionState                   &state)
     {
       const FrictionState  old_state = state;
       const Vector<double> old_x     = x;
-      Vector<double>       stop(x.size());
-      double               energy_change = 0.;
-      for (unsigned int node = 0; node < face.n_nodes(); ++node)
-        {
-          const unsigned int p = face.first_point[node];
-          if (!reverses(face, state, w, node))
-            continue;
-          energy_change -= state.bound[p] * state.slip[p].norm();
-          state.sticks[p] = true;
-          state.slip[p]   = Tensor<1, 2>();
-          face.set_node_values(-1. * face.node_values(x, node), node, stop);
-          face.set_node_values(Tensor<1, 3>(), node, x);
-        }
+      Vector<double>       stop;
+      const double change_of_j = bring_to_kinks(face, w, x, state, stop);
       bulk.move_face(stop);
       Vector<double> new_residual(x.size()), force(x.size());
       bulk.face_residual(new_residual);
       // J is quadratic but for friction: its mean slope makes the change.
-      energy_change =
-        face.sum(energy_change) -
+      const double energy_change =
+        change_of_j -
         0.5 * (face.dot(stop, residual) + face.dot(stop, new_residual));
 
       fit_multipliers(face, new_residual, state, force);
       bulk.set_truncation(make_truncation(face, state, inverse_diagonal),
                           /* may_rebuild = */ false);
-      RestStep result;
+      KinkStep result;
       result.correction.reinit(x.size());
       result.linear_iterations =
         bulk.correct(force, loose_tolerance, result.correction);
-      stop_at_reversal(face, state, x, result.correction);
-      result.search =
-        line_search(bulk.search_terms(result.correction),
-                    friction_along(face, state, result.correction));
+      stop_at_kinks(face, state, x, result.correction);
+      result.search = search_along(bulk, face, state, result.correction);
       if (energy_change + result.search.energy_change < 0.)
         return result;
 
@@ -356,7 +207,8 @@ namespace Viscoplastic
     void
     correct();
 
-    /// (3) Go along w as far as J decreases, and no slip further than to rest.
+    /// (3) Go along w as far as J decreases, no slip further than to rest and
+    /// no node further than to its obstacle.
     /// Returns the change of J.
     double
     search();
@@ -389,8 +241,10 @@ namespace Viscoplastic
     /// sticking points.
     FaceTruncation truncation;
     bool           same_sets = false;
-    /// The sets of the start.
+    /// The sets of the start, and where there are obstacles those of the last
+    /// correction.
     const std::vector<bool> first_sets;
+    std::vector<bool>       last_sets;
     /// Bound on the error and size of the solution in the energy norm.
     double error = 0., size = 0.;
     double best_error = std::numeric_limits<double>::max();
@@ -552,11 +406,15 @@ namespace Viscoplastic
     // A face that sticks or slips altogether, and whose slip does not turn,
     // makes a linear problem: unless the first sweep has found otherwise, it
     // takes no more than a plain solve.
-    same_sets = report.iterations == 0 ?
-                  !face.any(state.sticks != first_sets) &&
-                    all_do_the_same(face, state) &&
-                    !truncation.has_springs(face) :
-                  truncation.blocks_as(last, face);
+    same_sets =
+      report.iterations == 0 ?
+        !face.any(state.sticks != first_sets) && all_do_the_same(face, state) &&
+          !truncation.has_springs(face) :
+        truncation.blocks_as(last, face) &&
+          // Obstacles that give way do not block.
+          !(face.has_obstacles && face.any(state.sticks != last_sets));
+    if (face.has_obstacles)
+      last_sets = state.sticks;
     bulk.set_truncation(truncation);
     const Certificate certificate =
       certify(face, residual, diagonal, state, force, bulk.rounding_error());
@@ -577,6 +435,21 @@ namespace Viscoplastic
     report.error = error;
     for (const auto &[point, multiplier] : certificate.replaced)
       state.multiplier[point] = multiplier;
+    // What presses by rounding does not touch: Coulomb's law would make bounds
+    // of it.
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      if (face.points[p].is_obstacle)
+        {
+          const FrictionFace::Point &point = face.points[p];
+          const double               stiffness =
+            point.map[0] * (diagonal[point.node] * point.map[0]);
+          if (state.multiplier[p][0] <=
+              bulk.rounding_error() * std::sqrt(stiffness))
+            {
+              state.multiplier[p][0] = 0.;
+              state.sticks[p]        = false;
+            }
+        }
     return true;
   }
 
@@ -619,15 +492,14 @@ namespace Viscoplastic
   ContactSolver::Iteration::search()
   {
     const auto along = [&](const Vector<double> &direction) {
-      return line_search(bulk.search_terms(direction),
-                         friction_along(face, state, direction));
+      return search_along(bulk, face, state, direction);
     };
     Vector<double> limited(w);
-    const bool     any_reverses = stop_at_reversal(face, state, x, limited);
-    SearchResult   result       = along(limited);
-    if (!any_reverses || result.step >= least_limited_step)
+    const bool     any_stops = stop_at_kinks(face, state, x, limited);
+    SearchResult   result    = along(limited);
+    if (!any_stops || result.step >= least_limited_step)
       w = limited;
-    else if (const auto rest = step_from_rest(
+    else if (const auto rest = step_from_kinks(
                bulk, face, inverse_diagonal, residual, w, x, state))
       {
         // When a whole zone reverses, the rest of the body must adapt to its

@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/contact/face_matrix.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace Viscoplastic
@@ -22,9 +23,9 @@ namespace Viscoplastic
     double largest = 0.;
     for (unsigned int i = 0; i < n; ++i)
       largest = std::max(largest, block[i][i]);
-    const bool is_ordinary = n == 0 || (largest > 1e-6 && largest < 1e18);
+    // A power of two, by which inverses are without rounding of their own.
     for (unsigned int i = n; i < 3; ++i)
-      block[i][i] = is_ordinary ? 1. : largest;
+      block[i][i] = n > 0 ? std::ldexp(1., std::ilogb(largest)) : 1.;
   }
 
 

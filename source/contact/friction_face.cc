@@ -40,6 +40,25 @@ namespace Viscoplastic
 
 
 
+  bool
+  FrictionFace::has_plain_friction(const unsigned int node) const
+  {
+    const unsigned int begin = first_point[node], end = first_point[node + 1];
+    if (begin == end || points[begin].is_obstacle)
+      return false;
+    for (unsigned int p = begin + 1; p < end; ++p)
+      {
+        if (!points[p].is_obstacle)
+          return false;
+        for (unsigned int i = 0; i < points[begin].n_tangents; ++i)
+          if (points[begin].map[i] * points[p].map[0] != 0.)
+            return false;
+      }
+    return true;
+  }
+
+
+
   Tensor<1, 2>
   slip(const FrictionFace::Point &point, const Tensor<1, 3> &x)
   {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Viscoplastic
 {
@@ -51,8 +52,36 @@ namespace Viscoplastic
 
 
 
-    /// Least-norm multipliers of the sticking points of a node with several
-    /// points whose forces make up for @p missing, as far as the balls allow.
+    /// The nearest admissible multiplier: in the ball of friction, pressure at
+    /// an obstacle.
+    Tensor<1, 2>
+    clip(const FrictionFace::Point &point,
+         const Tensor<1, 2>        &multiplier,
+         const double               bound)
+    {
+      if (!point.is_obstacle)
+        return clip(multiplier, bound);
+      Tensor<1, 2> result;
+      result[0] = std::max(0., multiplier[0]);
+      return result;
+    }
+
+
+
+    /// Whether a point blocks its directions.
+    bool
+    holds(const FrictionFace::Point &point,
+          const FrictionState       &state,
+          const unsigned int         p)
+    {
+      return state.sticks[p] && !point.gives_way();
+    }
+
+
+
+    /// Least-norm multipliers of the points that hold a node with several
+    /// points whose forces make up for @p missing, as far as they are
+    /// admissible.
     void
     fit_node(const FrictionFace &face,
              const unsigned int  begin,
@@ -63,7 +92,7 @@ namespace Viscoplastic
       // lambda = B (B^T B)^+ missing.
       SymmetricTensor<2, 3> gram;
       for (unsigned int p = begin; p < end; ++p)
-        if (state.sticks[p])
+        if (holds(face.points[p], state, p))
           for (unsigned int i = 0; i < face.points[p].n_tangents; ++i)
             gram += symmetrize(
               outer_product(face.points[p].map[i], face.points[p].map[i]));
@@ -75,11 +104,11 @@ namespace Viscoplastic
       bool                      inside = true;
       std::vector<Tensor<1, 2>> lambda(end - begin), z, old;
       for (unsigned int p = begin; p < end; ++p)
-        if (state.sticks[p])
+        if (holds(face.points[p], state, p))
           {
             const Tensor<1, 2> free = slip(face.points[p], solution);
-            lambda[p - begin]       = clip(free, state.bound[p]);
-            inside &= free.norm() <= state.bound[p];
+            lambda[p - begin] = clip(face.points[p], free, state.bound[p]);
+            inside &= lambda[p - begin] == free;
           }
       // Where that leaves a ball: accelerated projected gradients.
       if (!inside)
@@ -95,10 +124,11 @@ namespace Viscoplastic
                 remain -= node_force(face.points[p], z[p - begin]);
               double change = 0., size = 0., uphill = 0.;
               for (unsigned int p = begin; p < end; ++p)
-                if (state.sticks[p])
+                if (holds(face.points[p], state, p))
                   {
                     auto &l = lambda[p - begin];
-                    l = clip(z[p - begin] + slip(face.points[p], remain) / L,
+                    l       = clip(face.points[p],
+                             z[p - begin] + slip(face.points[p], remain) / L,
                              state.bound[p]);
                     uphill += (z[p - begin] - l) * (l - old[p - begin]);
                     change += (z[p - begin] - l).norm();
@@ -117,7 +147,7 @@ namespace Viscoplastic
             }
         }
       for (unsigned int p = begin; p < end; ++p)
-        if (state.sticks[p])
+        if (holds(face.points[p], state, p))
           {
             state.multiplier[p] = lambda[p - begin];
             missing -= node_force(face.points[p], state.multiplier[p]);
@@ -176,6 +206,86 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// The same for an obstacle: the smallest multiplier that keeps the free
+    /// motion within its distance, or the force at which compliance stops it.
+    PointSolution
+    solve_obstacle(const FrictionFace::Point &obstacle,
+                   const double               flexibility,
+                   const double               free_motion,
+                   const double               distance)
+    {
+      const double  free_w = free_motion - distance;
+      PointSolution solution;
+      solution.sticks = free_w > 0.;
+      if (solution.sticks)
+        solution.multiplier[0] =
+          obstacle.gives_way() ?
+            obstacle.compliance.force(
+              obstacle.compliance.penetration(flexibility, free_w)) :
+            free_w / flexibility;
+      return solution;
+    }
+
+
+
+    /**
+     * Minimize J over x = start + y, with y in the range of the symmetric @p
+     * flexibility, its response to forces: by duality, block by block over the
+     * points from @p begin to @p end, which may be obstacles. Exact at once for
+     * a single point.
+     */
+    Tensor<1, 3>
+    relax_points(const FrictionFace &face,
+                 const unsigned int  begin,
+                 const unsigned int  end,
+                 const Tensor<2, 3> &flexibility,
+                 const Tensor<1, 3> &start,
+                 const Tensor<1, 3> &force,
+                 FrictionState      &state)
+    {
+      constexpr unsigned int max_sweeps = 1000;
+      Tensor<1, 3>           remaining  = force;
+      for (unsigned int p = begin; p < end; ++p)
+        remaining -= node_force(face.points[p], state.multiplier[p]);
+      for (unsigned int sweep = 0; sweep < max_sweeps; ++sweep)
+        {
+          double change = 0., size = 0.;
+          for (unsigned int p = begin; p < end; ++p)
+            {
+              const FrictionFace::Point &point = face.points[p];
+              remaining += node_force(point, state.multiplier[p]);
+              Tensor<2, 2> of_point;
+              for (unsigned int i = 0; i < point.n_tangents; ++i)
+                for (unsigned int j = 0; j < point.n_tangents; ++j)
+                  of_point[i][j] = point.map[i] * (flexibility * point.map[j]);
+              const Tensor<1, 2> free_motion =
+                slip(point, start + flexibility * remaining);
+              const PointSolution solution =
+                point.is_obstacle ? solve_obstacle(point,
+                                                   of_point[0][0],
+                                                   free_motion[0],
+                                                   state.bound[p]) :
+                                    solve_friction_point(of_point,
+                                                         free_motion,
+                                                         point.n_tangents,
+                                                         state.bound[p]);
+              change += (solution.multiplier - state.multiplier[p]).norm();
+              size += solution.multiplier.norm();
+              state.multiplier[p] = solution.multiplier;
+              state.sticks[p]     = solution.sticks;
+              remaining -= node_force(point, solution.multiplier);
+            }
+          if (end - begin <= 1 || change <= 1e-14 * size)
+            break;
+        }
+      return start + flexibility * remaining;
+    }
+  } // namespace
+
+
+
   Tensor<1, 3>
   relax_node(const FrictionFace &face,
              const unsigned int  node,
@@ -183,46 +293,72 @@ namespace Viscoplastic
              const Tensor<1, 3> &force, // residual + D x
              FrictionState      &state)
   {
-    const unsigned int     begin      = face.first_point[node];
-    const unsigned int     end        = face.first_point[node + 1];
-    constexpr unsigned int max_sweeps = 1000;
+    const unsigned int begin    = face.first_point[node];
+    const unsigned int end      = face.first_point[node + 1];
+    const unsigned int obstacle = face.first_obstacle(node);
+    const Tensor<1, 3> nothing;
+    const bool         is_plain = face.has_plain_friction(node);
 
-    Tensor<1, 3> remaining = force;
-    for (unsigned int p = begin; p < end; ++p)
-      remaining -= node_force(face.points[p], state.multiplier[p]);
-    for (unsigned int sweep = 0; sweep < max_sweeps; ++sweep)
+    Tensor<1, 3> x, normal;
+    double       distance = 0.;
+    if (end - obstacle == 1 && (is_plain || begin == obstacle) &&
+        !face.points[obstacle].gives_way())
       {
-        double change = 0., size = 0.;
-        for (unsigned int p = begin; p < end; ++p)
+        // J is convex, so that the obstacle is met if the node alone would pass
+        // it, and has no influence otherwise.
+        const FrictionFace::Point &point = face.points[obstacle];
+        x                                = relax_points(
+          face, begin, obstacle, inverse_diagonal, nothing, force, state);
+        state.multiplier[obstacle] = Tensor<1, 2>();
+        state.sticks[obstacle]     = slip(point, x)[0] > state.bound[obstacle];
+        if (state.sticks[obstacle])
           {
-            const FrictionFace::Point &point = face.points[p];
-            remaining += node_force(point, state.multiplier[p]);
-            Tensor<2, 2> flexibility;
-            for (unsigned int i = 0; i < point.n_tangents; ++i)
-              for (unsigned int j = 0; j < point.n_tangents; ++j)
-                flexibility[i][j] =
-                  point.map[i] * (inverse_diagonal * point.map[j]);
-            const PointSolution solution =
-              solve_friction_point(flexibility,
-                                   slip(point, inverse_diagonal * remaining),
-                                   point.n_tangents,
-                                   state.bound[p]);
-            change += (solution.multiplier - state.multiplier[p]).norm();
-            size += solution.multiplier.norm();
-            state.multiplier[p] = solution.multiplier;
-            state.sticks[p]     = solution.sticks;
-            remaining -= node_force(point, solution.multiplier);
+            // On the plane of the obstacle.
+            const Tensor<1, 3> response = inverse_diagonal * point.map[0];
+            const double       size     = point.map[0] * response;
+            distance                    = state.bound[obstacle];
+            normal                 = point.map[0] / point.map[0].norm_square();
+            x                      = relax_points(face,
+                             begin,
+                             obstacle,
+                             inverse_diagonal -
+                               outer_product(response, response) / size,
+                             response * (distance / size),
+                             force,
+                             state);
+            Tensor<1, 3> remaining = force;
+            for (unsigned int p = begin; p < obstacle; ++p)
+              remaining -= node_force(face.points[p], state.multiplier[p]);
+            state.multiplier[obstacle][0] =
+              std::max(0., (response * remaining - distance) / size);
+            x += (distance - point.map[0] * x) * normal;
           }
-        if (end - begin == 1 || change <= 1e-14 * size)
-          break;
+      }
+    else
+      {
+        x = relax_points(
+          face, begin, end, inverse_diagonal, nothing, force, state);
+        // The penetration of what hardly gives way is known better from its
+        // force.
+        if (end - obstacle == 1 && (is_plain || begin == obstacle) &&
+            state.multiplier[obstacle][0] > 0.)
+          {
+            const FrictionFace::Point &point = face.points[obstacle];
+            const double               end_of_way =
+              state.bound[obstacle] +
+              point.compliance.penetration(state.multiplier[obstacle][0]);
+            x += (end_of_way - point.map[0] * x) / point.map[0].norm_square() *
+                 point.map[0];
+          }
       }
 
-    // A node whose only point holds all its components does not move at all,
-    // not even by rounding.
-    if (end - begin == 1 && state.sticks[begin] &&
-        face.points[begin].n_tangents == face.n_node_dofs(node))
-      return Tensor<1, 3>();
-    return inverse_diagonal * remaining;
+    // A node whose points hold all its components does not move at all, not
+    // even by rounding.
+    if (is_plain && state.sticks[begin] &&
+        face.points[begin].n_tangents + (normal.norm() > 0. ? 1 : 0) ==
+          face.n_node_dofs(node))
+      return distance * normal;
+    return x;
   }
 
 
@@ -241,30 +377,83 @@ namespace Viscoplastic
         Tensor<1, 3>       missing = face.node_values(residual, node);
         for (unsigned int p = begin; p < end; ++p)
           {
-            if (state.sticks[p])
-              {
-                state.multiplier[p] = Tensor<1, 2>();
-                ++n_stick;
-              }
-            else
+            state.multiplier[p] = Tensor<1, 2>();
+            if (face.points[p].gives_way())
+              state.multiplier[p][0] =
+                face.points[p].compliance.force(state.penetration(p));
+            else if (state.sticks[p])
+              ++n_stick;
+            else if (!face.points[p].is_obstacle)
               state.multiplier[p] =
                 slipping_multiplier(state.bound[p], state.slip[p]);
             missing -= node_force(face.points[p], state.multiplier[p]);
           }
-        // One point of orthonormal rows: the residual, clipped.
-        if (n_stick == 1 && end - begin == 1)
-          {
-            state.multiplier[begin] =
-              clip(slip(face.points[begin], missing), state.bound[begin]);
-            missing -= node_force(face.points[begin], state.multiplier[begin]);
-          }
-        if (n_stick > 0 && end - begin > 1)
+        // Points of orthogonal rows: the residual, clipped.
+        if (n_stick > 0 &&
+            (end - begin == 1 ||
+             (end - begin == 2 && face.has_plain_friction(node))))
+          for (unsigned int p = begin; p < end; ++p)
+            {
+              const FrictionFace::Point &point = face.points[p];
+              if (!holds(point, state, p))
+                continue;
+              const double scale =
+                point.is_obstacle ? 1. / point.map[0].norm_square() : 1.;
+              state.multiplier[p] =
+                clip(point, scale * slip(point, missing), state.bound[p]);
+              missing -= node_force(point, state.multiplier[p]);
+            }
+        else if (n_stick > 0)
           fit_node(face, begin, end, missing, state);
         face.set_node_values(face.node_values(residual, node) - missing,
                              node,
                              force);
       }
   }
+
+
+
+  namespace
+  {
+    /**
+     * What is missing between the residual and the force of an obstacle that
+     * gives way is shared between that force, at the price of a defect of
+     * complementarity, and the residual: as springs in series share a force,
+     * which is where the sum of both is least.
+     */
+    void
+    share_misfit(const FrictionFace              &face,
+                 const Vector<double>            &residual,
+                 const std::vector<Tensor<2, 3>> &diagonal,
+                 const FrictionState             &state,
+                 const unsigned int               p,
+                 Certificate                     &certificate)
+    {
+      const FrictionFace::Point &point = face.points[p];
+      const double               w     = state.penetration(p);
+      if (!point.gives_way() || !(w > 0.))
+        return;
+      const Tensor<1, 3> &normal = point.map[0];
+      const Tensor<1, 3>  force =
+        face.node_values(certificate.force, point.node);
+      const double missing = normal *
+                             (face.node_values(residual, point.node) - force) /
+                             normal.norm_square();
+      const double spring = point.compliance.slope(w),
+                   bulk   = normal * (diagonal[point.node] * normal) /
+                          (normal.norm_square() * normal.norm_square()),
+                   old = state.multiplier[p][0];
+      Tensor<1, 2> multiplier;
+      multiplier[0] = std::max(0., old + spring / (spring + bulk) * missing);
+      if (multiplier[0] == old)
+        return;
+      certificate.defect += point.compliance.defect(w, multiplier[0]);
+      certificate.replaced.emplace_back(p, multiplier);
+      face.set_node_values(force + (multiplier[0] - old) * normal,
+                           point.node,
+                           certificate.force);
+    }
+  } // namespace
 
 
 
@@ -278,13 +467,17 @@ namespace Viscoplastic
   {
     Certificate result;
     result.force = force;
+    // The force of a foundation that hardly gives way is blurred, too.
+    if (face.has_obstacles)
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        share_misfit(face, residual, diagonal, state, p, result);
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
-        const unsigned int         p     = face.first_point[node];
-        const FrictionFace::Point &point = face.points[p];
-        if (face.n_node_points(node) != 1 || point.n_tangents != 2 ||
+        const unsigned int p = face.first_point[node];
+        if (!face.has_plain_friction(node) || face.points[p].n_tangents != 2 ||
             state.sticks[p] || state.bound[p] == 0.)
           continue;
+        const FrictionFace::Point &point = face.points[p];
         const Tensor<1, 2> here = slip(point, face.node_values(residual, node));
         const double       misses    = (here - state.multiplier[p]).norm();
         const double       stiffness = diagonal[node].norm();
@@ -298,7 +491,11 @@ namespace Viscoplastic
                                   state.bound[p] * state.slip[p].norm() -
                                     multiplier * state.slip[p]);
         result.replaced.emplace_back(p, multiplier);
-        face.set_node_values(node_force(point, multiplier), node, result.force);
+        face.set_node_values(face.node_values(result.force, node) +
+                               node_force(point,
+                                          multiplier - state.multiplier[p]),
+                             node,
+                             result.force);
       }
     result.defect = face.sum(result.defect);
     return result;
@@ -323,8 +520,16 @@ namespace Viscoplastic
              p < face.first_point[node + 1];
              ++p)
           {
-            const FrictionFace::Point &point = face.points[p];
-            if (state.sticks[p])
+            const FrictionFace::Point &point    = face.points[p];
+            const double               stiffest = inverse_diagonal.empty() ?
+                                                    std::numeric_limits<double>::max() :
+                                                    1e10 / inverse_diagonal[node].norm();
+            if (point.gives_way())
+              truncation.spring[node] +=
+                std::min(point.compliance.slope(state.penetration(p)),
+                         stiffest) *
+                outer_product(point.map[0], point.map[0]);
+            else if (state.sticks[p])
               for (unsigned int i = 0; i < point.n_tangents; ++i)
                 {
                   // Remove what is left of this direction.
@@ -340,8 +545,7 @@ namespace Viscoplastic
                 // kappa P_e with kappa = rho/|s|, which tends to infinity as
                 // a point comes to rest; 1e10 times the diagonal is stick.
                 const double kappa =
-                  std::min(state.bound[p] / state.slip[p].norm(),
-                           1e10 / inverse_diagonal[node].norm());
+                  std::min(state.bound[p] / state.slip[p].norm(), stiffest);
                 const Tensor<1, 2> e = state.slip[p] / state.slip[p].norm();
                 const Tensor<1, 3> across =
                   -e[1] * point.map[0] + e[0] * point.map[1];

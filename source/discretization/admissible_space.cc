@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/lac/lapack_full_matrix.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
-#include <iomanip>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -103,11 +100,28 @@ namespace Viscoplastic
     // the ids travel to the other ranks.
     std::vector<const BoundaryCondition<dim> *> listed;
     for (const auto &pair : scene.boundary)
-      if (pair.second.constrains() || pair.second.has_friction())
+      if (pair.second.constrains() || pair.second.has_contact_points())
         listed.push_back(&pair.second);
     AssertThrow(listed.size() <= 52,
                 ExcMessage("At most 52 boundary ids may carry displacement or "
                            "contact conditions."));
+
+    // What holds an absent material does not hold the nodes that it shares with
+    // the body.
+    std::vector<bool> is_of_body(scene.has_stages() ? owned.n_elements() / dim :
+                                                      0,
+                                 false);
+    if (scene.has_stages())
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial() && scene.is_present(cell->material_id()))
+          for (const unsigned int v : cell->vertex_indices())
+            if (const auto dof = cell->vertex_dof_index(v, 0);
+                owned.is_element(dof))
+              is_of_body[owned.index_within_set(dof) / dim] = true;
+    const auto is_released = [&](const auto &cell, const std::size_t node) {
+      return scene.has_stages() && is_of_body[node] &&
+             !scene.is_present(cell->material_id());
+    };
 
     std::vector<std::uint64_t> mask(owned.n_elements() / dim, 0);
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -120,7 +134,8 @@ namespace Viscoplastic
                   {
                     const auto dof = cell->face(f)->vertex_dof_index(v, 0);
                     if (owned.is_element(dof) &&
-                        !hanging_cartesian.is_constrained(dof))
+                        !hanging_cartesian.is_constrained(dof) &&
+                        !is_released(cell, owned.index_within_set(dof) / dim))
                       mask[owned.index_within_set(dof) / dim] |=
                         std::uint64_t(1) << i;
                   }
@@ -205,162 +220,11 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  AdmissibleSpace<dim>::check_rigid_motions() const
-  {
-    constexpr unsigned int n = dim == 2 ? 3 : 6;
-    // Gram matrix of the modes on the prescribed components; its null space
-    // are the rigid motions that nothing prevents.
-    FullMatrix<double> gram(n, n);
-    Point<dim>         center;
-    double             count = node_position.size();
-    for (const auto &x : node_position)
-      center += x;
-    center =
-      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(center), communicator) /
-                 Utilities::MPI::sum(count, communicator));
-    double radius = 0.;
-    for (const auto &x : node_position)
-      radius = std::max(radius, x.distance(center));
-    radius = Utilities::MPI::max(radius, communicator);
-
-    for (const BoundaryNode &node : nodes)
-      for (unsigned int i = 0; i < frames[node.frame].n_fixed; ++i)
-        {
-          const Tensor<1, dim> direction =
-            column(frames[node.frame].directions, frames[node.frame].fixed[i]);
-          const Tensor<1, dim> x = (node.position - center) / radius;
-          std::vector<double>  value(n);
-          for (unsigned int d = 0; d < dim; ++d)
-            value[d] = direction[d];
-          if constexpr (dim == 2)
-            value[2] = -x[1] * direction[0] + x[0] * direction[1];
-          else
-            {
-              const Tensor<1, dim> moment = cross_product_3d(x, direction);
-              for (unsigned int d = 0; d < dim; ++d)
-                value[dim + d] = moment[d];
-            }
-          for (unsigned int a = 0; a < n; ++a)
-            for (unsigned int b = 0; b < n; ++b)
-              gram(a, b) += value[a] * value[b];
-        }
-    Utilities::MPI::sum(gram, communicator, gram);
-
-    LAPACKFullMatrix<double> matrix(n, n);
-    matrix = gram;
-    Vector<double>     eigenvalues(n);
-    FullMatrix<double> eigenvectors(n, n);
-    matrix.compute_eigenvalues_symmetric(
-      -1., 1e300, 0., eigenvalues, eigenvectors);
-    const auto is_free = [&](const unsigned int e) {
-      return eigenvalues[e] <=
-             1e-12 * std::max(eigenvalues.linfty_norm(), 1e-300);
-    };
-    const auto is_translation = [&](const unsigned int e) {
-      for (unsigned int a = dim; a < n; ++a)
-        if (std::abs(eigenvectors(a, e)) > 1e-8)
-          return false;
-      return true;
-    };
-    unsigned int n_translations = 0;
-    for (unsigned int e = 0; e < eigenvalues.size(); ++e)
-      n_translations += is_free(e) && is_translation(e);
-    std::string free_motions;
-    for (unsigned int e = 0; e < eigenvalues.size(); ++e)
-      if (is_free(e))
-        {
-          // Name the mode by its largest part.
-          unsigned int largest = 0;
-          for (unsigned int a = 1; a < n; ++a)
-            if (std::abs(eigenvectors(a, e)) >
-                std::abs(eigenvectors(largest, e)) + 1e-8)
-              largest = a;
-          const std::string xyz = "xyz";
-          free_motions += free_motions.empty() ? "" : " and ";
-          // A single translation may have any direction; of several, the
-          // axes are a basis.
-          if (n_translations == 1 && is_translation(e) &&
-              std::abs(eigenvectors(largest, e)) < 1. - 1e-8)
-            {
-              std::ostringstream direction;
-              direction << std::setprecision(3) << "translation along (";
-              const double sign = eigenvectors(largest, e) > 0. ? 1. : -1.;
-              for (unsigned int a = 0; a < dim; ++a)
-                direction << (a == 0 ? "" : ", ") << sign * eigenvectors(a, e);
-              free_motions += direction.str() + ')';
-            }
-          else if (largest < dim)
-            free_motions += std::string("translation along ") + xyz[largest];
-          else
-            free_motions += std::string("rotation about ") +
-                            (dim == 2 ? 'z' : xyz[largest - dim]);
-        }
-    AssertThrow(free_motions.empty(),
-                ExcMessage(
-                  "The boundary conditions leave a rigid motion free: " +
-                  free_motions +
-                  ". Prescribe displacements that prevent it "
-                  "(clamped, displacement, symmetry, bilateral or "
-                  "glued contact; friction does not count)."));
-  }
-
-
-
-  template <int dim>
-  void
   AdmissibleSpace<dim>::restrict_to_unknowns(DistributedVector &in_frames) const
   {
     for (std::size_t i = 0; i < is_excluded.size(); ++i)
       if (is_excluded[i])
         in_frames.begin()[i] = 0.;
-  }
-
-
-
-  template <int dim>
-  std::vector<DistributedVector>
-  AdmissibleSpace<dim>::rigid_body_modes() const
-  {
-    const unsigned int             n_modes = dim == 2 ? 3 : 6;
-    std::vector<DistributedVector> modes(n_modes, owned_vector());
-
-    Point<dim>   center;
-    const double count = node_position.size();
-    for (const auto &x : node_position)
-      center += x;
-    center =
-      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(center), communicator) /
-                 Utilities::MPI::sum(count, communicator));
-
-    for (std::size_t n = 0; n < node_position.size(); ++n)
-      {
-        const NodalFrame<dim> &frame =
-          frames[frame_of_node[(first_owned / dim) + n]];
-        const Tensor<1, dim> x = node_position[n] - center;
-        for (unsigned int m = 0; m < n_modes; ++m)
-          {
-            Tensor<1, dim> u;
-            if (m < dim)
-              u[m] = 1.;
-            else if constexpr (dim == 2)
-              {
-                u[0] = -x[1];
-                u[1] = x[0];
-              }
-            else
-              {
-                Tensor<1, dim> axis;
-                axis[m - dim] = 1.;
-                u             = cross_product_3d(axis, x);
-              }
-            if (!frame.is_cartesian)
-              u = transpose(frame.directions) * u;
-            for (unsigned int d = 0; d < dim; ++d)
-              if (!is_excluded[n * dim + d])
-                modes[m].begin()[n * dim + d] = u[d];
-          }
-      }
-    return modes;
   }
 
 

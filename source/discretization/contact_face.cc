@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/discretization/contact_face.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace Viscoplastic
@@ -17,10 +18,18 @@ namespace Viscoplastic
     , bounds_vary(false)
   {
     for (const auto &pair : space.scene.boundary)
-      if (pair.second.has_friction())
-        bounds_vary |= pair.second.bound_depends_on_time();
+      if (pair.second.has_contact_points())
+        {
+          bounds_vary |= pair.second.bound_depends_on_time();
+          any_obstacles |= pair.second.is_unilateral();
+          any_gives_way |= pair.second.gives_way();
+          any_rate |= pair.second.slip_rate_factor.has_value();
+          any_computed_pressure |= pair.second.has_computed_pressure();
+        }
     make_nodes();
     make_shares();
+    if (any_gives_way)
+      make_compliance();
   }
 
 
@@ -29,14 +38,15 @@ namespace Viscoplastic
   void
   ContactFace<dim>::make_nodes()
   {
-    std::vector<typename AdmissibleSpace<dim>::BoundaryNode> frictional;
+    std::vector<typename AdmissibleSpace<dim>::BoundaryNode> in_contact;
     for (const auto &node : space.boundary_nodes())
-      if (!space.frame(node.frame).planes.empty())
-        frictional.push_back(node);
+      if (const auto &frame = space.frame(node.frame);
+          !frame.planes.empty() || !frame.obstacles.empty())
+        in_contact.push_back(node);
     // By position: the order of sweeps must not depend on how the mesh has come
     // about.
-    std::sort(frictional.begin(),
-              frictional.end(),
+    std::sort(in_contact.begin(),
+              in_contact.end(),
               [](const auto &a, const auto &b) {
                 for (unsigned int d = 0; d < dim; ++d)
                   if (a.position[d] != b.position[d])
@@ -45,9 +55,10 @@ namespace Viscoplastic
               });
 
     FrictionFace face;
-    face.communicator = space.communicator;
+    face.communicator  = space.communicator;
+    face.has_obstacles = any_obstacles;
     std::vector<types::global_dof_index> dofs;
-    for (const auto &[first_dof, position, frame_index] : frictional)
+    for (const auto &[first_dof, position, frame_index] : in_contact)
       {
         const NodalFrame<dim> &frame = space.frame(frame_index);
         Node                   node{first_dof, position, frame.directions, {}};
@@ -60,6 +71,8 @@ namespace Viscoplastic
             for (const FrictionPlane<dim> &plane : frame.planes)
               for (const auto &row : plane.map)
                 seen |= row[d] != 0.;
+            for (const Obstacle<dim> &obstacle : frame.obstacles)
+              seen |= obstacle.map[d] != 0.;
             if (seen)
               {
                 node.components[n] = d;
@@ -79,6 +92,18 @@ namespace Viscoplastic
                   point.map[i][position_of[d]] = plane.map[i][d];
             face.points.push_back(point);
             boundary_ids.push_back(plane.boundary_ids);
+          }
+        for (const Obstacle<dim> &obstacle : frame.obstacles)
+          {
+            FrictionFace::Point point;
+            point.node        = nodes.size();
+            point.n_tangents  = 1;
+            point.is_obstacle = true;
+            for (unsigned int d = 0; d < dim; ++d)
+              if (obstacle.map[d] != 0.)
+                point.map[0][position_of[d]] = obstacle.map[d];
+            face.points.push_back(point);
+            boundary_ids.push_back(obstacle.boundary_ids);
           }
         face.first_point.push_back(face.points.size());
         nodes.push_back(node);
@@ -112,10 +137,15 @@ namespace Viscoplastic
     {
       unsigned int            sample;
       types::global_dof_index point;
+      bool                    of_obstacle;
       double                  value;
     };
     std::vector<GlobalShare> global_shares;
-    const auto               first_point = [&](const auto first_dof) {
+    const auto               is_one_of = [](const types::boundary_id               id,
+                              const std::vector<types::boundary_id> &ids) {
+      return std::find(ids.begin(), ids.end(), id) != ids.end();
+    };
+    const auto first_point = [&](const auto first_dof) {
       return static_cast<types::global_dof_index>(
         ghosted.begin()[space.relevant.index_within_set(first_dof)]);
     };
@@ -131,7 +161,7 @@ namespace Viscoplastic
           {
             const types::boundary_id id        = cell->face(f)->boundary_id();
             const auto              &condition = space.scene.boundary.at(id);
-            if (!condition.has_friction())
+            if (!condition.has_contact_points())
               continue;
             face_values.reinit(cell, f);
             for (const unsigned int q : face_values.quadrature_point_indices())
@@ -145,15 +175,22 @@ namespace Viscoplastic
                     const auto add = [&](const types::global_dof_index dof,
                                          const double                  weight) {
                       // None where other conditions hold the node.
-                      const auto &planes = space.frame_at(dof).planes;
-                      for (unsigned int p = 0; p < planes.size(); ++p)
-                        if (std::count(planes[p].boundary_ids.begin(),
-                                       planes[p].boundary_ids.end(),
-                                       id) > 0)
+                      const NodalFrame<dim> &frame  = space.frame_at(dof);
+                      const auto             add_to = [&](const unsigned int p,
+                                              const bool         of_obstacle,
+                                              const auto        &ids) {
+                        if (is_one_of(id, ids))
                           global_shares.push_back(
                             {static_cast<unsigned int>(samples.size()),
                              first_point(dof) + p,
+                             of_obstacle,
                              weight * value});
+                      };
+                      unsigned int p = 0;
+                      for (const auto &plane : frame.planes)
+                        add_to(p++, false, plane.boundary_ids);
+                      for (const auto &obstacle : frame.obstacles)
+                        add_to(p++, true, obstacle.boundary_ids);
                     };
                     const auto dof = cell->vertex_dof_index(v, 0);
                     if (hanging.is_constrained(dof))
@@ -182,18 +219,60 @@ namespace Viscoplastic
                                                           ghost_points,
                                                           space.communicator);
     for (const GlobalShare &share : global_shares)
-      shares.push_back(
-        {share.sample, numbers->global_to_local(share.point), share.value});
-    point_weights = sum_shares([](const Sample &) { return 1.; });
+      shares.push_back({share.sample,
+                        numbers->global_to_local(share.point),
+                        share.of_obstacle,
+                        share.value});
+    const auto one = [](const Sample &) { return 1.; };
+    point_weights  = sum_shares(one);
+    if (any_obstacles)
+      {
+        const std::vector<double> of_obstacles = sum_shares(one, true);
+        for (unsigned int p = 0; p < point_weights.size(); ++p)
+          if (face.points[p].is_obstacle)
+            point_weights[p] = of_obstacles[p];
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ContactFace<dim>::make_compliance()
+  {
+    // int c phi_c: the penetration is that of the node, as the gap is.
+    for (const auto &pair : space.scene.boundary)
+      {
+        const BoundaryCondition<dim> &condition = pair.second;
+        if (!condition.gives_way())
+          continue;
+        const std::vector<double> stiffness = sum_shares(
+          [&](const Sample &sample) {
+            return sample.condition == &condition ?
+                     condition.compliance(sample.x) :
+                     0.;
+          },
+          /* of_obstacles = */ true);
+        for (unsigned int p = 0; p < stiffness.size(); ++p)
+          if (const auto &ids = boundary_ids[p];
+              layout().points[p].is_obstacle &&
+              std::find(ids.begin(), ids.end(), pair.first) != ids.end())
+            face_restriction.add_compliance(p,
+                                            stiffness[p],
+                                            condition.compliance_exponent);
+      }
   }
 
 
 
   template <int dim>
   types::global_dof_index
-  ContactFace<dim>::n_global_points() const
+  ContactFace<dim>::n_global_points(const bool of_obstacles) const
   {
-    return numbers ? numbers->size() : 0;
+    types::global_dof_index n = 0;
+    for (const FrictionFace::Point &point : layout().points)
+      n += point.is_obstacle == of_obstacles;
+    return Utilities::MPI::sum(n, space.communicator);
   }
 
 
@@ -201,16 +280,36 @@ namespace Viscoplastic
   template <int dim>
   template <typename Factor>
   std::vector<double>
-  ContactFace<dim>::sum_shares(const Factor &factor) const
+  ContactFace<dim>::sum_shares(
+    const Factor                    &factor,
+    const bool                       of_obstacles,
+    const std::vector<double> *const slip_rates) const
   {
     if (!numbers)
       return {};
     std::vector<double> factors;
     for (const Sample &sample : samples)
-      factors.push_back(factor(sample));
-    LinearAlgebra::distributed::Vector<double> sums(numbers);
+      factors.push_back((of_obstacles ? sample.condition->is_unilateral() :
+                                        sample.condition->has_friction()) ?
+                          factor(sample) :
+                          0.);
+    LinearAlgebra::distributed::Vector<double> sums(numbers), rates;
+    const bool by_rate = any_rate && slip_rates != nullptr;
+    if (by_rate)
+      {
+        rates.reinit(numbers);
+        std::copy(slip_rates->begin(), slip_rates->end(), rates.begin());
+        rates.update_ghost_values();
+      }
     for (const Share &share : shares)
-      sums.local_element(share.point) += share.value * factors[share.sample];
+      if (share.of_obstacle == of_obstacles)
+        {
+          double value = share.value * factors[share.sample];
+          if (by_rate && value != 0.)
+            value *= samples[share.sample].condition->bound_factor(
+              rates.local_element(share.point));
+          sums.local_element(share.point) += value;
+        }
     sums.compress(VectorOperation::add);
     return {sums.begin(), sums.end()};
   }
@@ -228,7 +327,7 @@ namespace Viscoplastic
       Utilities::MPI::compute_set_union(ids_of_points, space.communicator);
     std::set<types::boundary_id> result;
     for (const auto &[id, condition] : space.scene.boundary)
-      if (condition.has_friction() && ids_of_points.count(id) == 0)
+      if (condition.has_contact_points() && ids_of_points.count(id) == 0)
         result.insert(id);
     return result;
   }
@@ -237,15 +336,35 @@ namespace Viscoplastic
 
   template <int dim>
   std::vector<double>
-  ContactFace<dim>::bounds(const double t) const
+  ContactFace<dim>::bounds(const double               t,
+                           const std::vector<double> &slip_rates) const
   {
     if (constant_bounds)
       return *constant_bounds;
     // rho_c = int rho phi_c, with which j_n(v) = sum_c rho_c |v_c|.
-    std::vector<double> result = sum_shares([t](const Sample &sample) {
-      return sample.condition->bound(sample.x, t);
-    });
-    if (!bounds_vary)
+    std::vector<double> result = sum_shares(
+      [t](const Sample &sample) {
+        return sample.condition->has_computed_pressure() ?
+                 0. :
+                 sample.condition->bound(sample.x, t);
+      },
+      /* of_obstacles = */ false,
+      &slip_rates);
+    // Values at the nodes: means over the basis functions would not be those of
+    // the interpolant where these are not symmetric, and linear displacements
+    // not exact.
+    if (any_obstacles)
+      for (unsigned int p = 0; p < result.size(); ++p)
+        if (layout().points[p].is_obstacle)
+          {
+            result[p] = std::numeric_limits<double>::max();
+            for (const types::boundary_id id : boundary_ids[p])
+              result[p] =
+                std::min(result[p],
+                         space.scene.boundary.at(id).gap(
+                           nodes[layout().points[p].node].position, t));
+          }
+    if (!bounds_vary && !any_rate)
       constant_bounds = result;
     return result;
   }
@@ -253,30 +372,105 @@ namespace Viscoplastic
 
 
   template <int dim>
-  Tensor<1, dim>
-  ContactFace<dim>::cartesian(const unsigned int  point,
-                              const Tensor<1, 2> &multiplier) const
+  std::vector<double>
+  ContactFace<dim>::step_bounds(const double               t,
+                                const DistributedVector   &u,
+                                const Vector<double>      &foundation_step,
+                                const std::vector<double> &slip_rates) const
   {
-    const FrictionFace &face  = layout();
-    const Node         &node  = nodes[face.points[point].node];
-    const Tensor<1, 3>  force = node_force(face.points[point], multiplier);
-    Tensor<1, dim>      in_frame;
-    for (unsigned int i = 0; i < face.n_node_dofs(face.points[point].node); ++i)
-      in_frame[node.components[i]] = force[i];
-    return node.directions * in_frame;
+    std::vector<double> result = bounds(t, slip_rates);
+    if (!any_obstacles)
+      return result;
+    const FrictionFace &face = layout();
+    for (unsigned int n = 0; n < face.n_nodes(); ++n)
+      {
+        const std::size_t first =
+          space.owned.index_within_set(nodes[n].first_dof);
+        unsigned int o = 0;
+        for (unsigned int p = face.first_obstacle(n);
+             p < face.first_point[n + 1];
+             ++p)
+          {
+            const Obstacle<dim> &obstacle =
+              space.frame_at(nodes[n].first_dof).obstacles[o++];
+            for (unsigned int d = 0; d < dim; ++d)
+              result[p] -=
+                (obstacle.map[d] + obstacle.fixed[d]) * u.begin()[first + d];
+            if (foundation_step.size() > 0)
+              result[p] -=
+                slip(face.points[p], face.node_values(foundation_step, n))[0];
+          }
+      }
+    return result;
   }
 
 
 
   template <int dim>
-  Tensor<1, dim>
-  ContactFace<dim>::resultant(const FrictionState &state) const
+  void
+  ContactFace<dim>::set_obstacles(const double             t,
+                                  const DistributedVector &u,
+                                  FrictionState           &state) const
   {
+    const std::vector<double> distances = step_bounds(t, u, {});
+    for (unsigned int p = 0; p < state.n_points(); ++p)
+      if (const FrictionFace::Point &point = layout().points[p];
+          point.is_obstacle)
+        {
+          state.bound[p] = distances[p];
+          state.slip[p]  = Tensor<1, 2>();
+          if (!point.gives_way())
+            continue;
+          state.multiplier[p][0] = point.compliance.force(state.penetration(p));
+          state.sticks[p]        = state.penetration(p) > 0.;
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  ContactFace<dim>::add_computed_bounds(
+    const double               t,
+    const FrictionState       &state,
+    std::vector<double>       &bounds,
+    const std::vector<double> &slip_rates) const
+  {
+    if (!any_computed_pressure)
+      return;
+    const std::vector<double> coefficients = sum_shares(
+      [t](const Sample &sample) {
+        return sample.condition->has_computed_pressure() ?
+                 sample.condition->bound(sample.x, t) :
+                 0.;
+      },
+      /* of_obstacles = */ false,
+      &slip_rates);
+    if (state.n_points() != bounds.size())
+      return;
     const FrictionFace &face = layout();
-    Tensor<1, dim>      sum;
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      sum += cartesian(p, state.multiplier[p]);
-    return Utilities::MPI::sum(sum, space.communicator);
+    for (unsigned int p = 0; p < bounds.size(); ++p)
+      if (coefficients[p] > 0.)
+        {
+          // The obstacles of the same pieces; none where other conditions hold
+          // the node along the normal.
+          const FrictionFace::Point &point = face.points[p];
+          const auto                &ids   = boundary_ids[p];
+          double                     force = 0., area = 0.;
+          for (unsigned int o = face.first_obstacle(point.node);
+               o < face.first_point[point.node + 1];
+               ++o)
+            if (std::find_first_of(ids.begin(),
+                                   ids.end(),
+                                   boundary_ids[o].begin(),
+                                   boundary_ids[o].end()) != ids.end())
+              {
+                force += state.multiplier[o][0];
+                area += point_weights[o];
+              }
+          if (force > 0.)
+            bounds[p] += coefficients[p] / area * force;
+        }
   }
 
 
@@ -347,7 +541,7 @@ namespace Viscoplastic
           for (const types::boundary_id id : boundary_ids[p])
             {
               const double weight = weights[k++];
-              if (weight == 0.)
+              if (weight == 0. || face.points[p].is_obstacle)
                 continue;
               const FrictionFace::Point &point = face.points[p];
               const Tensor<1, 3>         w     = motion(id);
@@ -372,103 +566,6 @@ namespace Viscoplastic
         face.set_node_values(x, n, result);
       }
     return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<Tensor<1, 2>>
-  ContactFace<dim>::slips(const Vector<double> &change) const
-  {
-    const FrictionFace       &face = layout();
-    std::vector<Tensor<1, 2>> result;
-    for (const auto &point : face.points)
-      result.push_back(slip(point, face.node_values(change, point.node)));
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<Tensor<1, 2>>
-  ContactFace<dim>::slips(const DistributedVector &change,
-                          const Vector<double>    &foundation_step) const
-  {
-    Vector<double> x = face_restriction.gather(change);
-    if (foundation_step.size() > 0)
-      x -= foundation_step;
-    return slips(x);
-  }
-
-
-
-  template <int dim>
-  DistributedVector
-  ContactFace<dim>::density(const FrictionState &state) const
-  {
-    const FrictionFace &face   = layout();
-    DistributedVector   values = space.owned_vector(),
-                      ghosted  = space.ghosted_vector();
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      {
-        const auto dof = nodes[face.points[p].node].first_dof;
-        if (point_weights[p] == 0.)
-          continue;
-        const Tensor<1, dim> traction =
-          cartesian(p, state.multiplier[p]) / point_weights[p];
-        for (unsigned int d = 0; d < dim; ++d)
-          values.begin()[space.owned.index_within_set(dof) + d] += traction[d];
-      }
-    space.distribute_hanging_nodes(values);
-    ghosted = values;
-    return ghosted;
-  }
-
-
-
-  template <int dim>
-  std::vector<Tensor<1, 2>>
-  ContactFace<dim>::multipliers(const DistributedVector &ghosted_density) const
-  {
-    const FrictionFace       &face = layout();
-    std::vector<Tensor<1, 2>> result(face.points.size());
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      {
-        const Node &node = nodes[face.points[p].node];
-        if (face.n_node_points(face.points[p].node) > 1)
-          continue;
-        Tensor<1, dim> density;
-        for (unsigned int d = 0; d < dim; ++d)
-          density[d] =
-            ghosted_density
-              .begin()[space.relevant.index_within_set(node.first_dof) + d];
-        const Tensor<1, dim> in_frame = transpose(node.directions) * density;
-        Tensor<1, 3>         on_face;
-        for (unsigned int i = 0; i < face.n_node_dofs(face.points[p].node); ++i)
-          on_face[i] = in_frame[node.components[i]];
-        result[p] = slip(face.points[p], on_face) * point_weights[p];
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
-  DistributedVector
-  ContactFace<dim>::nodal_field(const std::vector<double> &point_values) const
-  {
-    const FrictionFace &face   = layout();
-    DistributedVector   values = space.owned_vector(),
-                      ghosted  = space.ghosted_vector();
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      {
-        const auto dof = nodes[face.points[p].node].first_dof;
-        values.begin()[space.owned.index_within_set(dof)] +=
-          point_values[p] / face.n_node_points(face.points[p].node);
-      }
-    space.distribute_hanging_nodes(values);
-    ghosted = values;
-    return ghosted;
   }
 
 

@@ -80,7 +80,7 @@ namespace Viscoplastic
     , mean_dilatation(uses_mean_dilatation(scene, moduli.max_poissons_ratio()))
     , stress_space(space,
                    moduli,
-                   scene.has_viscosity() &&
+                   scene.has_irreversible_stress() &&
                      scene.parameters.stress.stress_history ==
                        StressHistory::quadrature_points,
                    mean_dilatation)
@@ -89,8 +89,9 @@ namespace Viscoplastic
     , tension(has_bilateral_contact(scene) ?
                 std::make_unique<ContactTension<dim>>(stress_space) :
                 nullptr)
-    , face(scene.has_friction() ? std::make_unique<ContactFace<dim>>(space) :
-                                  nullptr)
+    , face(scene.has_contact_points() ?
+             std::make_unique<ContactFace<dim>>(space) :
+             nullptr)
     , n_steps(expected_steps(scene))
   {}
 

@@ -23,6 +23,13 @@ namespace Viscoplastic
           scene.material(cell->material_id()).stiffness(cell->center()));
     for (const Stiffness &stiffness : moduli)
       max_nu = std::max(max_nu, stiffness.poissons_ratio());
+    // The same in all stages: what follows from it must not change with them.
+    if (scene.has_stages())
+      for (const auto &cell : space.cells)
+        max_nu = std::max(max_nu,
+                          scene.lasting_material(cell->material_id())
+                            .stiffness(cell->center())
+                            .poissons_ratio());
     max_nu = Utilities::MPI::max(max_nu, space.communicator);
   }
 

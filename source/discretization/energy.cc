@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/energy.h>
 
+#include <array>
 #include <cmath>
 
 namespace Viscoplastic
@@ -21,71 +22,89 @@ namespace Viscoplastic
 
 
   template <int dim>
+  CellEnergies
+  energies_of_cell(const FlowLaws<dim>                  &laws,
+                   const typename FlowLaws<dim>::AtTime &now,
+                   const State<dim>                     &old_state,
+                   const State<dim>                     &state,
+                   const std::size_t                     c)
+  {
+    const StressSpace<dim> &stress_space = laws.stress_space;
+    const unsigned int      n            = stress_space.n_samples;
+    const Stiffness        &stiffness    = stress_space.moduli(c);
+    const ViscoplasticLaw  *law          = now.law(c);
+    // At most 2^dim samples, without memory from the heap.
+    std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
+                 strain, old_strain;
+    CellEnergies result;
+    stress_space.strains(c, state.u.begin(), strain.data());
+    result.mean_strain = stress_space.mean(c, strain.data());
+    result.mean_stress = stiffness.stress(result.mean_strain);
+    if (state.z.empty())
+      return result;
+    result.mean_stress += stress_space.mean(c, &state.z[c * n]);
+    // A source flows also where there is no law.
+    const bool flows = law || laws.source_solution;
+    if (flows)
+      stress_space.strains(c, old_state.u.begin(), old_strain.data());
+    for (unsigned int s = 0; s < n; ++s)
+      {
+        const auto  &z      = state.z[c * n + s];
+        const double weight = stress_space.weight(c, s);
+        result.irreversible_energy += 0.5 * weight * (stiffness.strain(z) * z);
+        if (!flows)
+          continue;
+        const auto &old_z  = old_state.z[c * n + s];
+        const auto  stress = stiffness.stress(strain[s]) + z;
+        const auto  mean_stress =
+          0.5 * (stiffness.stress(old_strain[s]) + old_z + stress);
+        SymmetricTensor<2, 3> driving_strain;
+        // Parameters may be expressions: only for laws that use them.
+        if (law && law->has_own_energy())
+          {
+            const LawPoint point = now.point(c, s);
+            driving_strain       = law->driving_strain(
+              mean_stress, 0.5 * (old_strain[s] + strain[s]), stiffness, point);
+            result.irreversible_energy +=
+              weight *
+              (law->stored_energy(stress, strain[s], stiffness, point) -
+               0.5 * (stiffness.strain(stress) * stress));
+          }
+        else
+          driving_strain = stiffness.strain(mean_stress);
+        result.viscous_dissipation -= weight * ((z - old_z) * driving_strain);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
   StressSummary<dim>
   summarize_stress(const FlowLaws<dim> &laws,
                    const State<dim>    &old_state,
                    const State<dim>    &state)
   {
-    const StressSpace<dim>            &stress_space = laws.stress_space;
-    const unsigned int                 n            = stress_space.n_samples;
-    const auto                         now          = laws.at(state.t);
-    std::vector<SymmetricTensor<2, 3>> strain(n), old_strain(n);
-    const bool                         has_z = !state.z.empty();
-    StressSummary<dim>                 result;
-    LargestPlace<dim>                  largest_mises;
-    double                             volume = 0.;
+    const StressSpace<dim> &stress_space = laws.stress_space;
+    const auto              now          = laws.at(state.t);
+    StressSummary<dim>      result;
+    LargestPlace<dim>       largest_mises;
+    double                  volume = 0.;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
-        const Stiffness       &stiffness = stress_space.moduli(c);
-        const ViscoplasticLaw *law       = now.law(c);
-        stress_space.strains(c, state.u.begin(), strain.data());
-        const SymmetricTensor<2, 3> mean_strain =
-          stress_space.mean(c, strain.data());
-        SymmetricTensor<2, 3> mean = stiffness.stress(mean_strain);
-        if (has_z)
-          {
-            mean += stress_space.mean(c, &state.z[c * n]);
-            // A source flows also where there is no law.
-            const bool flows = law || laws.source_solution;
-            if (flows)
-              stress_space.strains(c, old_state.u.begin(), old_strain.data());
-            for (unsigned int s = 0; s < n; ++s)
-              {
-                const auto  &z      = state.z[c * n + s];
-                const double weight = stress_space.weight(c, s);
-                result.irreversible_energy +=
-                  0.5 * weight * (stiffness.strain(z) * z);
-                if (!flows)
-                  continue;
-                const auto &old_z  = old_state.z[c * n + s];
-                const auto  stress = stiffness.stress(strain[s]) + z;
-                const auto  mean_stress =
-                  0.5 * (stiffness.stress(old_strain[s]) + old_z + stress);
-                SymmetricTensor<2, 3> driving_strain;
-                // Parameters may be expressions: only for laws that use them.
-                if (law && law->has_own_energy())
-                  {
-                    const LawPoint point = now.point(c, s);
-                    driving_strain =
-                      law->driving_strain(mean_stress,
-                                          0.5 * (old_strain[s] + strain[s]),
-                                          stiffness,
-                                          point);
-                    result.irreversible_energy +=
-                      weight *
-                      (law->stored_energy(stress, strain[s], stiffness, point) -
-                       0.5 * (stiffness.strain(stress) * stress));
-                  }
-                else
-                  driving_strain = stiffness.strain(mean_stress);
-                result.viscous_dissipation -=
-                  weight * ((z - old_z) * driving_strain);
-              }
-          }
+        const auto &cell = stress_space.space.cells[c];
+        if (!stress_space.space.scene.is_present(cell->material_id()))
+          continue;
+        const CellEnergies energies =
+          energies_of_cell(laws, now, old_state, state, c);
+        const SymmetricTensor<2, 3> &mean = energies.mean_stress;
+        result.irreversible_energy += energies.irreversible_energy;
+        result.viscous_dissipation += energies.viscous_dissipation;
         const double mises = std::sqrt(1.5) * stable_norm(deviator(mean));
         if (largest_mises.may_take(mises))
-          largest_mises.add(mises, stress_space.space.cells[c]->center());
-        result.max_strain = std::max(result.max_strain, mean_strain.norm());
+          largest_mises.add(mises, cell->center());
+        result.max_strain =
+          std::max(result.max_strain, energies.mean_strain.norm());
         result.mean_von_mises += mises * stress_space.volume(c);
         result.stress_norm += (mean * mean) * stress_space.volume(c);
         volume += stress_space.volume(c);
@@ -151,6 +170,18 @@ namespace Viscoplastic
   summarize_stress<2>(const FlowLaws<2> &, const State<2> &, const State<2> &);
   template StressSummary<3>
   summarize_stress<3>(const FlowLaws<3> &, const State<3> &, const State<3> &);
+  template CellEnergies
+  energies_of_cell<2>(const FlowLaws<2> &,
+                      const FlowLaws<2>::AtTime &,
+                      const State<2> &,
+                      const State<2> &,
+                      const std::size_t);
+  template CellEnergies
+  energies_of_cell<3>(const FlowLaws<3> &,
+                      const FlowLaws<3>::AtTime &,
+                      const State<3> &,
+                      const State<3> &,
+                      const std::size_t);
   template double
   relative_stress_fluctuation<2>(const StressSpace<2> &, const State<2> &);
   template double

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/discretization/flow_laws.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Viscoplastic
 {
@@ -22,6 +23,31 @@ namespace Viscoplastic
       for (unsigned int d = 0; d < dim; ++d)
         x[d] = stress_space.position(cell, s)[d];
       return x;
+    }
+
+
+
+    /// Refuse laws that depend on the total strain where the material is added
+    /// to a body that has strains.
+    template <int dim>
+    void
+    check_added_material(const Material<dim> &material,
+                         const Stiffness     &stiffness,
+                         const LawPoint      &point)
+    {
+      if (!std::isfinite(material.added_at))
+        return;
+      // A strain of one is beyond any yield limit.
+      SymmetricTensor<2, 3> strain;
+      strain[0][0] = strain[0][1] = 1.;
+      AssertThrow(
+        material.law->tangents(stiffness.stress(strain), {}, stiffness, point)
+            .strain.norm() == 0.,
+        ExcMessage("'" + material.section + "/Law' = " + material.law_name +
+                   " depends on the total strain, which a material "
+                   "that is added ('Added at') does not begin with; "
+                   "take a law that depends on the stress alone "
+                   "(maxwell, norton, perzyna without hardening)."));
     }
   } // namespace
 
@@ -75,6 +101,11 @@ namespace Viscoplastic
                     std::array<double, 6>());
           if (law && (s == 0 || law->depends_on_position()))
             law->check(stress_space.moduli(c), start.point(c, s));
+          if (law && s == 0)
+            check_added_material(scene.material(
+                                   stress_space.space.cells[c]->material_id()),
+                                 stress_space.moduli(c),
+                                 start.point(c, s));
         }
   }
 

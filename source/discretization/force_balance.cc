@@ -137,11 +137,23 @@ namespace Viscoplastic
       {
         const std::vector<Tensor<1, 2>> carried = face.slips(foundation_step);
         for (unsigned int p = 0; p < carried.size(); ++p)
-          result.foundation_work -=
-            0.5 * (old_state.multiplier[p] + state.multiplier[p]) * carried[p];
+          if (!face.layout().points[p].is_obstacle)
+            result.foundation_work -=
+              0.5 * (old_state.multiplier[p] + state.multiplier[p]) *
+              carried[p];
       }
     for (unsigned int p = 0; p < slips.size(); ++p)
       {
+        const FrictionFace &layout = face.layout();
+        const unsigned int  node   = layout.points[p].node;
+        const unsigned int  first  = layout.first_obstacle(node),
+                           end     = layout.first_point[node + 1];
+        bool is_open               = first < end;
+        for (unsigned int o = first; o < end; ++o)
+          is_open &= state.multiplier[o][0] == 0.;
+        // Where nothing touches there is neither stick nor slip.
+        if (layout.points[p].is_obstacle || (is_open && state.bound[p] == 0.))
+          continue;
         const double size   = stable_norm(slips[p]);
         const double weight = face.weights()[p];
         const double force  = stable_norm(state.multiplier[p]);
@@ -181,6 +193,52 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  NormalContact<dim>
+  summarize_contact(const ContactFace<dim>  &face,
+                    const FrictionState     &old_state,
+                    const FrictionState     &state,
+                    const DistributedVector &change)
+  {
+    NormalContact<dim>              result;
+    const FrictionFace             &layout  = face.layout();
+    const std::vector<Tensor<1, 2>> motions = face.slips(change, {});
+    for (unsigned int p = 0; p < layout.points.size(); ++p)
+      {
+        if (!layout.points[p].is_obstacle)
+          continue;
+        const double force = state.multiplier[p][0], weight = face.weights()[p];
+        result.area += weight;
+        if (force > 0.)
+          result.contact_area += weight;
+        if (const FrictionFace::Point &point = layout.points[p];
+            point.gives_way())
+          {
+            const double w         = state.penetration(p);
+            result.max_penetration = std::max(result.max_penetration, w);
+            result.foundation_work +=
+              point.compliance.energy(w) -
+              point.compliance.energy(old_state.penetration(p));
+          }
+        if (weight > 0.)
+          result.max_pressure = std::max(result.max_pressure, force / weight);
+        result.max_gap =
+          std::max(result.max_gap, state.bound[p] - state.slip[p][0]);
+        result.foundation_work -=
+          0.5 * (old_state.multiplier[p][0] + force) * motions[p][0];
+      }
+    for (double *const sum :
+         {&result.area, &result.contact_area, &result.foundation_work})
+      *sum = layout.sum(*sum);
+    for (double *const maximum :
+         {&result.max_pressure, &result.max_gap, &result.max_penetration})
+      *maximum = Utilities::MPI::max(*maximum, layout.communicator);
+    result.force = face.resultant(state, /* of_obstacles = */ true);
+    return result;
+  }
+
+
+
 #define INSTANTIATE(dim)                                                       \
   template Forces<dim> evaluate_forces<dim>(const StressSpace<dim> &,          \
                                             const DistributedMatrix &,         \
@@ -191,6 +249,11 @@ namespace Viscoplastic
   template double             external_work<dim>(const AdmissibleSpace<dim> &, \
                                      const Forces<dim> &,          \
                                      const Forces<dim> &);         \
+  template NormalContact<dim> summarize_contact<dim>(                          \
+    const ContactFace<dim> &,                                                  \
+    const FrictionState &,                                                     \
+    const FrictionState &,                                                     \
+    const DistributedVector &);                                                \
   template FrictionIdentities check_friction<dim>(const ContactFace<dim> &,    \
                                                   const FrictionState &,       \
                                                   const FrictionState &,       \

@@ -9,27 +9,34 @@
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
 namespace Viscoplastic
 {
+  template <int dim>
+  SymmetricTensor<2, 3>
+  initial_stress(const Scene<dim>        &scene,
+                 const Point<dim>        &x,
+                 const types::material_id id)
+  {
+    SymmetricTensor<2, 3> result;
+    const Material<dim>  &material = scene.material(id);
+    if (!scene.initial_stress || material.is_absent ||
+        std::isfinite(material.added_at))
+      return result;
+    const auto components = stress_components<dim>();
+    for (unsigned int c = 0; c < components.size(); ++c)
+      result[components[c].first][components[c].second] =
+        scene.initial_stress->value(x, 0., c);
+    return result;
+  }
+
+
+
   namespace
   {
-    template <int dim>
-    SymmetricTensor<2, 3>
-    initial_stress(const Scene<dim> &scene, const Point<dim> &x)
-    {
-      SymmetricTensor<2, 3> result;
-      const auto            components = stress_components<dim>();
-      for (unsigned int c = 0; c < components.size(); ++c)
-        result[components[c].first][components[c].second] =
-          scene.initial_stress->value(x, 0., c);
-      return result;
-    }
-
-
-
     /// Call visit(cell, fe_values) for each owned cell.
     template <int dim, typename Visitor>
     void
@@ -50,7 +57,7 @@ namespace Viscoplastic
 
 
 
-    /// int tau(x) : eps(v) as a load vector in frames.
+    /// int tau(x, material) : eps(v) as a load vector in frames.
     template <int dim, typename Stress>
     DistributedVector
     virtual_work(const AdmissibleSpace<dim> &space,
@@ -62,7 +69,8 @@ namespace Viscoplastic
         for (const unsigned int q : values.quadrature_point_indices())
           {
             const SymmetricTensor<2, 3> tau =
-              stress(values.quadrature_point(q)) * values.JxW(q);
+              stress(values.quadrature_point(q), cell->material_id()) *
+              values.JxW(q);
             for (const unsigned int v : cell->vertex_indices())
               {
                 const auto node =
@@ -129,6 +137,22 @@ namespace Viscoplastic
 
 
   template <int dim>
+  const DistributedVector &
+  reported_displacement(const Scene<dim>  &scene,
+                        const State<dim>  &state,
+                        DistributedVector &difference)
+  {
+    if (!scene.parameters.initial_state.reset_displacement ||
+        state.initial_u.size() == 0)
+      return state.u;
+    difference = state.u;
+    difference -= state.initial_u;
+    return difference;
+  }
+
+
+
+  template <int dim>
   IrreversibleStress
   initial_irreversible_stress(const StressSpace<dim>  &stress_space,
                               const DistributedVector &u0)
@@ -149,11 +173,13 @@ namespace Viscoplastic
     if (space.scene.initial_stress)
       {
         std::size_t c = 0;
-        for_each_cell(space, 2, [&](const auto &, const auto &values) {
+        for_each_cell(space, 2, [&](const auto &cell, const auto &values) {
           for (const unsigned int q : values.quadrature_point_indices())
             {
               const SymmetricTensor<2, 3> stress =
-                initial_stress(space.scene, values.quadrature_point(q));
+                initial_stress(space.scene,
+                               values.quadrature_point(q),
+                               cell->material_id());
               if (n_samples == 1)
                 z[c] += stress * (values.JxW(q) / stress_space.volume(c));
               else
@@ -204,9 +230,11 @@ namespace Viscoplastic
         DistributedMatrix        matrix;
         assemble_elastic_matrix(space, identity, false, matrix);
         const DistributedVector load =
-          virtual_work(space, 3, [&](const Point<dim> &x) {
-            return initial_strain(scene, x);
-          });
+          virtual_work(space,
+                       3,
+                       [&](const Point<dim> &x, const types::material_id) {
+                         return initial_strain(scene, x);
+                       });
         const FaceRestriction no_face;
         make_bulk_solver(make_bulk_system(space, matrix, no_face), {})
           ->solve(load, prescribed, 1e-10);
@@ -240,10 +268,12 @@ namespace Viscoplastic
     for_each_cell(space, 3, [&](const auto &cell, const auto &values) {
       const Stiffness &stiffness = stress_space.moduli(c);
       stress_space.strains(c, state.u.begin(), strain.data());
-      SymmetricTensor<2, 3> sigma =
-        stiffness.stress(stress_space.mean(c, strain.data()));
-      sigma += stress_space.mean(c, &state.z[c * stress_space.n_samples]);
-      const double before = sums[0] + sums[1];
+      // sigma0^h at the samples
+      for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+        strain[s] =
+          stiffness.stress(strain[s]) + state.z[c * stress_space.n_samples + s];
+      const std::vector<SymmetricTensor<2, 3>> &sigma  = strain;
+      const double                              before = sums[0] + sums[1];
       for (const unsigned int q : values.quadrature_point_indices())
         {
           SymmetricTensor<2, 3> error;
@@ -258,9 +288,15 @@ namespace Viscoplastic
           if (scene.initial_displacement)
             error += initial_strain(scene, values.quadrature_point(q));
           sums[0] += (stiffness.stress(error) * error) * values.JxW(q);
-          error = -1. * sigma;
+          error = 0.;
+          for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+            error -= stress_space.element->shape_value(
+                       s, values.get_quadrature().point(q)) *
+                     sigma[s];
           if (scene.initial_stress)
-            error += initial_stress(scene, values.quadrature_point(q));
+            error += initial_stress(scene,
+                                    values.quadrature_point(q),
+                                    cell->material_id());
           sums[1] += (stiffness.strain(error) * error) * values.JxW(q);
         }
       if (squared_by_cell != nullptr)
@@ -270,6 +306,34 @@ namespace Viscoplastic
     });
     Utilities::MPI::sum(sums, space.communicator, sums);
     return std::sqrt(sums[0]) + std::sqrt(sums[1]);
+  }
+
+
+
+  template <int dim>
+  void
+  enter_stage(const StressSpace<dim>  &stress_space,
+              const std::vector<bool> &was_present,
+              State<dim>              &state)
+  {
+    const unsigned int                 n     = stress_space.n_samples;
+    const Scene<dim>                  &scene = stress_space.space.scene;
+    std::vector<SymmetricTensor<2, 3>> strain(n);
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      {
+        const bool is_present =
+          scene.is_present(stress_space.space.cells[c]->material_id());
+        if (is_present == was_present[c])
+          continue;
+        for (auto *field : sample_fields(state))
+          if (!field->empty())
+            std::fill_n(field->begin() + c * n, n, SymmetricTensor<2, 3>());
+        if (!is_present)
+          continue;
+        stress_space.strains(c, state.u.begin(), strain.data());
+        for (unsigned int s = 0; s < n; ++s)
+          state.z[c * n + s] = -1. * stress_space.moduli(c).stress(strain[s]);
+      }
   }
 
 
@@ -314,11 +378,55 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// Find out which obstacles are touched at t = 0. Throws ExcMessage where
+    /// the body is beyond one.
+    template <int dim>
+    void
+    touch_obstacles(const AdmissibleSpace<dim> &space,
+                    const ContactFace<dim>     &face,
+                    const DistributedVector    &u,
+                    FrictionState              &friction)
+    {
+      DistributedVector in_frames = space.owned_vector();
+      space.to_frames(u, in_frames);
+      double size = u.linfty_norm(), deepest = 0.;
+      for (unsigned int p = 0; p < friction.n_points(); ++p)
+        if (face.layout().points[p].is_obstacle)
+          size = std::max(size, std::abs(friction.bound[p]));
+      size = Utilities::MPI::max(size, space.communicator);
+
+      friction.bound = face.step_bounds(0., in_frames, {});
+      for (unsigned int p = 0; p < friction.n_points(); ++p)
+        if (face.layout().points[p].gives_way())
+          friction.sticks[p] = friction.bound[p] < 0.;
+        else if (face.layout().points[p].is_obstacle)
+          {
+            friction.sticks[p] = friction.bound[p] <= 1e-10 * size;
+            deepest            = std::max(deepest, -friction.bound[p]);
+          }
+      deepest = Utilities::MPI::max(deepest, space.communicator);
+      std::ostringstream message;
+      message
+        << "At t = 0 the body is inside of the foundation of unilateral "
+           "contact, by "
+        << deepest
+        << ": 'Gap' and 'Foundation displacement' add up to less than "
+           "'Initial state/Displacement' takes of it; let them begin with "
+           "a gap of zero or more, or set 'Initial state/Equilibrate'.";
+      AssertThrow(deepest <= 1e-8 * size, ExcMessage(message.str()));
+    }
+  } // namespace
+
+
+
   template <int dim>
   CompatibilityViolation<dim>
   compatibility_violation(const AdmissibleSpace<dim> &space,
                           const Load<dim>            &load,
                           const ContactFace<dim>     *face,
+                          const DistributedVector    &u,
                           FrictionState              &friction)
   {
     DistributedVector residual = load.values;
@@ -328,9 +436,11 @@ namespace Viscoplastic
       {
         // More points than elsewhere: what remains is quadrature error.
         DistributedVector internal =
-          virtual_work(space, 4, [&](const Point<dim> &x) {
-            return initial_stress(space.scene, x);
-          });
+          virtual_work(space,
+                       4,
+                       [&](const Point<dim> &x, const types::material_id id) {
+                         return initial_stress(space.scene, x, id);
+                       });
         largest = internal.l2_norm();
         space.restrict_to_unknowns(internal);
         size = std::max(size, internal.l2_norm());
@@ -344,7 +454,14 @@ namespace Viscoplastic
         const Vector<double> on_face = face->restriction().gather(residual);
         Vector<double>       force(on_face.size());
         friction = FrictionState(face->bounds(0.));
+        if (face->has_obstacles())
+          touch_obstacles(space, *face, u, friction);
         fit_multipliers(face->layout(), on_face, friction, force);
+        if (face->has_computed_pressure())
+          {
+            face->add_computed_bounds(0., friction, friction.bound);
+            fit_multipliers(face->layout(), on_face, friction, force);
+          }
         face->restriction().add(-1., force, residual);
       }
     // Where reactions balance the initial stress, nothing but rounding is left
@@ -359,10 +476,26 @@ namespace Viscoplastic
 
 
 
+  template SymmetricTensor<2, 3>
+  initial_stress<2>(const Scene<2> &,
+                    const Point<2> &,
+                    const types::material_id);
+  template SymmetricTensor<2, 3>
+  initial_stress<3>(const Scene<3> &,
+                    const Point<3> &,
+                    const types::material_id);
   template State<2>
   make_initial_state<2>(const StressSpace<2> &, const bool);
   template State<3>
   make_initial_state<3>(const StressSpace<3> &, const bool);
+  template const DistributedVector &
+  reported_displacement<2>(const Scene<2> &,
+                           const State<2> &,
+                           DistributedVector &);
+  template const DistributedVector &
+  reported_displacement<3>(const Scene<3> &,
+                           const State<3> &,
+                           DistributedVector &);
   template IrreversibleStress
   initial_irreversible_stress<2>(const StressSpace<2> &,
                                  const DistributedVector &);
@@ -377,14 +510,20 @@ namespace Viscoplastic
   initial_data_error<3>(const StressSpace<3> &,
                         const State<3> &,
                         Vector<double> *);
+  template void
+  enter_stage<2>(const StressSpace<2> &, const std::vector<bool> &, State<2> &);
+  template void
+  enter_stage<3>(const StressSpace<3> &, const std::vector<bool> &, State<3> &);
   template CompatibilityViolation<2>
   compatibility_violation<2>(const AdmissibleSpace<2> &,
                              const Load<2> &,
                              const ContactFace<2> *,
+                             const DistributedVector &,
                              FrictionState &);
   template CompatibilityViolation<3>
   compatibility_violation<3>(const AdmissibleSpace<3> &,
                              const Load<3> &,
                              const ContactFace<3> *,
+                             const DistributedVector &,
                              FrictionState &);
 } // namespace Viscoplastic

@@ -15,7 +15,8 @@ namespace Viscoplastic
   {
     for (const auto &cell : space.cells)
       for (const unsigned int f : cell->face_indices())
-        if (cell->face(f)->at_boundary())
+        if (cell->face(f)->at_boundary() &&
+            space.scene.is_present(cell->material_id()))
           {
             const auto &condition =
               space.scene.boundary.at(cell->face(f)->boundary_id());
@@ -72,6 +73,8 @@ namespace Viscoplastic
                                   update_quadrature_points);
         for (const auto &cell : space.cells)
           {
+            if (!space.scene.is_present(cell->material_id()))
+              continue;
             fe_values.reinit(cell);
             for (const unsigned int q : fe_values.quadrature_point_indices())
               add_at_point(fe_values,

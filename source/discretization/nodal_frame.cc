@@ -106,6 +106,24 @@ namespace Viscoplastic
         }
       return plane;
     }
+
+
+
+    template <int dim>
+    Obstacle<dim>
+    make_obstacle(const NodalFrame<dim> &frame, const Tensor<1, dim> &normal)
+    {
+      Obstacle<dim> result;
+      for (unsigned int i = 0; i < dim; ++i)
+        {
+          const double along = normal * column(frame.directions, i);
+          if (std::abs(along) > 1e-12)
+            result.map[i] = along;
+        }
+      for (unsigned int i = 0; i < frame.n_fixed; ++i)
+        std::swap(result.map[frame.fixed[i]], result.fixed[frame.fixed[i]]);
+      return result;
+    }
   } // namespace
 
 
@@ -149,13 +167,13 @@ namespace Viscoplastic
                   condition->id,
                   numbers::invalid_unsigned_int);
 
-    // The normals of pieces with given normal stress come next, so that the
-    // slip of a single piece is made of single components.
+    // The normals of pieces with given normal stress or unilateral contact come
+    // next, so that the slip of a single piece is made of single components.
     bool all_axes = true;
     for (unsigned int i = 0; i < frame.n_fixed; ++i)
       all_axes &= is_axis(frame.condition_direction[i]);
     for (const auto *condition : conditions)
-      if (condition->has_friction())
+      if (condition->has_contact_points())
         {
           all_axes &= is_axis(condition->normal);
           basis.add(condition->normal);
@@ -222,6 +240,23 @@ namespace Viscoplastic
               forms.push_back(form);
               frame.planes.push_back(plane);
             }
+        }
+
+    for (const auto *condition : conditions)
+      if (condition->is_unilateral())
+        {
+          Obstacle<dim> obstacle = make_obstacle(frame, condition->normal);
+          if (obstacle.map.norm() < parallel_tolerance)
+            continue; // other conditions hold it
+          obstacle.gives_way = condition->gives_way();
+          unsigned int o     = 0;
+          while (o < frame.obstacles.size() &&
+                 (obstacle.gives_way != frame.obstacles[o].gives_way ||
+                  (frame.obstacles[o].map - obstacle.map).norm() > 1e-10))
+            ++o;
+          if (o == frame.obstacles.size())
+            frame.obstacles.push_back(obstacle);
+          frame.obstacles[o].boundary_ids.push_back(condition->id);
         }
     return frame;
   }

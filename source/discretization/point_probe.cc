@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
-#include <deal.II/fe/mapping_q1.h>
 
 #include <viscoplastic_contact/discretization/point_probe.h>
-
-#include <sstream>
+#include <viscoplastic_contact/mesh/point_location.h>
 
 namespace Viscoplastic
 {
@@ -13,45 +11,24 @@ namespace Viscoplastic
                               const Point<dim>           &x)
     : communicator(space.communicator)
   {
-    const MappingQ1<dim> mapping;
-    for (const auto &cell : space.cells)
+    const CellPoint<dim> place =
+      locate_points(space.dof_handler.get_triangulation(),
+                    {x},
+                    [&space](const types::material_id id) {
+                      return space.scene.is_present(id);
+                    })
+        .points[0];
+    is_mine = place.is_mine();
+    if (!is_mine)
+      return;
+    const auto &cell = space.cells[place.cell];
+    for (const unsigned int v : cell->vertex_indices())
       {
-        if (!cell->bounding_box().point_inside(x, 1e-6))
-          continue;
-        Point<dim> unit;
-        try
-          {
-            unit = mapping.transform_real_to_unit_cell(cell, x);
-          }
-        catch (const typename Mapping<dim>::ExcTransformationFailed &)
-          {
-            continue;
-          }
-        if (GeometryInfo<dim>::distance_to_unit_cell(unit) > 1e-8)
-          continue;
-        is_mine = true;
-        for (const unsigned int v : cell->vertex_indices())
-          {
-            nodes[v] =
-              space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
-            shape_values[v] =
-              GeometryInfo<dim>::d_linear_shape_function(unit, v);
-          }
-        break;
+        nodes[v] =
+          space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
+        shape_values[v] =
+          GeometryInfo<dim>::d_linear_shape_function(place.unit, v);
       }
-    // A point between the cells of several ranks belongs to the first.
-    const unsigned int me   = Utilities::MPI::this_mpi_process(communicator);
-    const unsigned int none = Utilities::MPI::n_mpi_processes(communicator);
-    const unsigned int owner =
-      Utilities::MPI::min(is_mine ? me : none, communicator);
-    if (owner == none)
-      {
-        std::ostringstream message;
-        message << "'Output/Points': the point (" << x
-                << ") does not lie in the body.";
-        AssertThrow(false, ExcMessage(message.str()));
-      }
-    is_mine = owner == me;
   }
 
 

@@ -46,15 +46,21 @@ namespace Viscoplastic
           {
             const FrictionState &friction = state.friction;
             double               work     = 0.;
+            const FrictionFace  &face     = discretization.face->layout();
             for (unsigned int p = 0; p < friction.n_points(); ++p)
-              if (!friction.sticks[p])
+              if (!face.points[p].is_obstacle && !friction.sticks[p])
                 work += friction.multiplier[p] * friction.slip[p];
-            return discretization.face->layout().sum(work);
+            return face.sum(work);
           }
         case QuantityOfInterest::Kind::reaction:
           return reactions(discretization.space, forces).at(quantity.number)[d];
         default:
-          return probe->value(state.u)[d];
+          {
+            DistributedVector difference;
+            return probe->value(reported_displacement(discretization.scene(),
+                                                      state,
+                                                      difference))[d];
+          }
       }
   }
 
@@ -72,7 +78,7 @@ namespace Viscoplastic
         const FrictionFace &layout = face->layout();
         Vector<double>      force(layout.n_dofs());
         for (unsigned int p = 0; p < friction.n_points(); ++p)
-          if (!friction.sticks[p])
+          if (!layout.points[p].is_obstacle && !friction.sticks[p])
             {
               const FrictionFace::Point &point = layout.points[p];
               layout.set_node_values(layout.node_values(force, point.node) +
@@ -125,7 +131,22 @@ namespace Viscoplastic
           everywhere.begin()[i] = 1.;
         ghosted = everywhere;
         space.to_frames(ghosted, everywhere);
-        face->restriction().set(face->restriction().gather(everywhere), w);
+        Vector<double> on_face = face->restriction().gather(everywhere);
+        // Along obstacles there is no friction.
+        const FrictionFace &layout = face->layout();
+        for (unsigned int n = 0; n < layout.n_nodes(); ++n)
+          for (unsigned int p = layout.first_obstacle(n);
+               p < layout.first_point[n + 1];
+               ++p)
+            {
+              const Tensor<1, 3> &normal = layout.points[p].map[0];
+              const Tensor<1, 3>  here   = layout.node_values(on_face, n);
+              layout.set_node_values(here - (normal * here) /
+                                              normal.norm_square() * normal,
+                                     n,
+                                     on_face);
+            }
+        face->restriction().set(on_face, w);
       }
     return w;
   }
@@ -140,9 +161,14 @@ namespace Viscoplastic
     FrictionState       held(std::vector<double>(face.points.size(), 0.));
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
-        const FrictionFace::Point &point = face.points[p];
-        held.multiplier[p] = slip(point, face.node_values(force, point.node)) /
-                             face.n_node_points(point.node);
+        const FrictionFace::Point &point  = face.points[p];
+        const unsigned int first_obstacle = face.first_obstacle(point.node);
+        held.multiplier[p] =
+          slip(point, face.node_values(force, point.node)) /
+          (point.is_obstacle ?
+             (face.first_point[point.node + 1] - first_obstacle) *
+               point.map[0].norm_square() :
+             first_obstacle - face.first_point[point.node]);
       }
     return discretization.face->density(held);
   }
@@ -169,8 +195,11 @@ namespace Viscoplastic
         const FrictionFace &face   = d.face->layout();
         FrictionState       linear = friction;
         for (unsigned int p = 0; p < linear.n_points(); ++p)
-          // Nothing holds a point without friction.
-          linear.sticks[p] = linear.sticks[p] && linear.bound[p] > 0.;
+          // Nothing holds a point without friction, or off the foundation.
+          linear.sticks[p] =
+            linear.sticks[p] &&
+            (face.points[p].is_obstacle ? linear.multiplier[p][0] > 0. :
+                                          linear.bound[p] > 0.);
         std::vector<Tensor<2, 3>> inverse_diagonal;
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
           inverse_diagonal.push_back(

@@ -20,7 +20,8 @@ namespace Viscoplastic
     {
       if (!discretization.face)
         return {};
-      return discretization.face->density(state.friction);
+      return discretization.face->density(state.friction,
+                                          /* of_friction_alone = */ true);
     }
   } // namespace
 

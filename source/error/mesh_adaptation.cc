@@ -454,10 +454,37 @@ namespace Viscoplastic
                        const State<dim>          &state,
                        const DistributedVector   &multiplier_density)
   {
-    const ContactFace<dim> &face = *discretization.face;
-    FrictionState           friction(face.bounds(state.t));
-    friction.multiplier        = face.multipliers(multiplier_density);
-    DistributedVector velocity = discretization.space.owned_vector();
+    const ContactFace<dim>   &face = *discretization.face;
+    const std::vector<double> rates =
+      face.slip_rates(state.velocity, state.t - state.k, state.t);
+    FrictionState friction(face.bounds(state.t, rates));
+    friction.multiplier          = face.multipliers(multiplier_density);
+    const FrictionFace &layout   = face.layout();
+    DistributedVector   velocity = discretization.space.owned_vector();
+    if (face.has_obstacles())
+      {
+        discretization.space.to_frames(state.u, velocity);
+        const std::vector<Tensor<1, 2>> carried_over = friction.multiplier;
+        face.set_obstacles(state.t, velocity, friction);
+        for (unsigned int p = 0; p < friction.n_points(); ++p)
+          if (const FrictionFace::Point &point = layout.points[p];
+              point.is_obstacle)
+            {
+              const double force = std::max(0., carried_over[p][0]);
+              // The pressure is known better than the penetration, which at new
+              // nodes is that of an interpolant; at corners it is all there is.
+              if (point.gives_way() && layout.first_point[point.node + 1] -
+                                           layout.first_obstacle(point.node) >
+                                         1)
+                continue;
+              friction.multiplier[p][0] = force;
+              if (point.gives_way())
+                friction.bound[p] = force > 0. ?
+                                      -point.compliance.penetration(force) :
+                                      std::max(0., friction.bound[p]);
+            }
+        face.add_computed_bounds(state.t, friction, friction.bound, rates);
+      }
     discretization.space.to_frames(state.velocity, velocity);
     Vector<double> carried = face.foundation_step(state.t - state.k, state.t);
     if (carried.size() > 0)
@@ -469,9 +496,15 @@ namespace Viscoplastic
         const double bound      = friction.bound[p];
         auto        &multiplier = friction.multiplier[p];
         const double size       = stable_norm(multiplier);
+        if (layout.points[p].is_obstacle)
+          {
+            friction.sticks[p] = size > 0.;
+            continue;
+          }
         if (size > bound)
           multiplier *= bound / size;
-        friction.sticks[p] = size < (1. - 1e-6) * bound ||
+        // A bound of the slip rate is that of the next step.
+        friction.sticks[p] = (rates.empty() && size < (1. - 1e-6) * bound) ||
                              stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
       }
     return friction;

@@ -32,6 +32,8 @@ namespace Viscoplastic
     std::vector<double> sums(3, 0.);
     for (unsigned int p = 0; p < friction.n_points(); ++p)
       {
+        if (discretization.face->layout().points[p].is_obstacle)
+          continue;
         if (!old.sticks[p])
           {
             sums[0] += old.bound[p];

@@ -55,9 +55,14 @@ namespace Viscoplastic
           case BoundaryRole::contact:
             if (condition.is_glued())
               break;
+            if (condition.is_unilateral())
+              {
+                residual = traction + multiplier_density;
+                break;
+              }
             residual =
               tangential(traction + multiplier_density, condition.normal);
-            if (condition.friction_law == FrictionLaw::coulomb)
+            if (condition.contact_law == ContactLaw::given_stress)
               residual +=
                 ((traction - given) * condition.normal) * condition.normal;
             break;
@@ -239,17 +244,18 @@ namespace Viscoplastic
     const BoundaryCondition<dim> &condition = *face.condition;
     const LocalCell              &cell      = cells[face.cell];
     const FaceShape              &shape = shapes[cell.shape].faces[face.face];
-    const bool                    friction = condition.has_friction(),
+    const bool has_multipliers          = condition.has_contact_points(),
                varies =
                  condition.carries_load() && condition.load_depends_on_time(),
-               bounds_vary = friction && condition.bound_depends_on_time();
-    Assert(!friction || fields.multiplier_density != nullptr,
+               has_bound   = condition.has_given_bound(),
+               bounds_vary = has_bound && condition.bound_depends_on_time();
+    Assert(!has_multipliers || fields.multiplier_density != nullptr,
            ExcMessage("A scene with friction has multipliers."));
     Residuals result;
     for (unsigned int q = 0; q < n_face_points; ++q)
       {
         Tensor<1, dim> density, given;
-        if (friction)
+        if (has_multipliers)
           for (unsigned int v = 0; v < n_vertices; ++v)
             for (unsigned int d = 0; d < dim; ++d)
               density[d] +=
@@ -263,7 +269,7 @@ namespace Viscoplastic
                 face.data[q];
             // Nodal multipliers respect nodal bounds; between nodes the
             // density exceeds a bound that jumps.
-            if (friction)
+            if (has_bound)
               result[n_face_points + q][0] =
                 std::max(0.,
                          tangential(density, condition.normal).norm() -
@@ -295,8 +301,9 @@ namespace Viscoplastic
     std::vector<Tensor<1, dim>> &tractions = traction_buffer;
     tractions.resize((cells.size() * n_faces + subface_sides.size()) *
                      n_face_points);
-    const auto    &b       = space.scene.body_force;
-    const bool     is_kept = !body_force.empty();
+    const bool     has_initial = fields.t && !initial_tractions.empty();
+    const auto    &b           = space.scene.body_force;
+    const bool     is_kept     = !body_force.empty();
     Tensor<1, dim> uniform_force;
     if (b && uniform_body_force && fields.t)
       uniform_force = b->vector(Point<dim>(), *fields.t);
@@ -308,12 +315,12 @@ namespace Viscoplastic
           add_tractions(shape.faces[f],
                         terms,
                         &tractions[(c * n_faces + f) * n_face_points]);
-        if (c >= n_owned)
+        if (c >= n_owned || !cells[c].is_present)
           continue;
         // Without a force that varies, one point speaks for all where the
         // second derivatives are constant.
         const bool one_point =
-          shape.constant_hessians && (!b || uniform_body_force);
+          shape.constant_hessians && (!b || uniform_body_force) && !has_initial;
         const unsigned int n         = one_point ? 1 : n_points;
         Residuals          residuals = divergence(shape, terms, one_point);
         if (b && fields.t)
@@ -323,6 +330,9 @@ namespace Viscoplastic
               uniform_body_force ?
                         uniform_force :
                         b->vector(origins[c] + shape.positions[q], *fields.t);
+        if (has_initial)
+          for (unsigned int q = 0; q < n; ++q)
+            residuals[q] += initial_divergence[c * n_points + q];
         visit({Part::cell,
                c,
                Utilities::fixed_power<2>(shape.diameter),
@@ -337,6 +347,10 @@ namespace Viscoplastic
                     stress_terms(subface_sides[s].cell, u, mean_z),
                     &tractions[(cells.size() * n_faces + s) * n_face_points]);
 
+    if (has_initial)
+      for (std::size_t i = 0; i < tractions.size(); ++i)
+        tractions[i] += initial_tractions[i];
+
     // Half of each jump goes to each side. Normals point out of both.
     for (const InteriorFace &face : interior_faces)
       {
@@ -348,16 +362,20 @@ namespace Viscoplastic
         for (unsigned int q = 0; q < n_face_points; ++q)
           jumps[q] = tractions[face.tractions[0] + q] +
                      tractions[face.tractions[1] + face.partner[q]];
+        // Beside an absent material the whole jump is that of a free face.
+        const bool is_free =
+          !cells[face.cells[0]].is_present || !cells[face.cells[1]].is_present;
         for (const unsigned int cell : face.cells)
-          visit(
-            {Part::interior_face,
-             cell,
-             0.5 * face.diameter,
-             n_face_points,
-             shape.weights.data(),
-             jumps,
-             &shape,
-             is_hanging && cell == face.cells[1] ? 1. / n_face_points : 1.});
+          if (cells[cell].is_present)
+            visit(
+              {is_free ? Part::boundary_face : Part::interior_face,
+               cell,
+               (is_free ? 1. : 0.5) * face.diameter,
+               n_face_points,
+               shape.weights.data(),
+               jumps,
+               &shape,
+               is_hanging && cell == face.cells[1] ? 1. / n_face_points : 1.});
       }
     for (const BoundaryFace &face : boundary_faces)
       {

@@ -3,6 +3,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
@@ -62,6 +63,7 @@ namespace Viscoplastic
     make_cells();
     make_faces();
     make_face_values();
+    make_initial_stress();
     shape_of_key.clear();
     subface_shape_of.clear();
 
@@ -151,17 +153,17 @@ namespace Viscoplastic
                      cell->active_cell_index(),
                      cell->global_active_cell_index(),
                      {},
-                     E};
+                     E,
+                     space.scene.is_present(cell->material_id())};
       for (unsigned int v = 0; v < n_vertices; ++v)
         here.nodes[v] =
           space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
       cells.push_back(std::move(here));
+      origins.push_back(cell->vertex(0));
+      material_ids.push_back(cell->material_id());
     };
     for (const auto &cell : space.cells)
-      {
-        add(cell, stress_space.moduli(cells.size()));
-        origins.push_back(cell->vertex(0));
-      }
+      add(cell, stress_space.moduli(cells.size()));
     for (const auto &cell : ghost_cells(space.dof_handler))
       add(cell,
           space.scene.material(cell->material_id()).stiffness(cell->center()));
@@ -252,7 +254,8 @@ namespace Viscoplastic
             {
               const auto &condition =
                 space.scene.boundary.at(cell->face(f)->boundary_id());
-              if (condition.prescribes_all())
+              if (condition.prescribes_all() ||
+                  !cells[number_of(cell)].is_present)
                 continue;
               add_boundary_face(cell, f, number_of(cell), condition);
             }
@@ -309,7 +312,7 @@ namespace Viscoplastic
         face.positions[q]  = x;
         if (condition.carries_load() && !condition.load_depends_on_time())
           face.data[q] = condition.load(x, shape.normals[q], 0.);
-        if (condition.has_friction() && !condition.bound_depends_on_time())
+        if (condition.has_given_bound() && !condition.bound_depends_on_time())
           face.bounds[q] = condition.bound(x, 0.);
       }
     boundary_faces.push_back(face);
@@ -330,6 +333,67 @@ namespace Viscoplastic
         for (unsigned int q = 0; q < n_face_points; ++q)
           for (unsigned int v = 0; v < n_vertices; ++v)
             face_values[f][q][v] = fe.shape_value(v * dim, on_face.point(q));
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::make_initial_stress()
+  {
+    // Beside an initial displacement z is something else.
+    const Scene<dim> &scene = stress_space.space.scene;
+    if (!scene.initial_stress || scene.initial_displacement)
+      return;
+    const auto at = [&](const std::size_t c, const Tensor<1, dim> &position) {
+      return initial_stress(scene, origins[c] + position, material_ids[c]);
+    };
+    std::vector<SymmetricTensor<2, 3>> means;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      {
+        const Shape          &shape = shapes[cells[c].shape];
+        SymmetricTensor<2, 3> mean;
+        for (unsigned int q = 0; q < n_points; ++q)
+          mean += at(c, shape.positions[q]) * (shape.weights[q] / shape.volume);
+        means.push_back(mean);
+      }
+    const auto add_face = [&](const std::size_t c, const FaceShape &face) {
+      for (unsigned int q = 0; q < n_face_points; ++q)
+        {
+          const SymmetricTensor<2, 3> rest =
+            at(c, face.positions[q]) - means[c];
+          Tensor<1, dim> traction;
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int j = 0; j < dim; ++j)
+              traction[i] += rest[i][j] * face.normals[q][j];
+          initial_tractions.push_back(traction);
+        }
+    };
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (const FaceShape &face : shapes[cells[c].shape].faces)
+        add_face(c, face);
+    for (const SubfaceSide &side : subface_sides)
+      add_face(side.cell, subface_shapes[side.table]);
+
+    // By central differences, within the cell.
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      {
+        const Shape &shape = shapes[cells[c].shape];
+        const double h     = 1e-4 * shape.diameter;
+        for (const Tensor<1, dim> &x : shape.positions)
+          {
+            Tensor<1, dim> divergence;
+            for (unsigned int j = 0; j < dim; ++j)
+              {
+                const Tensor<1, dim> step = h * Point<dim>::unit_vector(j);
+                const SymmetricTensor<2, 3> change =
+                  (at(c, x + step) - at(c, x - step)) / (2. * h);
+                for (unsigned int i = 0; i < dim; ++i)
+                  divergence[i] += change[i][j];
+              }
+            initial_divergence.push_back(divergence);
+          }
       }
   }
 

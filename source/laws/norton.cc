@@ -162,7 +162,7 @@ namespace Viscoplastic
       prm.declare_entry("Exponent",
                         "3",
                         Patterns::Anything(),
-                        "n >= 1, an expression of position and t.");
+                        "n >= 1, an expression of position and t. Unit: 1.");
       prm.declare_entry("Stress cap",
                         "",
                         Patterns::Anything(),

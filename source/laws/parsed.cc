@@ -227,8 +227,7 @@ namespace Viscoplastic
       prm.declare_entry("Factor",
                         "1",
                         Patterns::Anything(),
-                        "F >= 0, an expression of position and t, without "
-                        "unit.");
+                        "F >= 0, an expression of position and t. Unit: 1.");
     };
     law.make = [](const LawSection &section) {
       return std::make_unique<Parsed>(section);

@@ -366,7 +366,7 @@ namespace Viscoplastic
                         "0.3",
                         Patterns::Anything(),
                         "Poisson's ratio of E_inf in (-1, 1/2), an expression "
-                        "of position.");
+                        "of position. Unit: 1.");
       prm.declare_entry("Relaxation time",
                         "1",
                         Patterns::Anything(),

@@ -41,26 +41,17 @@ namespace Viscoplastic
   void
   AlgebraicMultigrid::build()
   {
-    // Components that are cut off: excluded ones, and the face components of
-    // nodes that stick altogether.
+    // Components that are cut off: excluded ones, and those of the face that
+    // are blocked by themselves, such as the normal one of a node that slips on
+    // the foundation.
     const Epetra_CrsMatrix &K = matrix.trilinos_matrix();
     Epetra_Vector           keep(K.DomainMap());
     for (std::size_t i = 0; i < excluded.size(); ++i)
       keep[i] = excluded[i] ? 0. : 1.;
-    Vector<double> cut_off(face.n_dofs());
     for (unsigned int n = 0; n < truncation.projector.size(); ++n)
-      {
-        const unsigned int first = face.first_dof[n],
-                           end   = face.first_dof[n + 1];
-        bool sticks              = true;
-        for (unsigned int i = 0; i < end - first; ++i)
-          sticks &= truncation.projector[n][i][i] == 0.;
-        if (sticks)
-          std::fill(cut_off.begin() + first, cut_off.begin() + end, 1.);
-      }
-    for (unsigned int k = 0; k < face.n_dofs(); ++k)
-      if (cut_off[k] == 1.)
-        keep[restriction.positions()[k]] = 0.;
+      for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+        if (truncation.projector[n][i][i] == 0.)
+          keep[restriction.positions()[face.first_dof[n] + i]] = 0.;
     Epetra_Vector keep_column(K.ColMap());
     if (K.Importer() != nullptr)
       keep_column.Import(keep, *K.Importer(), Insert);

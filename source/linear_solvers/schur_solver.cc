@@ -456,16 +456,15 @@ namespace Viscoplastic
     NodalBlocks blocks{face, std::vector<Tensor<2, 3>>(face.n_nodes())};
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
-        // Blocked directions get the identity, which keeps the block regular,
-        // which must not swamp the others in units of huge stresses.
+        // Blocked directions get a multiple of the identity, which keeps the
+        // block regular, of the size of the others.
         const Tensor<2, 3> &P         = truncation.projector[n];
         const Tensor<2, 3>  stiffness = schur_complement->diagonal_block(n);
-        const double        size      = stiffness.norm();
-        const double        one       = size < 1e-6 ? size : 1.;
-        Tensor<2, 3>        block =
-          P * (stiffness + truncation.spring[n]) * P - one * P;
+        const double        one       = stiffness.norm();
+        Tensor<2, 3>        block = P * (stiffness + truncation.spring[n]) * P;
         for (unsigned int d = 0; d < 3; ++d)
-          block[d][d] += one;
+          for (unsigned int e = 0; e < 3; ++e)
+            block[d][e] += one * ((d == e ? 1. : 0.) - P[d][e]);
         blocks.inverse[n] = P * invert(block) * P;
       }
     // A small face problem costs nothing: solve it to the end, and the active

@@ -11,18 +11,21 @@
 
 namespace Viscoplastic
 {
-  template <int dim>
-  PieceNormal<dim>
-  piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,
-               const types::boundary_id                         id)
+  namespace
   {
-    const MPI_Comm comm = triangulation.get_communicator();
-    // These points include the vertices, where warped faces deviate most.
-    const FE_Nothing<dim> fe;
-    FEFaceValues<dim>     face_values(fe,
-                                  QGaussLobatto<dim - 1>(3),
-                                  update_normal_vectors | update_JxW_values);
-    const auto            for_each_normal = [&](const auto &visit) {
+    /// Call visit(normal, JxW) at points of all owned faces with an id.
+    template <int dim, typename Visitor>
+    void
+    visit_normals(
+      const parallel::distributed::Triangulation<dim> &triangulation,
+      const types::boundary_id                         id,
+      const Visitor                                   &visit)
+    {
+      // These points include the vertices, where warped faces deviate most.
+      const FE_Nothing<dim> fe;
+      FEFaceValues<dim>     face_values(fe,
+                                    QGaussLobatto<dim - 1>(3),
+                                    update_normal_vectors | update_JxW_values);
       for (const auto &cell : triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           for (const unsigned int f : cell->face_indices())
@@ -33,6 +36,19 @@ namespace Viscoplastic
                      face_values.quadrature_point_indices())
                   visit(face_values.normal_vector(q), face_values.JxW(q));
               }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  PieceNormal<dim>
+  piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,
+               const types::boundary_id                         id)
+  {
+    const MPI_Comm comm            = triangulation.get_communicator();
+    const auto     for_each_normal = [&](const auto &visit) {
+      visit_normals(triangulation, id, visit);
     };
 
     Tensor<1, dim> sum;
@@ -69,10 +85,36 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  bool
+  faces_towards(const parallel::distributed::Triangulation<dim> &triangulation,
+                const types::boundary_id                         id,
+                const Tensor<1, dim>                            &direction)
+  {
+    bool here = false;
+    visit_normals(triangulation,
+                  id,
+                  [&](const Tensor<1, dim> &normal, const double) {
+                    here |= normal * direction > 1e-6;
+                  });
+    return Utilities::MPI::max(here ? 1 : 0,
+                               triangulation.get_communicator()) == 1;
+  }
+
+
+
   template PieceNormal<2>
   piece_normal(const parallel::distributed::Triangulation<2> &,
                const types::boundary_id);
   template PieceNormal<3>
   piece_normal(const parallel::distributed::Triangulation<3> &,
                const types::boundary_id);
+  template bool
+  faces_towards(const parallel::distributed::Triangulation<2> &,
+                const types::boundary_id,
+                const Tensor<1, 2> &);
+  template bool
+  faces_towards(const parallel::distributed::Triangulation<3> &,
+                const types::boundary_id,
+                const Tensor<1, 3> &);
 } // namespace Viscoplastic

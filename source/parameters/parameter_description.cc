@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
+#include <viscoplastic_contact/parameters/wrong_lines.h>
 
 #include <boost/property_tree/ptree.hpp>
 
@@ -31,10 +32,11 @@ namespace Viscoplastic
 
     const std::string introduction =
       "Entries that are left out have their defaults. Units are any consistent "
-      "ones. Expressions are texts for muParser with the variables x, y (z in "
-      "3D) and t, where the entry may depend on them, and the constant pi: "
-      "`0.3*min(t, 2 - t)', `if(x < 1, 0.02, 0.3)'. Components of vectors are "
-      "separated by semicolons.";
+      "ones, or those that the subsection `Units' declares. Expressions are "
+      "texts for muParser with the variables x, y (z in 3D) and t, where the "
+      "entry may depend on them, and the constant pi: `0.3*min(t, 2 - t)', "
+      "`if(x < 1, 0.02, 0.3)'. Components of vectors are separated by "
+      "semicolons.";
 
     const std::map<std::string, std::string> about_sections{
       {described_boundary,
@@ -50,6 +52,12 @@ namespace Viscoplastic
        "`2*force(t); 0'. The first column is the argument, a time or whatever "
        "the expression gives; `Interpolation' is linear or constant, `Outside' "
        "of the rows refuse or constant."},
+      {"Units",
+       "The units of numbers without unit, of what a run prints and of its "
+       "results. With them a number may have any unit: `1 year', `25 MPa', "
+       "`0.022 MPa/m', `1e-5 MPa^-5/day', also in expressions. Units are nm, "
+       "um, mm, cm, m, km; ms, s, min, h, day, year (365.25 days); Pa, kPa, "
+       "MPa, GPa, bar; N, kN, MN; J; kg; and products of them."},
       {"Material",
        "The material of all cells, and how stresses are discretised."}};
 
@@ -329,7 +337,7 @@ namespace Viscoplastic
                 "# ",
                 78)
         << '\n';
-    const Tree tree = declared_entries(parameters.handler);
+    const Tree tree = parameters.entries_as_written();
     Tree       top;
     for (const auto &child : tree)
       if (is_entry(child.second))

@@ -10,11 +10,14 @@
 #include <viscoplastic_contact/laws/law_library.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
+#include <viscoplastic_contact/parameters/quantities.h>
 #include <viscoplastic_contact/parameters/table_sections.h>
+#include <viscoplastic_contact/parameters/wrong_lines.h>
 
 #include <boost/property_tree/json_parser.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <regex>
 #include <set>
@@ -30,207 +33,13 @@ namespace Viscoplastic
 
 
 
-    using Names = std::vector<std::string>;
-    /// Paths `Section/Entry' and values, in the order of declaration.
-    using Entries = std::vector<std::pair<std::string, std::string>>;
-
-    Entries
-    collect(const Tree &node, const std::string &path = "")
-    {
-      Entries entries;
-      for (const auto &[name, below] : node)
-        if (is_entry(below))
-          entries.emplace_back(path + name, below.get<std::string>("value"));
-        else
-          for (auto &entry : collect(below, path + name + '/'))
-            entries.push_back(std::move(entry));
-      return entries;
-    }
-
-
-
     std::string
-    comma_separated(const Names &names)
+    comma_separated(const std::vector<std::string> &names)
     {
       std::string result;
       for (const std::string &name : names)
         result += (result.empty() ? "" : ", ") + name;
       return result;
-    }
-
-
-
-    bool
-    contains(const Names &names, const std::string &name)
-    {
-      return std::find(names.begin(), names.end(), name) != names.end();
-    }
-
-
-
-    /// The names of the entries in @p section, or of its subsections.
-    Names
-    names_in(const std::string &section,
-             const Entries     &entries,
-             const bool         of_subsections)
-    {
-      Names names;
-      for (const auto &[path, value] : entries)
-        if (path.compare(0, section.size(), section) == 0)
-          {
-            const std::string below = path.substr(section.size());
-            const std::string name  = below.substr(0, below.find('/'));
-            if ((name != below) == of_subsections && !contains(names, name))
-              names.push_back(name);
-          }
-      return names;
-    }
-
-
-
-    /// The name of a line with `/' for each `.', if that begins with a
-    /// subsection; otherwise empty.
-    std::string
-    with_slashes(const ParameterLine &line, const Entries &entries)
-    {
-      const std::size_t dot = line.name.find('.');
-      if (dot == std::string::npos)
-        return "";
-      std::string path = line.section + line.name;
-      std::replace(path.begin(), path.end(), '.', '/');
-      const std::string section = path.substr(0, path.find('/'));
-      const std::string kind    = section.substr(0, section.find(' '));
-      return contains(names_in("", entries, true), section) ||
-                 ((kind == "Boundary" || kind == "Material") &&
-                  kind != section) ?
-               path :
-               "";
-    }
-
-
-
-    /// That there is no such entry or subsection, and what may have been meant.
-    std::string
-    unknown_name(const ParameterLine &line, const Tree &declared)
-    {
-      const Entries     entries = collect(declared);
-      const bool        opens   = line.is_opening;
-      const std::string what    = opens ? "subsection" : "entry";
-      const std::string parent =
-        line.section.substr(0, line.section.rfind('/'));
-      const std::string said =
-        (parent.empty() ? "there is no " + what :
-                          "'" + excerpt(parent) + "' has no " + what) +
-        " '" + excerpt(line.name) + "'" +
-        (parent.empty() && !opens ? " outside of subsections" : "");
-
-      Names outermost = names_in("", entries, opens);
-      if (opens)
-        {
-          if (line.name == "Boundary")
-            return said + "; a boundary needs its id, as in `Boundary 0'.";
-          if (line.name == "Table")
-            return said + "; a table needs a number, as in `Table 1'.";
-          // Any number makes a subsection.
-          const std::size_t id = line.name.find_last_not_of("0123456789") + 1;
-          for (const std::string kind : {"Boundary ", "Material ", "Table "})
-            if (id < line.name.size())
-              outermost.push_back(kind + line.name.substr(id));
-          if (line.number > 0 && !parent.empty() &&
-              contains(outermost, line.name))
-            {
-              const ParameterLine *around = &line;
-              do
-                --around;
-              while (!around->is_opening ||
-                     around->section + around->name != parent);
-              return said +
-                     ", which stands outside of others; is there no `end' to "
-                     "the one that begins in line " +
-                     std::to_string(around->number) + "?";
-            }
-        }
-      else
-        {
-          const std::string path = with_slashes(line, entries);
-          if (!path.empty())
-            return said + (line.number == 0 ?
-                             "; subsections are separated by `/', as in '" +
-                               excerpt(path) + "'." :
-                             "; it is `set " +
-                               excerpt(path.substr(path.rfind('/') + 1)) +
-                               "' within `subsection " +
-                               excerpt(path.substr(0, path.find('/'))) + "'.");
-          if (contains(names_in(line.section, entries, true), line.name))
-            return said + "; that is the name of a subsection.";
-          if (contains(outermost, line.name))
-            return said + "; it belongs outside of all subsections.";
-          Names owners;
-          for (const auto &[path, value] : entries)
-            {
-              const std::size_t slash = path.rfind('/');
-              if (slash != std::string::npos &&
-                  path.substr(slash + 1) == line.name)
-                owners.push_back("'" + path.substr(0, slash) + "'");
-            }
-          if (!owners.empty())
-            return said + "; '" + line.name + "' belongs to " +
-                   enumeration(owners, 6) + ".";
-        }
-
-      const Names candidates =
-        parent.empty() ? outermost : names_in(line.section, entries, opens);
-      const std::string nearest = nearest_name(line.name, candidates);
-      const std::string several = opens ? "subsections" : "entries";
-      return said + (!nearest.empty()   ? "; did you mean '" + nearest + "'?" :
-                     candidates.empty() ? "; it has no " + several + "." :
-                                          "; its " + several + " are: " +
-                                            enumeration(candidates, 30) + ".");
-    }
-
-
-
-    /// What is wrong with a line that ParameterHandler does not understand.
-    std::string
-    no_statement(const std::string &text)
-    {
-      const std::string word = text.substr(0, text.find(' '));
-      const std::string said = "'" + excerpt(text) + "' ";
-      if (word == "set")
-        return said +
-               (text.find('=') == std::string::npos ?
-                  "has no `='" :
-                  "has no name before `='") +
-               "; it must be `set Entry = value'.";
-      if (word == "end")
-        return "`end' stands alone on its line, but '" +
-               excerpt(Utilities::trim(text.substr(3))) + "' follows.";
-      if (word == "subsection" || word == "include")
-        return "`" + word + "' needs a " +
-               (word == "include" ? "file" : "name") + " after it.";
-      return said + "is no statement; a line is `set Entry = value', "
-                    "`subsection Name', `end', `include file', or a comment "
-                    "after `#'.";
-    }
-
-
-
-    /// What the entry of the line may be instead.
-    std::string
-    wrong_value(const ParameterLine &line, const Tree &declared)
-    {
-      const std::string path    = line.section + line.name;
-      const auto        pattern = declared.get<std::string>(
-        Tree::path_type(path + "/pattern_description", '/'));
-      const std::string near =
-        pattern.compare(0, 11, "[Selection ") == 0 ?
-          nearest_name(line.value,
-                       Utilities::split_string_list(
-                         pattern.substr(11, pattern.rfind(' ') - 11), '|')) :
-          "";
-      return "'" + path + "' is '" + excerpt(line.value) + "'; it must be " +
-             allowed_values(pattern) +
-             (near.empty() ? "." : "; did you mean '" + near + "'?");
     }
   } // namespace
 
@@ -259,57 +68,17 @@ namespace Viscoplastic
 
 
 
-  std::string
-  allowed_values(const std::string &pattern_description)
+  std::vector<std::pair<std::string, std::string>>
+  values_of(const Tree &node, const std::string &path)
   {
-    static const std::regex selection("\\[Selection (.*) \\]"),
-      selections("\\[MultipleSelection (.*) \\]"),
-      range("\\[(Integer range|Double) (.*)\\.\\.\\.(.*) \\(inclusive\\)\\]"),
-      items("\\[List of <(.*)> of length (.*)\\.\\.\\.(.*) \\(inclusive\\)\\]");
-    static const std::map<std::string, std::string> others{
-      {"[Integer]", "a whole number"},
-      {"[Bool]", "true or false"},
-      {"[Anything]", "any text"}};
-
-    std::smatch part;
-    if (std::regex_match(pattern_description, part, selections))
-      return "names separated by commas, each one of " +
-             enumeration(Utilities::split_string_list(part[1], '|'), 50);
-    if (std::regex_match(pattern_description, part, selection))
-      {
-        std::vector<std::string> values =
-          Utilities::split_string_list(part[1], '|');
-        // A default that stands for nothing is no choice.
-        values.erase(std::remove(values.begin(), values.end(), "not given"),
-                     values.end());
-        return "one of " + enumeration(values, 50);
-      }
-    if (std::regex_match(pattern_description, part, range))
-      {
-        const auto bound = [&part](const int i, const int none) {
-          return part[i] == "-MAX_DOUBLE" || part[i] == "MAX_DOUBLE" ||
-                     part[i] == std::to_string(none) ?
-                   "" :
-                   part.str(i);
-        };
-        const std::string lower = bound(2, std::numeric_limits<int>::min());
-        const std::string upper = bound(3, std::numeric_limits<int>::max());
-        return (part[1] == "Double" ? "a number" : "a whole number") +
-               (!lower.empty() && !upper.empty() ?
-                  " from " + lower + " to " + upper :
-                !lower.empty() ? " of at least " + lower :
-                !upper.empty() ? " of at most " + upper :
-                                 "");
-      }
-    if (std::regex_match(pattern_description, part, items))
-      return (part[2] == part[3] ? "a list of " + part.str(2) + " items" :
-                                   "a list") +
-             " separated by commas, each " + allowed_values(part[1]);
-    const auto other = others.find(pattern_description);
-    return other != others.end() ?
-             other->second :
-             Patterns::pattern_factory(pattern_description)
-               ->description(Patterns::PatternBase::Text);
+    std::vector<std::pair<std::string, std::string>> entries;
+    for (const auto &[name, below] : node)
+      if (is_entry(below))
+        entries.emplace_back(path + name, below.get<std::string>("value"));
+      else
+        for (auto &entry : values_of(below, path + name + '/'))
+          entries.push_back(std::move(entry));
+    return entries;
   }
 
 
@@ -366,6 +135,7 @@ namespace Viscoplastic
       Patterns::Anything(),
       "Files with laws that are not part of the program, separated by commas; "
       "relative to the parameter file, or to the working directory.");
+    in_subsection("Units", unit_names);
     in_subsection("Geometry", geometry);
     const auto declare_material = [this](const std::string  &name,
                                          MaterialParameters &entries) {
@@ -518,9 +288,8 @@ namespace Viscoplastic
                          const std::vector<std::string> &overrides)
     : file(files.empty() ? "" : files[0])
   {
-    const std::vector<ParameterLine> lines =
-      read_parameter_lines(files, overrides);
-    std::set<unsigned int> tables;
+    std::vector<ParameterLine> lines = read_parameter_lines(files, overrides);
+    std::set<unsigned int>     tables;
     for (const ParameterLine &line : lines)
       if (line.is_opening && line.section.empty())
         {
@@ -541,6 +310,8 @@ namespace Viscoplastic
     load_shared_libraries(lines);
     declare();
     declare_tables(handler, tables);
+    units      = declared_units(lines);
+    as_written = remove_units(lines, units, handler);
     read(lines);
     use_tables(read_tables(handler, tables, lines));
     handler.set(shared_libraries_entry, comma_separated(shared_libraries));
@@ -569,10 +340,69 @@ namespace Viscoplastic
 
 
 
+  Tree
+  Parameters::entries_as_written() const
+  {
+    Tree tree = declared_entries(handler);
+    for (const auto &[path, value] : as_written)
+      tree.get_child(Tree::path_type(path, '/')).put("value", value);
+    return tree;
+  }
+
+
+
+  std::map<std::string, std::string>
+  Parameters::entries_with_units() const
+  {
+    std::map<std::string, std::string> result = as_written;
+    if (result.empty())
+      return result;
+    const auto all = values();
+    for (auto &[path, value] : result)
+      value = all.at(path);
+    return result;
+  }
+
+
+
+  void
+  Parameters::print(std::ostream &out) const
+  {
+    if (as_written.empty())
+      {
+        handler.print_parameters(out, ParameterHandler::Text);
+        return;
+      }
+    // One that takes any text.
+    ParameterHandler                        record;
+    const std::function<void(const Tree &)> declare_all =
+      [&](const Tree &section) {
+        for (const auto &[name, node] : section)
+          if (is_entry(node))
+            {
+              record.declare_entry(name,
+                                   node.get<std::string>("default_value"),
+                                   Patterns::Anything(),
+                                   node.get<std::string>("documentation"));
+              record.set(name, node.get<std::string>("value"));
+            }
+          else
+            {
+              record.enter_subsection(name);
+              declare_all(node);
+              record.leave_subsection();
+            }
+      };
+    declare_all(entries_as_written());
+    record.print_parameters(out, ParameterHandler::Text);
+  }
+
+
+
   std::map<std::string, std::string>
   Parameters::values() const
   {
-    const Entries entries = collect(declared_entries(handler));
+    const auto entries = values_of(declared_entries(handler));
     return {entries.begin(), entries.end()};
   }
 

@@ -24,11 +24,22 @@ namespace Viscoplastic
     };
     if (!has_bound)
       {
-        const auto &bounds = step.end.state.friction.bound;
-        has_bound          = is_so(
-          std::any_of(bounds.begin(), bounds.end(), [](const double bound) {
-            return bound > 0.;
-          }));
+        const auto         &bounds = step.end.state.friction.bound;
+        const FrictionFace &face   = discretization.face->layout();
+        bool                here   = false;
+        for (unsigned int p = 0; p < bounds.size(); ++p)
+          here |= !face.points[p].is_obstacle && bounds[p] > 0.;
+        has_bound = is_so(here);
+      }
+    if (discretization.face->has_obstacles() && step.time_step.n > 0)
+      {
+        const FrictionState &state   = step.end.state.friction;
+        bool                 touches = false, is_open = false;
+        for (unsigned int p = 0; p < state.n_points(); ++p)
+          if (discretization.face->layout().points[p].is_obstacle)
+            (state.multiplier[p][0] > 0. ? touches : is_open) = true;
+        has_touched = has_touched || is_so(touches);
+        has_opened  = has_opened || is_so(is_open);
       }
     if (!foundation_has_moved && discretization.scene().has_moving_foundation())
       foundation_has_moved =
@@ -73,6 +84,26 @@ namespace Viscoplastic
                 "= glued gives the same for less.";
         result.push_back(text.str());
       }
+    bool has_given_bound = false, has_computed_pressure = false,
+         gives_way = false;
+    for (const auto &pair : scene.boundary)
+      {
+        has_given_bound |= pair.second.is_unilateral() &&
+                           pair.second.friction_law == FrictionLaw::tresca;
+        has_computed_pressure |= pair.second.has_computed_pressure();
+        gives_way |= pair.second.gives_way();
+      }
+    if (scene.has_unilateral_contact() && !has_touched && !has_given_bound)
+      result.push_back(
+        "unilateral contact has never acted: nothing has touched "
+        "the foundation, and 'Role' = free gives the same for "
+        "less.");
+    else if (scene.has_unilateral_contact() && has_touched && !has_opened &&
+             !has_computed_pressure && !gives_way)
+      result.push_back("unilateral contact has never opened: everything has "
+                       "touched the foundation at all times, and 'Contact law' "
+                       "= bilateral with the gap as 'Foundation displacement' "
+                       "gives the same for less.");
     for (const auto &[id, condition] : scene.boundary)
       {
         const std::string section = "Boundary " + std::to_string(id);

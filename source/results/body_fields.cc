@@ -3,7 +3,6 @@
 #include <viscoplastic_contact/results/body_fields.h>
 
 #include <cmath>
-#include <functional>
 
 namespace Viscoplastic
 {
@@ -35,137 +34,221 @@ namespace Viscoplastic
 
 
 
-    /// The cell means of fields of stresses and strains at samples.
-    template <int dim>
-    class Fields
+    /// The fields of the body whose values are means of cells.
+    bool
+    is_mean(const RecordedField field)
     {
-    public:
-      explicit Fields(const StressSpace<dim> &stress_space)
-        : stress_space(stress_space)
-      {}
+      return !is_of_boundary(field) && field != RecordedField::displacement &&
+             field != RecordedField::velocity;
+    }
 
-      /// Add a scalar, value(c) in the owned cell c.
-      void
-      add(const std::string                              &name,
-          const std::function<double(const std::size_t)> &value)
-      {
-        const auto &cells = stress_space.space.cells;
-        CellField   field{name,
-                        Vector<double>(
-                          stress_space.space.dof_handler.get_triangulation()
-                            .n_active_cells())};
-        for (std::size_t c = 0; c < cells.size(); ++c)
-          field.values[cells[c]->active_cell_index()] = value(c);
-        fields.push_back(std::move(field));
-      }
 
-      /// Add the components of a tensor.
-      void
-      add_tensor(const std::string                        &name,
-                 const std::vector<SymmetricTensor<2, 3>> &values)
-      {
-        const std::string xyz = "xyz";
-        for (const auto &[i, j] : stress_components<dim>())
-          add(name + "_" + xyz[i] + xyz[j],
-              [&values, i = i, j = j](const std::size_t c) {
-                return values[c][i][j];
-              });
-      }
 
-      /// -E^-1 of the mean of a stress at samples, zero if there is none.
-      std::vector<SymmetricTensor<2, 3>>
-      minus_strain(const IrreversibleStress &stress) const
-      {
-        std::vector<SymmetricTensor<2, 3>> result(stress_space.n_cells());
-        if (!stress.empty())
-          for (std::size_t c = 0; c < result.size(); ++c)
-            result[c] = stress_space.moduli(c).strain(
-              -1. * stress_space.mean(c, &stress[c * stress_space.n_samples]));
-        return result;
-      }
+    template <int dim>
+    void
+    append(const SymmetricTensor<2, 3> &tensor, std::vector<double> &values)
+    {
+      for (const auto &[i, j] : stress_components<dim>())
+        values.push_back(tensor[i][j]);
+    }
 
-      std::vector<CellField> fields;
 
-    private:
-      const StressSpace<dim> &stress_space;
-    };
+
+    /// -E^-1 of the mean of a stress at the samples of a cell, zero if there is
+    /// none.
+    template <int dim>
+    SymmetricTensor<2, 3>
+    minus_strain(const StressSpace<dim>   &stress_space,
+                 const IrreversibleStress &stress,
+                 const std::size_t         cell)
+    {
+      return stress.empty() ?
+               SymmetricTensor<2, 3>() :
+               stress_space.moduli(cell).strain(
+                 -1. *
+                 stress_space.mean(cell,
+                                   &stress[cell * stress_space.n_samples]));
+    }
   } // namespace
 
 
 
   template <int dim>
-  std::vector<CellField>
-  additional_fields(const FlowLaws<dim> &laws, const State<dim> &state)
+  BodyFields<dim>::BodyFields(const FlowLaws<dim>           &laws,
+                              const State<dim>              &state,
+                              const std::set<RecordedField> &fields)
+    : stress_space(laws.stress_space)
+    , state(state)
+    , u(reported_displacement(laws.stress_space.space.scene, state, difference))
   {
-    using Strains                        = std::vector<SymmetricTensor<2, 3>>;
-    const StressSpace<dim> &stress_space = laws.stress_space;
-    const Scene<dim>       &scene        = stress_space.space.scene;
-    const OutputParameters &asked        = scene.parameters.output;
-    const std::size_t       n_cells      = stress_space.n_cells();
-    Fields<dim>             result(stress_space);
+    for (const RecordedField field : fields)
+      if (is_mean(field))
+        cell_fields.insert(field);
+      else if (!is_of_boundary(field))
+        nodal_fields.push_back(
+          field == RecordedField::displacement ? &u : &state.velocity);
 
-    if (asked.has(AdditionalField::total_strain))
+    const Scene<dim> &scene = stress_space.space.scene;
+    // What the initial data have of irreversible strain has not crept.
+    if (cell_fields.count(RecordedField::creep_strain) > 0 &&
+        scene.has_irreversible_stress() && // collective, also without cells
+        (scene.initial_stress || scene.initial_displacement))
       {
-        Strains strain(n_cells), samples(stress_space.n_samples);
-        for (std::size_t c = 0; c < n_cells; ++c)
-          {
-            stress_space.strains(c, state.u.begin(), samples.data());
-            strain[c] = stress_space.mean(c, samples.data());
-          }
-        result.add_tensor("strain", strain);
+        const IrreversibleStress initial = initial_z(stress_space, state);
+        for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+          initial_strain.push_back(minus_strain(stress_space, initial, c));
       }
-
-    // eps(u) - E^-1 sigma = -E^-1 z
-    const bool needs_creep = asked.has(AdditionalField::creep_strain);
-    Strains    irreversible;
-    if (asked.has(AdditionalField::irreversible_strain) || needs_creep)
-      irreversible = result.minus_strain(state.z);
-    if (asked.has(AdditionalField::irreversible_strain))
-      result.add_tensor("irreversible_strain", irreversible);
-    if (needs_creep)
-      {
-        // What the initial data have of it has not crept.
-        if (scene.has_irreversible_stress() && // collective, also without cells
-            (scene.initial_stress || scene.initial_displacement))
-          {
-            const Strains initial =
-              result.minus_strain(initial_z(stress_space, state));
-            for (std::size_t c = 0; c < n_cells; ++c)
-              irreversible[c] -= initial[c];
-          }
-        result.add("creep_strain", [&](const std::size_t c) {
-          return equivalent_strain(irreversible[c]);
-        });
-      }
-    if (asked.has(AdditionalField::creep_rate))
-      {
-        const Strains rate = result.minus_strain(
-          scene.has_viscosity() ?
-            evaluate_flow(laws, state.u, state.z, state.t).rate :
-            IrreversibleStress());
-        result.add("creep_rate", [&](const std::size_t c) {
-          return equivalent_strain(rate[c]);
-        });
-      }
-
-    if (asked.has(AdditionalField::principal_stresses))
-      {
-        std::vector<std::array<double, 3>> principal;
-        for (const auto &stress : stress_space.mean_stress(state.u, state.z))
-          principal.push_back(eigenvalues(stress));
-        for (unsigned int i = 0; i < 3; ++i)
-          result.add("principal_stress_" + std::to_string(i + 1),
-                     [&principal, i](const std::size_t c) {
-                       return principal[c][i];
-                     });
-      }
-    return std::move(result.fields);
+    if (cell_fields.count(RecordedField::creep_rate) > 0 &&
+        scene.has_viscosity())
+      rate = evaluate_flow(laws, state.u, state.z, state.t).rate;
   }
 
 
 
-  template std::vector<CellField>
-  additional_fields<2>(const FlowLaws<2> &, const State<2> &);
-  template std::vector<CellField>
-  additional_fields<3>(const FlowLaws<3> &, const State<3> &);
+  template <int dim>
+  std::vector<std::string>
+  BodyFields<dim>::names(const std::set<RecordedField> &fields)
+  {
+    const std::string        xyz = "xyz";
+    std::vector<std::string> result;
+    const auto               add_vector = [&](const std::string &name) {
+      for (unsigned int d = 0; d < dim; ++d)
+        result.push_back(name + "_" + xyz[d]);
+    };
+    const auto add_tensor = [&](const std::string &name) {
+      for (const auto &[i, j] : stress_components<dim>())
+        result.push_back(name + "_" + xyz[i] + xyz[j]);
+    };
+    for (const RecordedField field : fields)
+      switch (field)
+        {
+          case RecordedField::displacement:
+            add_vector("displacement");
+            break;
+          case RecordedField::velocity:
+            add_vector("velocity");
+            break;
+          case RecordedField::stress:
+            add_tensor("stress");
+            break;
+          case RecordedField::von_mises_stress:
+            result.emplace_back("von_mises");
+            break;
+          case RecordedField::irreversible_stress:
+            add_tensor("irreversible_stress");
+            break;
+          case RecordedField::total_strain:
+            add_tensor("strain");
+            break;
+          case RecordedField::irreversible_strain:
+            add_tensor("irreversible_strain");
+            break;
+          case RecordedField::creep_strain:
+            result.emplace_back("creep_strain");
+            break;
+          case RecordedField::creep_rate:
+            result.emplace_back("creep_rate");
+            break;
+          case RecordedField::principal_stresses:
+            for (const char *number : {"1", "2", "3"})
+              result.push_back(std::string("principal_stress_") + number);
+            break;
+          default: // of the boundary
+            break;
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  BodyFields<dim>::add(const std::size_t         cell,
+                       const VertexWeights<dim> &weights,
+                       double                   *values) const
+  {
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    double                      sum   = 0.;
+    for (const double weight : weights)
+      sum += weight;
+    for (const DistributedVector *field : nodal_fields)
+      {
+        for (const unsigned int v : space.cells[cell]->vertex_indices())
+          {
+            const double *at_vertex =
+              field->begin() + space.relevant.index_within_set(
+                                 space.cells[cell]->vertex_dof_index(v, 0));
+            for (unsigned int d = 0; d < dim; ++d)
+              values[d] += weights[v] * at_vertex[d];
+          }
+        values += dim;
+      }
+    for (const double mean : means(cell))
+      *values++ += sum * mean;
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  BodyFields<dim>::means(const std::size_t cell) const
+  {
+    std::vector<double> result;
+    if (cell_fields.empty())
+      return result;
+    std::vector<SymmetricTensor<2, 3>> samples(stress_space.n_samples);
+    stress_space.strains(cell, state.u.begin(), samples.data());
+    const SymmetricTensor<2, 3> strain =
+      stress_space.mean(cell, samples.data());
+    SymmetricTensor<2, 3> z;
+    if (!state.z.empty())
+      z = stress_space.mean(cell, &state.z[cell * stress_space.n_samples]);
+    const SymmetricTensor<2, 3> stress =
+      stress_space.moduli(cell).stress(strain) + z;
+    for (const RecordedField field : cell_fields)
+      switch (field)
+        {
+          case RecordedField::stress:
+            append<dim>(stress, result);
+            break;
+          case RecordedField::von_mises_stress:
+            result.push_back(von_mises(stress));
+            break;
+          case RecordedField::irreversible_stress:
+            append<dim>(z, result);
+            break;
+          case RecordedField::total_strain:
+            stress_space.strains(cell, u.begin(), samples.data());
+            append<dim>(stress_space.mean(cell, samples.data()), result);
+            break;
+          case RecordedField::irreversible_strain:
+            // eps(u) - E^-1 sigma = -E^-1 z
+            append<dim>(minus_strain(stress_space, state.z, cell), result);
+            break;
+          case RecordedField::creep_strain:
+            {
+              auto creep = minus_strain(stress_space, state.z, cell);
+              if (!initial_strain.empty())
+                creep -= initial_strain[cell];
+              result.push_back(equivalent_strain(creep));
+              break;
+            }
+          case RecordedField::creep_rate:
+            result.push_back(
+              equivalent_strain(minus_strain(stress_space, rate, cell)));
+            break;
+          case RecordedField::principal_stresses:
+            for (const double value : eigenvalues(stress))
+              result.push_back(value);
+            break;
+          default:
+            Assert(false, ExcInternalError());
+        }
+    return result;
+  }
+
+
+
+  template class BodyFields<2>;
+  template class BodyFields<3>;
 } // namespace Viscoplastic

@@ -1,28 +1,22 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
-#include <deal.II/numerics/data_out.h>
 
+#include "vtu_output.h"
 #include <viscoplastic_contact/base/files.h>
-#include <viscoplastic_contact/base/json_text.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/spelling.h>
-#include <viscoplastic_contact/base/table.h>
-#include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/error/recovery_estimate.h>
 #include <viscoplastic_contact/error/solution_errors.h>
-#include <viscoplastic_contact/results/body_fields.h>
+#include <viscoplastic_contact/results/boundary_fields.h>
+#include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
-#include <limits>
 #include <regex>
 #include <sstream>
 
@@ -30,225 +24,58 @@ namespace Viscoplastic
 {
   namespace
   {
-    /**
-     * VTU files have single precision. What is beyond its range, and would be
-     * infinite there, becomes its largest number: ParaView cannot scale colors
-     * to infinite values. Returns the data sets where this was needed, by
-     * their indices, and the number of data sets for the coordinates.
-     */
-    template <int dim, int spacedim>
-    std::set<unsigned int>
-    cut_off_infinite(std::vector<DataOutBase::Patch<dim, spacedim>> &patches,
-                     const unsigned int n_data_sets)
+    /// The fields of the body that its output has, but for the nodal ones.
+    template <int dim>
+    std::set<RecordedField>
+    fields_of_body(const Scene<dim> &scene)
     {
-      constexpr float        largest = std::numeric_limits<float>::max();
-      std::set<unsigned int> result;
-      for (auto &patch : patches)
-        {
-          for (unsigned int i = 0; i < n_data_sets; ++i)
-            for (unsigned int j = 0; j < patch.data.n_cols(); ++j)
-              if (float &value = patch.data(i, j); std::isinf(value))
-                {
-                  value = std::copysign(largest, value);
-                  result.insert(i);
-                }
-          for (Point<spacedim> &x : patch.vertices)
-            for (unsigned int d = 0; d < spacedim; ++d)
-              if (std::abs(x[d]) > largest)
-                {
-                  x[d] = std::copysign(largest, x[d]);
-                  result.insert(n_data_sets);
-                }
-        }
+      std::set<RecordedField> result{RecordedField::stress,
+                                     RecordedField::von_mises_stress};
+      if (scene.has_irreversible_stress())
+        result.insert(RecordedField::irreversible_stress);
+      for (const auto &[asked, field] :
+           {std::make_pair(AdditionalField::total_strain,
+                           RecordedField::total_strain),
+            std::make_pair(AdditionalField::irreversible_strain,
+                           RecordedField::irreversible_strain),
+            std::make_pair(AdditionalField::creep_strain,
+                           RecordedField::creep_strain),
+            std::make_pair(AdditionalField::creep_rate,
+                           RecordedField::creep_rate),
+            std::make_pair(AdditionalField::principal_stresses,
+                           RecordedField::principal_stresses)})
+        if (scene.parameters.output.has(asked))
+          result.insert(field);
       return result;
     }
 
 
 
-    /// The body with its fields.
+    /// Those of Gamma_3, but for the displacement.
     template <int dim>
-    class BodyOutput : public DataOut<dim>
+    std::set<RecordedField>
+    fields_of_contact(const Scene<dim> &scene, const ContactFace<dim> *face)
     {
-    public:
-      /// Bring the patches, one for each owned cell in the order of active
-      /// cells, into that of @p cells, which a restart does not change.
-      template <class Cell>
-      void
-      sort_by(const std::vector<Cell> &cells)
-      {
-        AssertDimension(this->patches.size(), cells.size());
-        std::vector<std::pair<unsigned int, std::size_t>> order;
-        for (std::size_t c = 0; c < cells.size(); ++c)
-          order.emplace_back(cells[c]->active_cell_index(), c);
-        std::sort(order.begin(), order.end());
-        auto sorted = this->patches;
-        for (std::size_t p = 0; p < order.size(); ++p)
-          {
-            auto &patch       = sorted[order[p].second];
-            patch             = std::move(this->patches[p]);
-            patch.patch_index = order[p].second;
-            // Their numbers are no longer right, and nothing here asks for
-            // them.
-            std::fill(std::begin(patch.neighbors),
-                      std::end(patch.neighbors),
-                      numbers::invalid_unsigned_int);
-          }
-        this->patches = std::move(sorted);
-      }
-
-      std::set<unsigned int>
-      cut_off()
-      {
-        return cut_off_infinite(this->patches, names().size());
-      }
-
-      std::vector<std::string>
-      names() const
-      {
-        return this->get_dataset_names();
-      }
-    };
-
-
-
-    /// Faces of Gamma_3 with nodal data, in the form that DataOut writes.
-    template <int dim>
-    class FaceOutput : public DataOutInterface<dim - 1, dim>
-    {
-    public:
-      std::vector<DataOutBase::Patch<dim - 1, dim>> patches;
-      std::vector<std::string>                      names;
-      std::vector<
-        std::tuple<unsigned int,
-                   unsigned int,
-                   std::string,
-                   DataComponentInterpretation::DataComponentInterpretation>>
-        vectors;
-
-    protected:
-      const std::vector<DataOutBase::Patch<dim - 1, dim>> &
-      get_patches() const override
-      {
-        return patches;
-      }
-
-      std::vector<std::string>
-      get_dataset_names() const override
-      {
-        return names;
-      }
-
-      std::vector<
-        std::tuple<unsigned int,
-                   unsigned int,
-                   std::string,
-                   DataComponentInterpretation::DataComponentInterpretation>>
-      get_nonscalar_data_ranges() const override
-      {
-        return vectors;
-      }
-    };
-
-
-
-    /// Stronger compression takes ten times as long and saves a tenth.
-    DataOutBase::VtkFlags
-    vtk_flags()
-    {
-      DataOutBase::VtkFlags flags;
-      flags.compression_level = DataOutBase::VtkFlags::best_speed;
-      return flags;
-    }
-
-
-
-    /// Refuse to overwrite what somebody else keeps under our names.
-    void
-    refuse_foreign_files(const std::string &path)
-    {
-      for (const auto &[name, beginning] :
-           std::vector<std::pair<std::string, std::string>>{
-             {"parameters.prm", "# Listing of Parameters\n"},
-             {"run.json", "{\n  \"program\": \"viscoplastic_contact\""},
-             {"statistics.csv", "step,t,k,"}})
+      const OutputParameters &asked = scene.parameters.output;
+      std::set<RecordedField> result{RecordedField::slip,
+                                     RecordedField::slip_rate};
+      if (scene.has_unilateral_contact())
+        for (const RecordedField field :
+             {RecordedField::contact_pressure, RecordedField::gap})
+          result.insert(field);
+      if (face != nullptr && scene.has_friction())
         {
-          std::error_code none;
-          if (!std::filesystem::is_regular_file(path + name, none))
-            continue;
-          std::ifstream file(path + name, std::ios::binary);
-          std::string   text(beginning.size(), ' ');
-          file.read(text.data(), static_cast<std::streamsize>(text.size()));
-          text.resize(file.gcount());
-          // It may be cut short.
-          AssertThrow(file.is_open() &&
-                        beginning.compare(0, text.size(), text) == 0,
-                      ExcMessage("The results would overwrite '" + path + name +
-                                 "', which this program has not written; "
-                                 "choose another 'Output/Directory'."));
+          for (const RecordedField field : {RecordedField::traction,
+                                            RecordedField::bound,
+                                            RecordedField::utilization,
+                                            RecordedField::stick})
+            result.insert(field);
+          if (asked.has(AdditionalField::friction_work))
+            result.insert(RecordedField::friction_work);
         }
-    }
-
-
-
-    nlohmann::ordered_json
-    record_of_errors(const ErrorSummary &errors,
-                     const std::string  &name_of_size)
-    {
-      return {{"t", errors.t},
-              {"space", errors.largest.space},
-              {"time", errors.largest.time},
-              {"friction", errors.largest.friction},
-              {"transfer", errors.largest.transfer},
-              {"algebraic", errors.largest.algebraic},
-              {"initial", errors.largest.initial},
-              {"total", errors.largest.total()},
-              {name_of_size, errors.size},
-              {"relative", errors.relative()}};
-    }
-
-
-
-    template <int dim>
-    void
-    write_record(const Scene<dim>      &scene,
-                 const std::string     &path,
-                 const unsigned int     n_ranks,
-                 const RunSummary<dim> *summary = nullptr)
-    {
-      std::ostringstream parameters;
-      scene.parameters.handler.print_parameters(parameters,
-                                                ParameterHandler::Text);
-      replace_file(path + "parameters.prm", parameters.str());
-
-      const std::time_t now = std::time(nullptr);
-      char              date[32];
-      std::strftime(date, sizeof(date), "%FT%TZ", std::gmtime(&now));
-      nlohmann::ordered_json record{{"program", "viscoplastic_contact"},
-                                    {"version", VISCOPLASTIC_CONTACT_VERSION},
-                                    {"git_revision",
-                                     VISCOPLASTIC_CONTACT_GIT_REVISION},
-                                    {"dealii_version", DEAL_II_PACKAGE_VERSION},
-                                    {"n_mpi_ranks", n_ranks},
-                                    {"dimension", dim},
-                                    {"effects", scene.effects()}};
-      const auto            &libraries = scene.parameters.shared_libraries;
-      if (!libraries.empty())
-        record["shared_libraries"] = libraries;
-      for (const auto &table : tables_in_use())
-        record["tables"].push_back({{"section", table->section},
-                                    {"file", table->file},
-                                    {"crc32", table->checksum}});
-      if (summary != nullptr && summary->errors)
-        record["estimated_error"] =
-          record_of_errors(*summary->errors, "largest_energy_norm");
-      if (summary != nullptr && !summary->quantity.empty())
-        {
-          auto &errors = record["estimated_error_of_quantity"] =
-            record_of_errors(summary->quantity_errors, "largest_value");
-          errors["quantity"] = summary->quantity;
-        }
-      record["date"] = date;
-      replace_file(path + "run.json", json_text(record));
+      if (asked.has(AdditionalField::normal_traction))
+        result.insert(RecordedField::normal_traction);
+      return result;
     }
 
 
@@ -263,30 +90,6 @@ namespace Viscoplastic
 
 
 
-  std::string
-  results_directory(const Parameters &parameters)
-  {
-    std::string path = parameters.output.directory;
-    if (path.empty())
-      path = "output/" + std::filesystem::path(parameters.file).stem().string();
-    return path.back() == '/' ? path : path + '/';
-  }
-
-
-
-  void
-  make_results_directory(const std::string &path)
-  {
-    std::error_code error;
-    std::filesystem::create_directories(path, error);
-    AssertThrow(!error,
-                ExcMessage("The results directory '" + path +
-                           "' cannot be written; change 'Output/Directory' or "
-                           "its permissions."));
-  }
-
-
-
   template <int dim>
   Output<dim>::Output(const Scene<dim> &scene, const MPI_Comm communicator)
     : scene(scene)
@@ -297,8 +100,11 @@ namespace Viscoplastic
       if (Utilities::MPI::this_mpi_process(communicator) != 0)
         return;
       make_results_directory(path);
-      refuse_foreign_files(path);
-      write_record(scene, path, Utilities::MPI::n_mpi_processes(communicator));
+      refuse_foreign_files(path, scene.output_lines.size());
+      write_record<dim>(scene,
+                        path,
+                        Utilities::MPI::n_mpi_processes(communicator),
+                        nullptr);
     });
   }
 
@@ -388,6 +194,8 @@ namespace Viscoplastic
                             const Vector<double>   *squared_estimate)
   {
     times.push_back(state.t);
+    if (times.size() == 1)
+      write_boundary(laws.stress_space.space);
     std::vector<std::string> remarks{write_body(laws, state, squared_estimate)};
     write_pvd("solution");
     if (scene.has_contact())
@@ -475,6 +283,35 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  Output<dim>::write_boundary(const AdmissibleSpace<dim> &space)
+  {
+    FaceOutput<dim> output;
+    output.set_flags(vtk_flags());
+    output.names = {"boundary_id"};
+    for (const auto &cell : space.cells)
+      for (const auto &face : cell->face_iterators())
+        if (face->at_boundary())
+          {
+            DataOutBase::Patch<dim - 1, dim> patch;
+            patch.patch_index    = output.patches.size();
+            patch.reference_cell = ReferenceCells::get_hypercube<dim - 1>();
+            patch.data.reinit(1, face->n_vertices());
+            for (const unsigned int v : face->vertex_indices())
+              {
+                patch.vertices[v] = face->vertex(v);
+                patch.data(0, v)  = face->boundary_id();
+              }
+            output.patches.push_back(patch);
+          }
+    const std::set<unsigned int> cut =
+      cut_off_infinite(output.patches, output.names.size());
+    write_vtu("boundary", output, cut, output.names);
+  }
+
+
+
+  template <int dim>
   std::string
   Output<dim>::write_body(const FlowLaws<dim>  &laws,
                           const State<dim>     &state,
@@ -483,11 +320,12 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space = laws.stress_space;
     const DoFHandler<dim>  &dof_handler  = stress_space.space.dof_handler;
     const auto             &tria         = dof_handler.get_triangulation();
-    BodyOutput<dim>         data_out;
+    BodyOutput<dim>         data_out{UnitLabels<dim>(scene)};
     data_out.attach_dof_handler(dof_handler);
     const std::vector<DataComponentInterpretation::DataComponentInterpretation>
       is_vector(dim, DataComponentInterpretation::component_is_part_of_vector);
-    data_out.add_data_vector(state.u,
+    DistributedVector difference;
+    data_out.add_data_vector(reported_displacement(scene, state, difference),
                              std::vector<std::string>(dim, "displacement"),
                              DataOut<dim>::type_dof_data,
                              is_vector);
@@ -497,51 +335,24 @@ namespace Viscoplastic
                              is_vector);
 
     // The same fields on all ranks, also on those without cells.
-    const bool         has_z      = scene.has_irreversible_stress();
-    constexpr auto     components = stress_components<dim>();
-    const unsigned int n          = components.size();
-    const std::vector<SymmetricTensor<2, 3>> stress =
-      stress_space.mean_stress(state.u, state.z);
-    std::vector<Vector<double>> stresses(n,
-                                         Vector<double>(tria.n_active_cells()));
-    std::vector<Vector<double>> irreversible(
-      has_z ? n : 0, Vector<double>(tria.n_active_cells()));
-    Vector<double> mises(tria.n_active_cells());
-    Vector<double> subdomain(tria.n_active_cells());
-    std::size_t    owned_cell = 0;
-    for (const auto &cell : stress_space.space.cells)
+    const std::set<RecordedField>  fields = fields_of_body(scene);
+    const BodyFields<dim>          means(laws, state, fields);
+    const std::vector<std::string> names = BodyFields<dim>::names(fields);
+    std::vector<Vector<double>>    values(names.size(),
+                                       Vector<double>(tria.n_active_cells()));
+    Vector<double>                 subdomain(tria.n_active_cells());
+    for (std::size_t c = 0; c < stress_space.space.cells.size(); ++c)
       {
-        const unsigned int i = cell->active_cell_index();
-        subdomain[i]         = cell->subdomain_id();
-        mises[i]             = von_mises(stress[owned_cell]);
-        for (unsigned int c = 0; c < n; ++c)
-          stresses[c][i] =
-            stress[owned_cell][components[c].first][components[c].second];
-        if (has_z)
-          {
-            const auto z =
-              stress_space.mean(owned_cell,
-                                &state.z[owned_cell * stress_space.n_samples]);
-            for (unsigned int c = 0; c < n; ++c)
-              irreversible[c][i] = z[components[c].first][components[c].second];
-          }
-        ++owned_cell;
+        const auto        &cell           = stress_space.space.cells[c];
+        const unsigned int i              = cell->active_cell_index();
+        subdomain[i]                      = cell->subdomain_id();
+        const std::vector<double> of_cell = means.means(c);
+        for (std::size_t j = 0; j < names.size(); ++j)
+          values[j][i] = of_cell[j];
       }
-    const std::string xyz = "xyz";
-    for (unsigned int c = 0; c < n; ++c)
-      {
-        const std::string suffix = std::string("_") + xyz[components[c].first] +
-                                   xyz[components[c].second];
-        data_out.add_data_vector(stresses[c], "stress" + suffix);
-        if (has_z)
-          data_out.add_data_vector(irreversible[c],
-                                   "irreversible_stress" + suffix);
-      }
-    data_out.add_data_vector(mises, "von_mises");
+    for (std::size_t j = 0; j < names.size(); ++j)
+      data_out.add_data_vector(values[j], names[j]);
     data_out.add_data_vector(subdomain, "subdomain");
-    const std::vector<CellField> additional = additional_fields(laws, state);
-    for (const CellField &field : additional)
-      data_out.add_data_vector(field.values, field.name);
     const auto square_roots = [](Vector<double> squares) {
       for (double &value : squares)
         value = std::sqrt(value);
@@ -562,8 +373,22 @@ namespace Viscoplastic
         data_out.add_data_vector(recovery, "recovery");
       }
     data_out.set_flags(vtk_flags());
+    // Those of the present stage.
+    std::vector<typename DoFHandler<dim>::active_cell_iterator> cells;
+    const auto is_present = [this](const auto &cell) {
+      return scene.is_present(cell->material_id());
+    };
+    std::copy_if(stress_space.space.cells.begin(),
+                 stress_space.space.cells.end(),
+                 std::back_inserter(cells),
+                 is_present);
+    if (scene.has_stages())
+      data_out.set_cell_selection([is_present](const auto &cell) {
+        return cell->is_active() && cell->is_locally_owned() &&
+               is_present(cell);
+      });
     data_out.build_patches();
-    data_out.sort_by(stress_space.space.cells);
+    data_out.sort_by(cells);
     const std::set<unsigned int> cut = data_out.cut_off();
     return write_vtu("solution", data_out, cut, data_out.names());
   }
@@ -576,19 +401,17 @@ namespace Viscoplastic
                              const State<dim>       &state,
                              const ContactFace<dim> *face)
   {
-    const AdmissibleSpace<dim> &space = stress_space.space;
-    const bool                  has_normal_traction =
-      scene.parameters.output.has(AdditionalField::normal_traction);
-    const bool has_friction_work =
-      face != nullptr &&
-      scene.parameters.output.has(AdditionalField::friction_work);
-    // In the order of the cells.
-    const std::vector<SymmetricTensor<2, 3>> stress =
-      has_normal_traction ? stress_space.mean_stress(state.u, state.z) :
-                            std::vector<SymmetricTensor<2, 3>>();
-    FaceOutput<dim> output;
+    const AdmissibleSpace<dim>   &space  = stress_space.space;
+    const std::set<RecordedField> fields = fields_of_contact(scene, face);
+    const BoundaryFields<dim>     boundary(stress_space, state, face, fields);
+    const UnitLabels<dim>         labels(scene);
+    FaceOutput<dim>               output;
     output.set_flags(vtk_flags());
-    const auto add_vector = [&output](const std::string &name) {
+    const auto add_scalar = [&](const std::string &name) {
+      output.names.push_back(name + labels.of_field(name));
+    };
+    const auto add_vector = [&](const std::string &field) {
+      const std::string name = field + labels.of_field(field);
       output.vectors.emplace_back(
         output.names.size(),
         output.names.size() + dim - 1,
@@ -596,38 +419,16 @@ namespace Viscoplastic
         DataComponentInterpretation::component_is_part_of_vector);
       output.names.insert(output.names.end(), dim, name);
     };
+    DistributedVector        difference;
+    const DistributedVector &reported =
+      reported_displacement(scene, state, difference);
     add_vector("displacement");
-    add_vector("slip");
-    add_vector("slip_rate");
-
-    // Tractions and sets live at the nodes of friction points.
-    // Where a frictional piece has none, other conditions prescribe the node.
-    DistributedVector density, bound, utilization, slipping;
-    if (face != nullptr)
-      {
-        add_vector("traction");
-        for (const char *name : {"bound", "utilisation", "stick"})
-          output.names.push_back(name);
-        if (has_friction_work)
-          output.names.emplace_back("friction_work");
-        const std::vector<double> &bounds = state.friction.bound;
-        std::vector<double>        values(bounds.size());
-        for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = bounds[p] / face->weights()[p];
-        bound = face->nodal_field(values);
-        for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = bounds[p] > 0. ?
-                        stable_norm(state.friction.multiplier[p]) / bounds[p] :
-                        0.;
-        utilization = face->nodal_field(values);
-        for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = state.friction.sticks[p] ? 0. : 1.;
-        slipping = face->nodal_field(values);
-        density  = face->density(state.friction);
-      }
-
-    if (has_normal_traction)
-      output.names.emplace_back("normal_traction");
+    for (const RecordedField field : fields)
+      if (const std::string name = BoundaryFields<dim>::name(field);
+          BoundaryFields<dim>::is_vector(field))
+        add_vector(name);
+      else
+        add_scalar(name);
 
     for (std::size_t c = 0; c < space.cells.size(); ++c)
       for (const unsigned int f : space.cells[c]->face_indices())
@@ -643,66 +444,20 @@ namespace Viscoplastic
           patch.patch_index    = output.patches.size();
           patch.reference_cell = ReferenceCells::get_hypercube<dim - 1>();
           patch.data.reinit(output.names.size(), cell_face->n_vertices());
-          for (const unsigned int v : cell_face->vertex_indices())
+          for (unsigned int i = 0; i < cell_face->n_vertices(); ++i)
             {
-              patch.vertices[v] = cell_face->vertex(v);
-              const auto node   = space.relevant.index_within_set(
-                cell_face->vertex_dof_index(v, 0));
-              unsigned int row    = 0;
-              const auto   vector = [&](const DistributedVector &field) {
-                Tensor<1, dim> value;
-                for (unsigned int d = 0; d < dim; ++d)
-                  value[d] = field.begin()[node + d];
-                return value;
-              };
-              const auto store = [&](const Tensor<1, dim> &value) {
-                for (unsigned int d = 0; d < dim; ++d)
-                  patch.data(row++, v) = value[d];
-              };
-              const auto tangential = [&](const Tensor<1, dim> &value) {
-                return value - (value * condition.normal) * condition.normal;
-              };
-              const Tensor<1, dim> u = vector(state.u);
-              const Tensor<1, dim> w =
-                condition.sliding(patch.vertices[v], state.t);
-              store(u);
-              store(tangential(state.initial_u.size() > 0 ?
-                                 u - vector(state.initial_u) :
-                                 u) -
-                    w);
-              Tensor<1, dim> rate = tangential(vector(state.velocity));
-              if (state.k > 0. && condition.foundation_motion)
-                rate -= (w - condition.sliding(patch.vertices[v],
-                                               state.t - state.k)) /
-                        state.k;
-              store(rate);
-              if (face != nullptr)
-                {
-                  // On the body: minus the multiplier.
-                  store(condition.has_friction() ?
-                          -1. * tangential(vector(density)) :
-                          Tensor<1, dim>());
-                  const bool frictional = condition.has_friction();
-                  patch.data(row++, v)  = frictional ? bound.begin()[node] : 0.;
-                  patch.data(row++, v) =
-                    frictional ? utilization.begin()[node] : 0.;
-                  patch.data(row++, v) =
-                    frictional ? 1. - slipping.begin()[node] : 0.;
-                  if (has_friction_work)
-                    patch.data(row++, v) =
-                      frictional && state.friction_work.size() > 0 ?
-                        state.friction_work.begin()[node] :
-                        0.;
-                }
-              if (has_normal_traction)
-                {
-                  double normal_traction = 0.;
-                  for (unsigned int i = 0; i < dim; ++i)
-                    for (unsigned int j = 0; j < dim; ++j)
-                      normal_traction += condition.normal[i] * stress[c][i][j] *
-                                         condition.normal[j];
-                  patch.data(row++, v) = normal_traction;
-                }
+              const unsigned int v =
+                GeometryInfo<dim>::face_to_cell_vertices(f, i);
+              patch.vertices[i] = space.cells[c]->vertex(v);
+              const double *u =
+                reported.begin() + space.relevant.index_within_set(
+                                     space.cells[c]->vertex_dof_index(v, 0));
+              unsigned int row = 0;
+              for (unsigned int d = 0; d < dim; ++d)
+                patch.data(row++, i) = u[d];
+              for (const double value :
+                   boundary.values(c, f, v, condition.normal))
+                patch.data(row++, i) = value;
             }
           output.patches.push_back(patch);
         }

@@ -2,6 +2,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/discretization/energy.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/results/run_phases.h>
@@ -14,60 +15,6 @@
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    void
-    add_errors(const SolutionErrors &errors, Statistics &row)
-    {
-      const auto add = [&row](const std::string   &prefix,
-                              const SolutionNorms &norms) {
-        row.add(prefix + "energy", norms.energy);
-        row.add(prefix + "h1", norms.h1);
-        row.add(prefix + "stress", norms.stress);
-        row.add(prefix + "multiplier", norms.multiplier);
-      };
-      add("error_", errors.error);
-      row.add("error_memory", errors.memory);
-      row.add("estimate_recovery", errors.recovery);
-      add("exact_", errors.exact);
-    }
-
-
-
-    template <int dim>
-    void
-    add_estimates(const Scene<dim>    &scene,
-                  const ErrorEstimate &estimate,
-                  Statistics          &row)
-    {
-      row.add("energy_norm", estimate.energy_norm);
-      row.add("estimate_space", estimate.space);
-      row.add("estimate_time", estimate.time);
-      if (dim == 3 && scene.has_friction())
-        row.add("estimate_friction", estimate.friction);
-      if (scene.is_adaptive() && scene.has_irreversible_stress())
-        row.add("estimate_transfer", estimate.transfer);
-      row.add("estimate_algebraic", estimate.algebraic);
-      row.add("estimate_initial", estimate.initial);
-      row.add("estimate_total", estimate.total());
-      if (scene.quantity)
-        {
-          const QuantityEstimate &quantity = estimate.quantity;
-          row.add("quantity_correction",
-                  quantity.space_correction + quantity.time_correction);
-          row.add("quantity_space", quantity.space);
-          row.add("quantity_time", quantity.time);
-          row.add("quantity_other",
-                  quantity.total() - quantity.space - quantity.time);
-          row.add("quantity_total", quantity.total());
-        }
-      row.add("time_indicator", estimate.time_indicator);
-      row.add("velocity_variation", estimate.velocity_variation);
-    }
-  } // namespace
-
-
-
   template <int dim>
   Recorder<dim>::Recorder(const Scene<dim>  &scene,
                           const StepControl &control,
@@ -80,7 +27,9 @@ namespace Viscoplastic
     , timer(timer)
     , budget(budget)
     , has_error_estimate(scene.parameters.error_control.error_estimator)
-    , progress(console, scene.schedule.n_steps())
+    , progress(console,
+               scene.schedule.n_steps(),
+               scene.parameters.units.suffix(Quantity::time))
   {
     if (has_error_estimate)
       run.errors.emplace();
@@ -102,6 +51,14 @@ namespace Viscoplastic
     probes.clear();
     for (const Point<dim> &x : scene.output_points)
       probes.emplace_back(on_mesh.space, x);
+    std::set<RecordedField> fields = scene.parameters.output.point_fields;
+    fields.erase(RecordedField::displacement); // which is there without
+    if (!fields.empty() && !scene.output_points.empty())
+      point_fields = std::make_unique<FieldProbes<dim>>(on_mesh,
+                                                        scene.output_points,
+                                                        fields);
+    if (!scene.output_integrals.empty())
+      integrals = std::make_unique<FieldIntegrals<dim>>(on_mesh);
   }
 
 
@@ -118,8 +75,22 @@ namespace Viscoplastic
       // All ranks compute; rank 0 writes.
       TimerOutput::Scope phase(timer, "balance");
       quantities = measure_step(*discretization, old, step);
+      DistributedVector        difference;
+      const DistributedVector &u =
+        reported_displacement(scene, step.end.state, difference);
       for (const PointProbe<dim> &probe : probes)
-        quantities.point_displacements.push_back(probe.value(step.end.state.u));
+        quantities.point_displacements.push_back(probe.value(u));
+      if (point_fields)
+        quantities.point_fields = point_fields->values(step.end.state);
+      if (integrals)
+        {
+          quantities.integrals = integrals->values(old.state, step.end.state);
+          dissipated.resize(quantities.integrals.size(), 0.);
+          for (std::size_t i = 0; i < dissipated.size(); ++i)
+            if (integrals->is_of_step(i))
+              quantities.integrals[i] = dissipated[i] +=
+                quantities.integrals[i];
+        }
     }
     if (is_initial)
       {
@@ -159,14 +130,16 @@ namespace Viscoplastic
   {
     // The contact tolerance bounds the error in the energy norm, in which
     // nearly incompressible bodies hide large errors of reactions.
-    const double defect = balance_defect(quantities);
+    const double      defect = balance_defect(quantities);
+    const std::string time_unit =
+      scene.parameters.units.suffix(Quantity::time, dim);
     if (step.time_step.n > 0 && !balance_is_doubtful &&
         defect > std::max(1e-8, std::min(1e3 * step.report.tolerance, 1e-2)))
       {
         balance_is_doubtful = true;
         std::ostringstream text;
         text << "Warning: forces balance only to " << defect
-             << " of the largest at t = " << step.time_step.t
+             << " of the largest at t = " << step.time_step.t << time_unit
              << "; a smaller 'Solver/Contact tolerance' mends this unless "
                 "Poisson's ratio is next to 1/2 or the body hardly resists.";
         console.remark(text.str());
@@ -176,7 +149,9 @@ namespace Viscoplastic
         std::ostringstream text;
         text << "Warning: the stress has passed the cap of a law, in the "
                 "volume "
-             << step.capped_volume << " at t = " << step.time_of_rate()
+             << step.capped_volume
+             << scene.parameters.units.suffix(Quantity::volume, dim)
+             << " at t = " << step.time_of_rate() << time_unit
              << "; beyond it the law is continued linearly.";
         console.remark(text.str());
       }
@@ -212,7 +187,12 @@ namespace Viscoplastic
     run.largest_exact.update(errors.exact);
     if (scene.has_viscosity())
       run.viscous_dissipation = balance.viscous_dissipation();
-    if (discretization->face)
+    if (scene.has_unilateral_contact())
+      {
+        run.contact_force = quantities.contact.force;
+        run.contact_area  = quantities.contact.contact_area;
+      }
+    if (scene.has_friction())
       {
         run.friction_force       = quantities.friction_force;
         run.friction_dissipation = balance.friction_dissipation();
@@ -230,6 +210,8 @@ namespace Viscoplastic
         if (!has_error_estimate)
           run.error_estimate = quantities.refinement_estimate;
       }
+    if (scene.has_stages())
+      run.construction_energy = balance.construction_energy();
     // Initial data that have not been brought into equilibrium have no
     // estimate.
     if (run.errors && (step.time_step.n > 0 || step.end.is_solution))
@@ -251,111 +233,6 @@ namespace Viscoplastic
       run.steps = control.counts();
     if (scene.is_implicit_beyond_the_limit())
       run.implicit_steps = implicit_steps;
-  }
-
-
-
-  template <int dim>
-  void
-  Recorder<dim>::write_row(const AcceptedStep<dim>   &step,
-                           const StepQuantities<dim> &quantities,
-                           const SolutionErrors      &errors)
-  {
-    const Discretization<dim> &d         = *discretization;
-    const TimeStep            &time_step = step.time_step;
-    const StressSummary<dim>  &stress    = quantities.stress;
-    const FrictionIdentities  &friction  = quantities.friction;
-    const Forces<dim>         &forces    = step.end.forces;
-    Statistics                &row       = *statistics;
-    row.add("step", time_step.n);
-    row.add("t", time_step.t);
-    row.add("k", time_step.k);
-    row.add("cells",
-            d.space.dof_handler.get_triangulation().n_global_active_cells());
-    row.add("dofs", d.space.dof_handler.n_dofs());
-    if (scene.has_viscosity())
-      {
-        row.add("step_limit", step.step_limit);
-        row.add("k_r", step.stiffness());
-        row.add_vector("critical_cell", step.critical_position, dim);
-      }
-    if (control.may_reject())
-      row.add("rejected", step.n_rejections);
-    if (d.tension)
-      row.add("tension_area", quantities.tension_area);
-    if (d.laws.any_cap)
-      row.add("capped_volume", step.capped_volume);
-    if (may_be_implicit())
-      row.add("newton_iterations", step.newton_iterations);
-    if (d.face)
-      row.add("contact_iterations", step.report.iterations);
-    row.add("linear_iterations", step.report.linear_iterations);
-    row.add("unchanged", step.is_unchanged);
-    if (d.face)
-      {
-        row.add("duality_gap", step.report.duality_gap);
-        row.add("algebraic_error", step.report.relative_error);
-        row.add("stick_area", friction.stick_area);
-        row.add("slip_area", friction.slip_area);
-        row.add_vector("friction_force", quantities.friction_force, dim);
-      }
-    for (const auto &[id, force] : quantities.reactions)
-      row.add_vector("reaction_" + std::to_string(id), force, dim);
-    row.add_vector("load", forces.load.resultant, dim);
-    row.add("force_balance_defect", balance_defect(quantities));
-    if (d.face)
-      {
-        row.add("max_utilisation", friction.max_utilization);
-        row.add("max_stick_slip", friction.max_stick_slip);
-        row.add("slip_misalignment", friction.slip_misalignment);
-      }
-    row.add("stored_energy", balance.stored_energy());
-    row.add("strain_energy", forces.strain_energy);
-    if (scene.has_viscosity())
-      row.add("viscous_dissipation", balance.viscous_dissipation());
-    if (d.face)
-      row.add("friction_dissipation", balance.friction_dissipation());
-    row.add("external_work", balance.external_work());
-    if (scene.is_adaptive())
-      row.add("adaptation_energy", balance.adaptation_energy());
-    row.add("energy_balance_defect", balance.defect());
-    row.add("max_displacement", quantities.max_displacement);
-    row.add("max_von_mises", stress.max_von_mises);
-    row.add("mean_von_mises", stress.mean_von_mises);
-    row.add("stress_norm", stress.stress_norm);
-    for (unsigned int i = 0; i < quantities.point_displacements.size(); ++i)
-      row.add_vector("point" + std::to_string(i),
-                     quantities.point_displacements[i],
-                     dim);
-    if (scene.is_adaptive())
-      row.add("estimator", quantities.refinement_estimate);
-    if (has_error_estimate)
-      add_estimates(scene, step.end.errors, row);
-    if (scene.measures_errors())
-      add_errors(errors, row);
-    write_seconds();
-    row.end_row();
-  }
-
-
-
-  template <int dim>
-  void
-  Recorder<dim>::write_seconds()
-  {
-    const auto total = timer.get_summary_data(TimerOutput::total_wall_time);
-    for (const RunPhase &phase : run_phases)
-      {
-        if (!phase.is_in_statistics ||
-            (phase.name == "estimate" && !has_error_estimate) ||
-            (phase.name == "tangent" && !may_be_implicit()))
-          continue;
-        const auto   entry = total.find(phase.name);
-        const double now   = entry == total.end() ? 0. : entry->second;
-        statistics->add("wall_" + phase.name, now - last_seconds[phase.name]);
-        last_seconds[phase.name] = now;
-      }
-    statistics->add("wall_total", elapsed_in_all());
   }
 
 
@@ -402,11 +279,16 @@ namespace Viscoplastic
       {
         if (time_step.n > 0)
           expected_step.add_step(time_step.k);
-        present.expected_steps = control.expected_steps(time_step.n,
-                                                        time_step.t,
-                                                        expected_step.size());
-        present.done           = time_step.t / scene.schedule.end_time();
-        present.steps_grow     = present.done < 1. && expected_step.grows();
+        present.done = time_step.t / scene.schedule.end_time();
+        // Implicit steps report 2/r, but pass it.
+        const double limit = step.is_implicit ?
+                               std::numeric_limits<double>::infinity() :
+                               step.step_limit;
+        if (!control.is_on || expected_step.is_known() || *present.done >= 1.)
+          present.expected_steps = control.expected_steps(time_step.n,
+                                                          time_step.t,
+                                                          expected_step.size(),
+                                                          limit);
       }
     progress.report(present, elapsed());
   }
@@ -480,6 +362,7 @@ namespace Viscoplastic
     text << std::setprecision(3)
          << "Warning: 'Error control/Tolerance' = " << budget->tolerance
          << " has not been kept: at t = " << summary.t
+         << scene.parameters.units.suffix(Quantity::time, dim)
          << " the error is estimated as " << summary.relative() << " of the "
          << (scene.quantity ? "largest " + scene.quantity->name : "solution")
          << ", of it " << errors.space / size << " by the mesh, "
@@ -510,10 +393,12 @@ namespace Viscoplastic
   Recorder<dim>::remarks(const State<dim> &state) const
   {
     std::vector<std::string> result;
-    const double             fluctuation =
+    const std::string        time_unit =
+      scene.parameters.units.suffix(Quantity::time, dim);
+    const double fluctuation =
       scene.has_viscosity() ?
-                    relative_stress_fluctuation(discretization->stress_space, state) :
-                    0.;
+        relative_stress_fluctuation(discretization->stress_space, state) :
+        0.;
     if (fluctuation > 0.2 &&
         scene.parameters.stress.stress_history == StressHistory::cell_means)
       {
@@ -533,10 +418,11 @@ namespace Viscoplastic
     if (tension > 0.01)
       {
         std::ostringstream text;
-        text << "Note: at t = " << run.tension_area.t
+        text << "Note: at t = " << run.tension_area.t << time_unit
              << " the foundation pulls at the body on "
              << std::lround(100. * tension)
-             << " % of the face in bilateral contact, which does not open.";
+             << " % of the face in bilateral contact, which does not open; "
+                "'Contact law' = unilateral does.";
         result.push_back(text.str());
       }
 
@@ -573,7 +459,8 @@ namespace Viscoplastic
       {
         std::ostringstream text;
         text << std::setprecision(3)
-             << "Note: at t = " << (is_far ? run.displacement.t : run.strain.t);
+             << "Note: at t = " << (is_far ? run.displacement.t : run.strain.t)
+             << time_unit;
         if (is_far)
           text << " the largest displacement is "
                << run.displacement.value / size
@@ -595,7 +482,7 @@ namespace Viscoplastic
   Recorder<dim>::print(std::ostream &out, const RunSummary<dim> *coarser) const
   {
     out << '\n';
-    run.print(out, coarser);
+    run.print(out, scene.parameters.units, coarser);
     const double n = run.n_steps;
     out << std::setprecision(3) << "Iterations per step: ";
     if (may_be_implicit())

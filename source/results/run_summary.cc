@@ -62,11 +62,25 @@ namespace Viscoplastic
     }
 
 
-    std::string
-    with_time(const Largest &largest)
+    /// Numbers behind which their units stand, if the scene declares any.
+    template <int dim>
+    struct WithUnits
     {
-      return number(largest.value) + " at t = " + number(largest.t);
-    }
+      const Units &units;
+
+      std::string
+      time(const double t) const
+      {
+        return number(t) + units.suffix(Quantity::time, dim);
+      }
+
+      std::string
+      at_time(const Largest &largest, const Quantity quantity) const
+      {
+        return number(largest.value) + units.suffix(quantity, dim) +
+               " at t = " + time(largest.t);
+      }
+    };
 
 
 
@@ -74,58 +88,80 @@ namespace Viscoplastic
     template <int dim>
     void
     print_end(std::ostream          &out,
+              const Units           &units,
               const RunSummary<dim> &run,
               const RunSummary<dim> *coarser)
     {
-      using Summary  = RunSummary<dim>;
-      const auto row = [&](const std::string &name, const auto member) {
+      using Summary         = RunSummary<dim>;
+      const auto print_with = [&](const std::string &name,
+                                  const std::string &value,
+                                  const Quantity     quantity) {
+        print_row(out, name, value + units.suffix(quantity, dim));
+      };
+      const auto row = [&](const std::string &name,
+                           const auto         member,
+                           const Quantity     quantity) {
         const auto &value = run.*member;
         if (value)
-          print_row(out,
-                    name,
-                    with_uncertainty(*value,
-                                     coarser ? &*(coarser->*member) : nullptr));
+          print_with(name,
+                     with_uncertainty(*value,
+                                      coarser ? &*(coarser->*member) : nullptr),
+                     quantity);
       };
-      out << "At t = " << number(run.t)
+      out << "At t = " << WithUnits<dim>{units}.time(run.t)
           << (!coarser      ? ":\n" :
               run.tolerance ? " (+- what twice the tolerance changes):\n" :
                               " (+- what twice the mesh width and the time "
                               "steps change):\n");
       if (run.friction_force)
-        print_row(out,
-                  "friction force",
-                  components(*run.friction_force,
-                             coarser ? &*coarser->friction_force : nullptr));
-      if (coarser)
-        row("slipping area", &Summary::slipping_area);
+        print_with("friction force",
+                   components(*run.friction_force,
+                              coarser ? &*coarser->friction_force : nullptr),
+                   Quantity::force);
+      if (run.contact_force)
+        print_with("contact force",
+                   components(*run.contact_force,
+                              coarser ? &*coarser->contact_force : nullptr),
+                   Quantity::force);
+      row("contact area", &Summary::contact_area, Quantity::area);
+      if (coarser && run.slipping_area)
+        row("slipping area", &Summary::slipping_area, Quantity::area);
       for (const auto &[id, force] : run.reactions)
-        print_row(out,
-                  "reaction of boundary " + std::to_string(id),
-                  components(force,
-                             coarser ? &coarser->reactions.at(id) : nullptr));
+        print_with("reaction of boundary " + std::to_string(id),
+                   components(force,
+                              coarser ? &coarser->reactions.at(id) : nullptr),
+                   Quantity::force);
       if (coarser)
         for (unsigned int i = 0; i < run.point_displacements.size(); ++i)
-          print_row(out,
-                    "displacement of point " + std::to_string(i),
-                    components(run.point_displacements[i],
-                               &coarser->point_displacements[i]));
-      print_row(out,
-                "external work",
-                with_uncertainty(run.external_work,
-                                 coarser ? &coarser->external_work : nullptr));
-      print_row(out,
-                "stored energy",
-                with_uncertainty(run.stored_energy,
-                                 coarser ? &coarser->stored_energy : nullptr));
-      row("viscous dissipation", &Summary::viscous_dissipation);
-      row("friction dissipation", &Summary::friction_dissipation);
+          print_with("displacement of point " + std::to_string(i),
+                     components(run.point_displacements[i],
+                                &coarser->point_displacements[i]),
+                     Quantity::length);
+      print_with("external work",
+                 with_uncertainty(run.external_work,
+                                  coarser ? &coarser->external_work : nullptr),
+                 Quantity::energy);
+      print_with("stored energy",
+                 with_uncertainty(run.stored_energy,
+                                  coarser ? &coarser->stored_energy : nullptr),
+                 Quantity::energy);
+      row("viscous dissipation",
+          &Summary::viscous_dissipation,
+          Quantity::energy);
+      row("friction dissipation",
+          &Summary::friction_dissipation,
+          Quantity::energy);
       if (run.adaptation_energy)
-        print_row(out,
-                  "energy from new meshes",
-                  number(*run.adaptation_energy));
-      print_row(out,
-                "energy balance defect",
-                number(run.energy_balance_defect));
+        print_with("energy from new meshes",
+                   number(*run.adaptation_energy),
+                   Quantity::energy);
+      if (run.construction_energy)
+        print_with("energy of materials",
+                   number(*run.construction_energy),
+                   Quantity::energy);
+      print_with("energy balance defect",
+                 number(run.energy_balance_defect),
+                 Quantity::energy);
       if (run.error_estimate)
         print_row(out, "error estimate", number(*run.error_estimate));
     }
@@ -135,33 +171,47 @@ namespace Viscoplastic
     /// The largest values of the run.
     template <int dim>
     void
-    print_largest(std::ostream &out, const RunSummary<dim> &run)
+    print_largest(std::ostream          &out,
+                  const Units           &units,
+                  const RunSummary<dim> &run)
     {
-      const auto with_place = [](const Largest    &largest,
-                                 const Point<dim> &position) {
+      const WithUnits<dim> with{units};
+      const auto           with_place = [&](const Largest    &largest,
+                                  const Quantity    quantity,
+                                  const Point<dim> &position) {
         std::ostringstream place;
         place << std::setprecision(3) << position;
-        return with_time(largest) + ", x = (" + place.str() + ")";
+        return with.at_time(largest, quantity) + ", x = (" + place.str() + ")" +
+               units.suffix(Quantity::length, dim);
       };
       out << "Largest in the run:\n";
       print_row(out,
                 "displacement",
-                with_place(run.displacement, run.displacement_position));
+                with_place(run.displacement,
+                           Quantity::length,
+                           run.displacement_position));
       print_row(out,
                 "von Mises stress",
-                with_place(run.von_mises, run.von_mises_position));
+                with_place(run.von_mises,
+                           Quantity::stress,
+                           run.von_mises_position));
       if (run.friction_force)
         print_row(out,
                   "slipping area",
                   number(run.slip_area.value) + " of " +
                     number(run.friction_area) +
-                    " at t = " + number(run.slip_area.t));
+                    units.suffix(Quantity::area, dim) +
+                    " at t = " + with.time(run.slip_area.t));
       if (run.capped_volume.value > 0.)
-        print_row(out, "volume beyond the cap", with_time(run.capped_volume));
+        print_row(out,
+                  "volume beyond the cap",
+                  with.at_time(run.capped_volume, Quantity::volume));
       if (run.stiffness.value > 0.)
         print_row(out,
                   "time step times r",
-                  with_place(run.stiffness, run.critical_position));
+                  with_place(run.stiffness,
+                             Quantity::pure_number,
+                             run.critical_position));
     }
 
 
@@ -230,9 +280,12 @@ namespace Viscoplastic
 
     template <int dim>
     void
-    print_errors(std::ostream &out, const RunSummary<dim> &run)
+    print_errors(std::ostream          &out,
+                 const Units           &units,
+                 const RunSummary<dim> &run)
     {
-      const auto error =
+      const WithUnits<dim> with{units};
+      const auto           error =
         [&](const std::string &name, const double value, const double norm) {
           if (norm > 0.)
             print_row(out,
@@ -250,14 +303,14 @@ namespace Viscoplastic
         return;
 
       out << "Estimated error in the energy norm, largest at t = "
-          << number(run.errors->t)
+          << with.time(run.errors->t)
           << " (without what the mesh\nhas done to the rates that made "
              "the memory z), and relative to the solution:\n";
       print_parts(out, run, *run.errors);
       if (!run.quantity.empty())
         {
           out << "Estimated error of " << run.quantity
-              << ", largest at t = " << number(run.quantity_errors.t)
+              << ", largest at t = " << with.time(run.quantity_errors.t)
               << ", and relative to its largest value:\n";
           print_parts(out, run, run.quantity_errors);
         }
@@ -271,12 +324,14 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  RunSummary<dim>::print(std::ostream &out, const RunSummary *coarser) const
+  RunSummary<dim>::print(std::ostream     &out,
+                         const Units      &units,
+                         const RunSummary *coarser) const
   {
-    print_end(out, *this, coarser);
-    print_largest(out, *this);
+    print_end(out, units, *this, coarser);
+    print_largest(out, units, *this);
     print_steps(out, *this);
-    print_errors(out, *this);
+    print_errors(out, units, *this);
   }
 
 
@@ -296,6 +351,11 @@ namespace Viscoplastic
         result.emplace_back("slip_area", *slipping_area);
         result.emplace_back("friction_dissipation", *friction_dissipation);
       }
+    if (contact_force)
+      {
+        add("contact_force", *contact_force);
+        result.emplace_back("contact_area", *contact_area);
+      }
     for (const auto &[id, force] : reactions)
       add("reaction_" + std::to_string(id), force);
     if (viscous_dissipation)
@@ -312,17 +372,19 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  write_uncertainties(const std::string     &file,
-                      const RunSummary<dim> &summary,
-                      const RunSummary<dim> &coarser)
+  write_uncertainties(
+    const std::string                                     &file,
+    const RunSummary<dim>                                 &summary,
+    const RunSummary<dim>                                 &coarser,
+    const std::function<std::string(const std::string &)> &label)
   {
     std::ostringstream out;
     out << std::setprecision(12) << "quantity,value,uncertainty\n";
     const auto fine = summary.quantities(), coarse = coarser.quantities();
     AssertDimension(fine.size(), coarse.size());
     for (unsigned int i = 0; i < fine.size(); ++i)
-      out << fine[i].first << ',' << fine[i].second << ','
-          << std::abs(fine[i].second - coarse[i].second) << '\n';
+      out << fine[i].first << label(fine[i].first) << ',' << fine[i].second
+          << ',' << std::abs(fine[i].second - coarse[i].second) << '\n';
     replace_file(file, out.str());
   }
 
@@ -390,11 +452,15 @@ namespace Viscoplastic
   template struct RunSummary<2>;
   template struct RunSummary<3>;
   template void
-  write_uncertainties<2>(const std::string &,
-                         const RunSummary<2> &,
-                         const RunSummary<2> &);
+  write_uncertainties<2>(
+    const std::string &,
+    const RunSummary<2> &,
+    const RunSummary<2> &,
+    const std::function<std::string(const std::string &)> &);
   template void
-  write_uncertainties<3>(const std::string &,
-                         const RunSummary<3> &,
-                         const RunSummary<3> &);
+  write_uncertainties<3>(
+    const std::string &,
+    const RunSummary<3> &,
+    const RunSummary<3> &,
+    const std::function<std::string(const std::string &)> &);
 } // namespace Viscoplastic

@@ -2,6 +2,7 @@
 #include <deal.II/base/exceptions.h>
 
 #include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/results/statistics.h>
 
 #include <cmath>
@@ -13,8 +14,9 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  Statistics::Statistics(const std::string &file_name)
+  Statistics::Statistics(const std::string &file_name, const Label &label)
     : name(file_name)
+    , label(label)
     , file(file_name)
   {
     AssertThrow(file, ExcMessage("The file '" + name + "' cannot be written."));
@@ -42,7 +44,7 @@ namespace Viscoplastic
         std::istringstream header(line);
         std::string        column;
         while (std::getline(header, column, ','))
-          columns.push_back(column);
+          columns.push_back(without_label(column));
         while (n_rows <= last_step && get_line() &&
                line.compare(0, line.find(','), std::to_string(n_rows)) == 0)
           ++n_rows;
@@ -76,7 +78,8 @@ namespace Viscoplastic
       {
         for (const auto &entry : row)
           {
-            file << (columns.empty() ? "" : ",") << entry.first;
+            file << (columns.empty() ? "" : ",") << entry.first
+                 << label(entry.first);
             columns.push_back(entry.first);
           }
         file << '\n';
@@ -94,9 +97,11 @@ namespace Viscoplastic
       {
         const bool is_limit = column == "step_limit" && value > 0.;
         // Not known between the times of a reference.
-        const bool is_unknown = column.rfind("error_", 0) == 0 ||
-                                column.rfind("exact_", 0) == 0 ||
-                                column == "estimate_recovery";
+        const bool is_unknown =
+          column.rfind("error_", 0) == 0 || column.rfind("exact_", 0) == 0 ||
+          column == "estimate_recovery" ||
+          // Of a point in an absent material.
+          (column.rfind("point", 0) == 0 && std::isnan(value));
         if (std::isfinite(value) || is_limit || is_unknown)
           continue;
         std::ostringstream message;

@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/base/largest_place.h>
 #include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/results/step_quantities.h>
 
@@ -26,6 +27,8 @@ namespace Viscoplastic
       for (const auto &cell : space.cells)
         for (const unsigned int v : cell->vertex_indices())
           {
+            if (!space.scene.is_present(cell->material_id()))
+              break;
             const double *values = u.begin() + space.relevant.index_within_set(
                                                  cell->vertex_dof_index(v, 0));
             Tensor<1, dim> at_node;
@@ -66,6 +69,24 @@ namespace Viscoplastic
       return forces.strain_energy + forces.irreversible_work +
              stress.irreversible_energy;
     }
+
+
+
+    /// What foundations that give way store.
+    template <int dim>
+    double
+    energy_of_foundation(const Discretization<dim> &d, const State<dim> &state)
+    {
+      if (!d.face || !d.face->gives_way())
+        return 0.;
+      const FrictionFace &face = d.face->layout();
+      double              sum  = 0.;
+      for (unsigned int p = 0; p < state.friction.n_points(); ++p)
+        if (face.points[p].gives_way())
+          sum +=
+            face.points[p].compliance.energy(state.friction.penetration(p));
+      return face.sum(sum);
+    }
   } // namespace
 
 
@@ -80,11 +101,15 @@ namespace Viscoplastic
     const Forces<dim>  &forces     = step.end.forces;
     const bool          is_initial = step.time_step.n == 0;
     StepQuantities<dim> result;
-    result.stress        = summarize_stress(d.laws, old.state, state);
-    result.stored_energy = stored_energy(forces, result.stress);
-    const LargestPlace<dim> largest = largest_displacement(d.space, state.u);
-    result.max_displacement         = largest.value();
-    result.displacement_position    = largest.position();
+    result.stress = summarize_stress(d.laws, old.state, state);
+    result.stored_energy =
+      stored_energy(forces, result.stress) + energy_of_foundation(d, state);
+    DistributedVector       difference;
+    const LargestPlace<dim> largest =
+      largest_displacement(d.space,
+                           reported_displacement(d.scene(), state, difference));
+    result.max_displacement      = largest.value();
+    result.displacement_position = largest.position();
     if (d.face)
       {
         DistributedVector change = forces.u;
@@ -96,14 +121,21 @@ namespace Viscoplastic
                                          step.foundation_step,
                                          result.max_displacement);
         result.friction_force = d.face->resultant(state.friction);
+        if (d.face->has_obstacles())
+          result.contact = summarize_contact(*d.face,
+                                             old.state.friction,
+                                             state.friction,
+                                             change);
       }
     if (d.tension)
       result.tension_area = d.tension->tension_area(state);
 
-    result.reactions     = reactions(d.space, forces);
-    result.sum_of_forces = forces.load.resultant - result.friction_force;
-    result.largest_force = std::max(stable_norm(forces.load.resultant),
-                                    stable_norm(result.friction_force));
+    result.reactions = reactions(d.space, forces);
+    result.sum_of_forces =
+      forces.load.resultant - result.friction_force - result.contact.force;
+    result.largest_force = std::max({stable_norm(forces.load.resultant),
+                                     stable_norm(result.friction_force),
+                                     stable_norm(result.contact.force)});
     for (const auto &pair : result.reactions)
       {
         result.sum_of_forces += pair.second;
@@ -114,12 +146,18 @@ namespace Viscoplastic
     // remains, which need not add up to zero: it counts as a defect of 1e-8 at
     // most. Looked for rarely, since it takes the whole matrix.
     if (stable_norm(result.sum_of_forces) > 1e-9 * result.largest_force)
-      if (const double rounding = force_of_rounding(d, forces.u);
-          result.largest_force <= rounding)
-        result.largest_force = 1e8 * rounding;
+      {
+        DistributedVector moves(forces.u);
+        if (step.foundation_step.size() > 0)
+          d.face->restriction().add(1., step.foundation_step, moves);
+        if (const double rounding = force_of_rounding(d, moves);
+            result.largest_force <= rounding)
+          result.largest_force = 1e8 * rounding;
+      }
     if (!is_initial)
       result.external_work = external_work(d.space, old.forces, forces) +
-                             result.friction.foundation_work;
+                             result.friction.foundation_work +
+                             result.contact.foundation_work;
     const Vector<double> &indicators =
       step.end.space_estimate.squared_indicators;
     if (indicators.size() > 0)
@@ -137,7 +175,8 @@ namespace Viscoplastic
   {
     return {
       stored_energy(of.forces,
-                    summarize_stress(discretization.laws, of.state, of.state)),
+                    summarize_stress(discretization.laws, of.state, of.state)) +
+        energy_of_foundation(discretization, of.state),
       of.forces.u * of.forces.load.values};
   }
 

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/blas_kernel.h>
+#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/run/announcer.h>
 
@@ -50,6 +51,38 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  Announcer<dim>::announce_equilibrium(const Scene<dim> &scene,
+                                       const double      largest_u0)
+  {
+    if (largest_u0 == 0.)
+      return;
+    console.stream()
+      << "Equilibrium at t = 0: the body has moved by up to " << largest_u0
+      << scene.parameters.units.suffix(Quantity::length)
+      << (scene.parameters.initial_state.reset_displacement ?
+            "; displacements count from there\n" :
+            ", which counts in all displacements ('Initial state/Reset "
+            "displacement' lets them begin with zero)\n");
+  }
+
+
+
+  template <int dim>
+  void
+  Announcer<dim>::announce_stage(const Scene<dim> &scene)
+  {
+    const std::string absent = enumeration(scene.absent_materials());
+    console.stream() << "From t = " << scene.stage_ends[scene.stage() - 1]
+                     << scene.parameters.units.suffix(Quantity::time) << " on "
+                     << (absent.empty() ? "with all materials" :
+                                          "without " + absent)
+                     << '\n';
+  }
+
+
+
+  template <int dim>
+  void
   Announcer<dim>::announce(const Discretization<dim> &discretization)
   {
     const DoFHandler<dim> &dof_handler = discretization.space.dof_handler;
@@ -57,8 +90,12 @@ namespace Viscoplastic
     out << "Mesh: " << dof_handler.get_triangulation().n_global_active_cells()
         << " cells, " << dof_handler.n_dofs() << " degrees of freedom";
     if (discretization.face)
-      out << ", " << discretization.face->n_global_points()
-          << " friction points";
+      for (const auto &[of_obstacles, name] :
+           {std::make_pair(false, " friction points"),
+            std::make_pair(true, " points of unilateral contact")})
+        if (const auto n = discretization.face->n_global_points(of_obstacles);
+            n > 0 || (!of_obstacles && discretization.scene().has_friction()))
+          out << ", " << n << name;
     out << (discretization.mean_dilatation ? ", mean dilatation\n" : "\n");
   }
 
@@ -73,8 +110,8 @@ namespace Viscoplastic
     for (const types::boundary_id id : discretization.face->held_boundaries())
       if (held_faces.insert(id).second)
         console.remark(
-          "Note: nothing slips on boundary " + std::to_string(id) +
-          ", although it has friction: other conditions hold all of its nodes "
+          "Note: nothing slips or opens on boundary " + std::to_string(id) +
+          ", although it has friction or unilateral contact: other conditions hold all of its nodes "
           "on the present mesh; refine it there, or release another boundary.");
   }
 

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/linear_solvers/solver_choice.h>
+#include <viscoplastic_contact/run/plausibility.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 #include <viscoplastic_contact/time_stepping/explicit_step.h>
 
@@ -32,16 +33,18 @@ namespace Viscoplastic
       check_stability<dim>(parameters, initial, scene.schedule.step(1));
     if (rate == 0.)
       return;
+    const std::string time_unit = parameters.units.suffix(Quantity::time, dim);
     out << "Stability limit 2/r of the initial state: " << 2. / rate
-        << (scene.is_implicit() ? " of explicit schemes\n" : "\n");
+        << time_unit << (scene.is_implicit() ? " of explicit schemes\n" : "\n");
     if (!has_limit)
       return;
     const TimeStep largest = scene.schedule.largest_step();
     if (!is_stable(initial, largest.k))
       {
         std::ostringstream message;
-        message << "Warning: the time step " << largest.k << " of step "
-                << largest.n << " (t = " << largest.t
+        message << "Warning: the time step " << largest.k << time_unit
+                << " of step " << largest.n << " (t = " << largest.t
+                << time_unit
                 << ") exceeds this limit; the run will end there unless the "
                    "limit has grown by then. Take more steps in "
                    "'Time/Phases', or set 'Time/Scheme' = backward Euler.";
@@ -73,8 +76,10 @@ namespace Viscoplastic
         const TimeStep largest = scene.schedule.largest_step();
         out << "Stability limit 2/r before the initial state is brought into "
                "equilibrium: "
-            << 2. / rate << (scene.is_implicit() ? " of explicit schemes" : "")
-            << "; the largest step is " << largest.k << '\n';
+            << 2. / rate << parameters.units.suffix(Quantity::time, dim)
+            << (scene.is_implicit() ? " of explicit schemes" : "")
+            << "; the largest step is " << largest.k
+            << parameters.units.suffix(Quantity::time, dim) << '\n';
       }
   }
 
@@ -85,12 +90,17 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::check()
   {
     make_mesh();
+    check_stages();
     distribute_nodes(fe, dof_handler);
     discretization = std::make_unique<Discretization<dim>>(dof_handler, scene);
     const Discretization<dim> &d = *discretization;
     announcer.announce(d);
     announcer.warn_of_held_faces(d);
     recorder.set_mesh(d);
+    const LargestStress largest_stress = largest_given_stress(d);
+    describe_materials(d, largest_stress, out);
+    for (const std::string &doubt : implausible_data(d, largest_stress))
+      console.remark("Warning: " + doubt);
 
     known_solution.check();
     if (scene.exact_solution && scene.exact_solution->makes_data)
@@ -142,7 +152,8 @@ namespace Viscoplastic
               "direct (CHOLMOD)" :
               "conjugate gradients with " + to_string(solver))
         << "\nSteps: " << n_steps << " until t = " << scene.schedule.end_time()
-        << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
+        << parameters.units.suffix(Quantity::time, dim) << "\nMemory: about "
+        << std::ceil(bytes / 1e7) / 100. << " GB"
         << (scene.is_adaptive() ? " on the initial mesh" : "")
         << "\nThe scene is valid"
         << (console.remarks().empty() ? "." : ", with the remarks above.")

@@ -37,6 +37,7 @@ namespace Viscoplastic
                                          "--describe",
                                          "--check",
                                          "--quiet",
+                                         "--verbose",
                                          "--restart"};
     const std::vector<std::string> with_value{"--set", "--log", "--price"};
 
@@ -210,6 +211,8 @@ namespace Viscoplastic
       const std::string text = value ? *value : "";
       if (option == "--quiet")
         result.quiet = true;
+      else if (option == "--verbose")
+        result.verbose = true;
       else if (option == "--restart")
         result.restart = text == "auto" ? Restart::automatic : Restart::yes;
       else
@@ -329,6 +332,8 @@ namespace Viscoplastic
            "  --restart=auto               the same, or begin where there is "
            "none\n"
            "  --quiet                      print nothing but errors\n"
+           "  --verbose                    a line for each step, also where "
+           "nothing changes\n"
            "  --log FILE                   write the messages to FILE, too\n"
            "  --version                    print version and libraries\n"
            "  -h, --help                   print this text\n"

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/checkpoint/checkpoint.h>
+#include <viscoplastic_contact/checkpoint/parameter_changes.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <iomanip>
@@ -152,7 +153,9 @@ namespace Viscoplastic
         exchange(archive);
         exchange_preconditioner(archive, preconditioner);
         files[run_file] = archive.bytes();
-        recorder.synchronize(); // whose rows the checkpoint relies on
+        // Whose rows the checkpoint relies on.
+        recorder.synchronize();
+        lines.synchronize();
       }
     directories.write_checkpoint(manifest, files);
   }
@@ -192,7 +195,8 @@ namespace Viscoplastic
     write_checkpoint();
     last_checkpoint = recorder.elapsed();
     std::ostringstream text;
-    text << "step " << state.n << " (t = " << state.t << "): '"
+    text << "step " << state.n << " (t = " << state.t
+         << parameters.units.suffix(Quantity::time, dim) << "): '"
          << directories.checkpoints.path(state.n) << "'";
     if (!stops)
       {
@@ -243,9 +247,7 @@ namespace Viscoplastic
                 ExcMessage(name + "' belongs to another coarse mesh."));
     for (bool &has_field : has_nodal_field)
       archive &has_field;
-    AssertThrow(has_nodal_field[3] ==
-                  (scene.has_friction() &&
-                   parameters.output.has(AdditionalField::friction_work)),
+    AssertThrow(has_nodal_field[3] == scene.keeps_friction_work(),
                 ExcMessage(name +
                            "' cannot go on with another sum: `friction work' "
                            "among 'Output/Additional fields' has to be there "
@@ -274,6 +276,7 @@ namespace Viscoplastic
       meshes.push_back(store.read(checkpoint, mesh_file(r)));
     restore_mesh(meshes, triangulation);
     const bool is_solution = accepted.is_solution;
+    scene.enter_stage(scene.stage_of_step_to(state.t));
     set_up(); // which knows of no solution
     const Discretization<dim> &d = *discretization;
 
@@ -324,10 +327,12 @@ namespace Viscoplastic
     AssertThrow(failure.empty(), ExcMessage(failure));
     output.emplace(scene, communicator);
     output->resume(output_times);
+    lines.resume(output->directory(), state.n);
     for (const std::string &remark : store.remove_after(state.n).remarks)
       console.remark(remark);
 
-    out << "Restart after step " << state.n << " (t = " << state.t << ") from '"
+    out << "Restart after step " << state.n << " (t = " << state.t
+        << parameters.units.suffix(Quantity::time, dim) << ") from '"
         << store.path(state.n) << "'" << std::endl;
     remark_on_changes(checkpoint, changes, console);
 

@@ -2,7 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/results/output.h>
+#include <viscoplastic_contact/results/run_record.h>
 #include <viscoplastic_contact/run/run_directories.h>
 
 #include <filesystem>

@@ -5,21 +5,15 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
-#include <viscoplastic_contact/error/kelly_estimator.h>
-#include <viscoplastic_contact/error/memory_bound.h>
-#include <viscoplastic_contact/error/memory_loss.h>
-#include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/results/unit_labels.h>
 #include <viscoplastic_contact/run/pilot_run.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 #include <viscoplastic_contact/scene/kinks_in_time.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <iomanip>
-#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -53,6 +47,7 @@ namespace Viscoplastic
     , error_estimator(parameters.error_control.error_estimator ?
                         std::make_unique<ErrorEstimator<dim>>(scene) :
                         nullptr)
+    , lines(scene)
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
     , known_solution(scene, timer)
     , recorder(scene, control, console, timer, budget ? &*budget : nullptr)
@@ -97,6 +92,8 @@ namespace Viscoplastic
     last_step = recorder.elapsed();
     while (!is_finished())
       {
+        if (scene.stage_is_over(accepted.state.t))
+          enter_next_stage();
         if (adaptation_is_due())
           adapt_mesh();
         AcceptedStep<dim> step = time_stepper->next(accepted);
@@ -116,8 +113,7 @@ namespace Viscoplastic
         known_solution.write_reference(*discretization,
                                        accepted.state,
                                        output->directory());
-        if (output->is_due(step.time_step))
-          write_fields();
+        write_results(output->is_due(step.time_step));
         const std::string interruption = keep_checkpoints(*signals);
         if (!interruption.empty())
           return interruption;
@@ -152,6 +148,7 @@ namespace Viscoplastic
         budget->expect_size(size_in_pilot_run<dim>(parameters, failure));
         control.expect_size(budget->expected_size);
       }
+    check_stages();
     set_up();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(discretization->space);
@@ -174,12 +171,17 @@ namespace Viscoplastic
     begin_state();
     directories.begin();
     output.emplace(scene, communicator);
+    lines.begin(output->directory());
     directories.begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      recorder.write_to(
-        std::make_unique<Statistics>(output->directory() + "statistics.csv"));
+      recorder.write_to(std::make_unique<Statistics>(
+        output->directory() + "statistics.csv",
+        [labels = UnitLabels<dim>(scene)](const std::string &column) {
+          return labels.of_column(column);
+        }));
+    // First: the seconds that steps are expected to take begin with the record.
+    write_results(/* fields_are_due = */ true);
     record_initial_state();
-    write_fields();
   }
 
 
@@ -219,6 +221,7 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::land_on_kinks()
   {
+    control.land_on(scene.stage_ends, {});
     if (!control.is_on || !parameters.step_control.land_on_kinks)
       return;
     const KinksOfScene found = find_kinks(scene, triangulation);
@@ -254,6 +257,7 @@ namespace Viscoplastic
     announcer.warn_of_held_faces(*discretization);
     announcer.announce_solver(time_stepper->method().solver_name());
     recorder.set_mesh(*discretization);
+    lines.set_mesh(*discretization);
   }
 
 
@@ -305,6 +309,8 @@ namespace Viscoplastic
                             accepted.space_estimate.squared_indicators);
       }
     while (is_refined);
+    if (equilibrate)
+      announcer.announce_equilibrium(scene, accepted.state.u.linfty_norm());
   }
 
 
@@ -316,7 +322,7 @@ namespace Viscoplastic
     const Discretization<dim> &d = *discretization;
     const double tolerance = parameters.initial_state.compatibility_tolerance;
     const CompatibilityViolation<dim> violation = compatibility_violation(
-      d.space, load, d.face.get(), accepted.state.friction);
+      d.space, load, d.face.get(), accepted.state.u, accepted.state.friction);
     // Data that a solution makes are compatible up to quadrature.
     if (scene.exact_solution && scene.exact_solution->makes_data)
       return;
@@ -337,199 +343,20 @@ namespace Viscoplastic
 
 
   template <int dim>
-  RefinementParameters
-  ViscoplasticContact<dim>::refinement_limits() const
-  {
-    RefinementParameters limits = parameters.refinement;
-    if (limits.memory_budget > 0.)
-      limits.cell_budget =
-        std::min(limits.cell_budget,
-                 cells_in_memory(*discretization, 1e9 * limits.memory_budget));
-    return limits;
-  }
-
-
-
-  template <int dim>
   void
-  ViscoplasticContact<dim>::adapt_mesh()
-  {
-    TimerOutput::Scope    phase(timer, "adaptation");
-    const Vector<double> &squared_indicators =
-      accepted.space_estimate.squared_indicators;
-    if (budget)
-      {
-        if (mark_cells_to_tolerance(triangulation,
-                                    squared_indicators,
-                                    refinement_limits(),
-                                    space_ratio(accepted.errors),
-                                    keep_memory()))
-          change_mesh();
-        return;
-      }
-    // What rounding and iterations leave of an estimate, as in uniform states,
-    // says nothing about the mesh, and differs between numbers of ranks.
-    if (parameters.refinement.strategy == RefinementStrategy::residual &&
-        total_estimate(squared_indicators, triangulation) <=
-          10. * std::max(1e-10, time_stepper->tolerance(accepted)) *
-            std::sqrt(2. * std::max(0., accepted.forces.strain_energy)))
-      return;
-    if (mark_cells(triangulation, squared_indicators, refinement_limits()))
-      change_mesh();
-  }
-
-
-
-  template <int dim>
-  double
-  ViscoplasticContact<dim>::space_ratio(const ErrorEstimate &errors) const
-  {
-    const double size =
-      budget->size(std::max(recorder.summary().controlled_errors().size,
-                            budget->size(errors)));
-    // A body that has not moved yet says nothing about the mesh.
-    if (!(size > 0.))
-      return 1.;
-    const double allowed =
-      budget->space(budget->errors(errors), size, scene.has_time_error());
-    if (!scene.quantity)
-      return errors.space / allowed;
-    const QuantityEstimate &quantity = errors.quantity;
-    if (quantity.unsigned_space == 0.) // nor does friction that cannot change
-      return 1.;
-    // Quantities behave like squares of the energy norm. Where contributions
-    // happen to cancel, none of them may become larger. What is settled stays
-    // as it is on any mesh.
-    constexpr double safety  = QuantityEstimator<dim>::safety;
-    const double     settled = safety * std::abs(quantity.settled_space),
-                 open        = std::max(0.1 * allowed, allowed - settled),
-                 of_mesh     = safety * std::abs(quantity.space_correction -
-                                             quantity.settled_space),
-                 ratio       = std::sqrt(
-                   std::max(of_mesh,
-                            std::min(quantity.unsigned_space, 0.9 * open)) /
-                   open);
-    // A face that hardly slips for a while will slip again.
-    return scene.quantity->is_sum() ? std::max(1., ratio) : ratio;
-  }
-
-
-
-  template <int dim>
-  std::function<void()>
-  ViscoplasticContact<dim>::keep_memory()
-  {
-    return [this] {
-      const double size =
-        budget->size(recorder.summary().controlled_errors().size);
-      limit_memory_loss(triangulation,
-                        discretization->stress_space,
-                        accepted.state.z,
-                        budget->transfer(accepted.errors, size));
-    };
-  }
-
-
-
-  template <int dim>
-  bool
-  ViscoplasticContact<dim>::refine_for(const AcceptedStep<dim> &step)
-  {
-    if (!budget || !scene.is_adaptive())
-      return false;
-    TimerOutput::Scope phase(timer, "adaptation");
-    const double       ratio = space_ratio(step.end.errors);
-    if (ratio <= 1. ||
-        !mark_cells_to_tolerance(triangulation,
-                                 step.end.space_estimate.squared_indicators,
-                                 refinement_limits(),
-                                 ratio,
-                                 n_refinements == 0 ? keep_memory() :
-                                                      std::function<void()>()))
-      return false;
-    change_mesh();
-    ++n_refinements;
-    std::ostringstream text;
-    text << "  mesh " << std::setprecision(3) << ratio
-         << " times too coarse for step " << step.time_step.n << ", refined to "
-         << triangulation.n_global_active_cells() << " cells\n";
-    out << text.str() << std::flush;
-    return true;
-  }
-
-
-
-  template <int dim>
-  bool
-  ViscoplasticContact<dim>::refine_first_mesh(
-    const double          estimate,
-    const double          allowed,
-    const Vector<double> &squared_indicators)
-  {
-    TimerOutput::Scope phase(timer, "adaptation");
-    if (!scene.is_adaptive() || allowed == 0. || estimate <= allowed ||
-        !mark_cells_to_tolerance(triangulation,
-                                 squared_indicators,
-                                 refinement_limits(),
-                                 estimate / allowed))
-      return false;
-    triangulation.execute_coarsening_and_refinement();
-    set_up();
-    return true;
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::change_mesh()
-  {
-    State<dim>       &state = accepted.state;
-    DistributedVector density;
-    if (discretization->face)
-      density = discretization->face->density(state.friction);
-    const double loss =
-      error_estimator ?
-        memory_loss(triangulation, discretization->stress_space, state.z) :
-        0.;
-    const EnergiesOnMesh before = energies_on_mesh(*discretization, accepted);
-    StateTransfer<dim>   transfer(triangulation,
-                                discretization->stress_space,
-                                state,
-                                discretization->face ? &density : nullptr);
-    triangulation.execute_coarsening_and_refinement();
-    set_up();
-
-    const Discretization<dim> &d      = *discretization;
-    auto                       result = transfer.unpack(d.stress_space);
-    state                             = std::move(result.state);
-    if (d.face)
-      state.friction =
-        friction_on_new_mesh(d, state, result.multiplier_density);
-    time_stepper->settle(accepted);
-    accepted.rate.reset();
-    if (error_estimator)
-      error_estimator->change_mesh(d.space, d.matrix, loss, accepted);
-    recorder.record_mesh_change(before, energies_on_mesh(d, accepted));
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::write_fields()
+  ViscoplasticContact<dim>::write_results(const bool fields_are_due)
   {
     TimerOutput::Scope    phase(timer, "output");
     const Vector<double> &squared_indicators =
       accepted.space_estimate.squared_indicators;
-    const std::vector<std::string> remarks =
-      output->write_fields(discretization->laws,
-                           accepted.state,
-                           discretization->face.get(),
-                           squared_indicators.size() > 0 ? &squared_indicators :
-                                                           nullptr);
-    for (const std::string &remark : remarks)
-      console.remark(remark);
+    if (fields_are_due)
+      for (const std::string &remark : output->write_fields(
+             discretization->laws,
+             accepted.state,
+             discretization->face.get(),
+             squared_indicators.size() > 0 ? &squared_indicators : nullptr))
+        console.remark(remark);
+    lines.write(accepted.state, fields_are_due);
   }
 
 
@@ -545,9 +372,13 @@ namespace Viscoplastic
     recorder.print(out, coarser);
     if (coarser != nullptr &&
         Utilities::MPI::this_mpi_process(communicator) == 0)
-      write_uncertainties(output->directory() + "uncertainty.csv",
-                          recorder.summary(),
-                          *coarser);
+      write_uncertainties<dim>(output->directory() + "uncertainty.csv",
+                               recorder.summary(),
+                               *coarser,
+                               [&](const std::string &quantity) {
+                                 return UnitLabels<dim>(scene).of_column(
+                                   quantity);
+                               });
     if (recorder.summary().errors)
       output->record_errors(recorder.summary());
     for (const std::string &remark : remarks)

@@ -63,6 +63,66 @@ namespace Viscoplastic
 
 
 
+    /// The contact law that is given, or that of the friction law in the paper.
+    ContactLaw
+    contact_law_by_name(const types::boundary_id id,
+                        const std::string       &name,
+                        const FrictionLaw        friction_law)
+    {
+      const bool is_coulomb = friction_law == FrictionLaw::coulomb;
+      const auto refuse     = [&](const std::string &reason) {
+        AssertThrow(false,
+                    ExcMessage("'" + entry(id, "Contact law") + "' is " + name +
+                               ", but " + reason));
+      };
+      if (name == "bilateral")
+        {
+          if (is_coulomb)
+            refuse("'Friction law' = coulomb needs a pressure: that of "
+                   "unilateral contact, or a given normal stress.");
+          return ContactLaw::bilateral;
+        }
+      if (name == "given normal stress")
+        {
+          if (!is_coulomb)
+            refuse("with 'Friction law' other than coulomb that is a load: "
+                   "use the role traction with a 'Pressure'.");
+          return ContactLaw::given_stress;
+        }
+      if (name == "unilateral" || name == "normal compliance")
+        {
+          if (friction_law == FrictionLaw::glued)
+            refuse("what is glued cannot open; leave one of them out.");
+          return name == "unilateral" ? ContactLaw::unilateral :
+                                        ContactLaw::compliance;
+        }
+      return is_coulomb ? ContactLaw::given_stress : ContactLaw::bilateral;
+    }
+
+
+
+    /// The unit vector of a list of components.
+    template <int dim>
+    Tensor<1, dim>
+    given_direction(const std::string &text, const std::string &entry)
+    {
+      const std::vector<double> components =
+        Utilities::string_to_double(Utilities::split_string_list(text, ','));
+      Tensor<1, dim> result;
+      AssertThrow(components.size() == dim,
+                  ExcMessage("'" + entry + "' needs " + std::to_string(dim) +
+                             " components separated by commas, but '" +
+                             excerpt(text) + "' has " +
+                             std::to_string(components.size()) + "."));
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = components[d];
+      AssertThrow(result.norm() > 0.,
+                  ExcMessage("'" + entry + "' is zero; give a direction."));
+      return result / result.norm();
+    }
+
+
+
     template <int dim>
     std::array<std::optional<Expression<dim>>, dim>
     given_components(const std::string &text, const std::string &entry)
@@ -132,13 +192,23 @@ namespace Viscoplastic
                 !condition.prescribes_all());
       if (name == "Friction bound")
         return condition.friction_law == FrictionLaw::tresca;
-      if (name == "Friction coefficient" || name == "Normal stress")
+      if (name == "Friction coefficient")
         return condition.friction_law == FrictionLaw::coulomb;
+      if (name == "Slip rate factor")
+        return condition.has_friction();
+      if (name == "Normal stress")
+        return condition.contact_law == ContactLaw::given_stress;
+      if (name == "Gap" || name == "Foundation normal")
+        return condition.is_unilateral();
+      if (name == "Compliance" || name == "Compliance exponent")
+        return condition.gives_way();
       if (name == "Foundation displacement")
-        return is_contact && condition.is_bilateral();
+        return is_contact &&
+               (condition.is_bilateral() || condition.is_unilateral());
       if (name == "Foundation motion")
         return condition.has_friction() || condition.is_glued();
-      Assert(name == "Friction law", ExcInternalError());
+      Assert(name == "Friction law" || name == "Contact law",
+             ExcInternalError());
       return is_contact;
     }
   } // namespace
@@ -155,7 +225,16 @@ namespace Viscoplastic
     , solution(solution)
   {
     if (role == BoundaryRole::contact)
-      friction_law = friction_law_by_name(id, parameters.friction_law);
+      {
+        friction_law = friction_law_by_name(id, parameters.friction_law);
+        contact_law =
+          contact_law_by_name(id, parameters.contact_law, friction_law);
+        AssertThrow(!(solution && is_unilateral()),
+                    ExcMessage("'" + entry(id, "Contact law") + "' is " +
+                               parameters.contact_law +
+                               ", for which 'Exact solution/Data' = solution "
+                               "makes no data; use 'Data' = scene."));
+      }
 
     // What is not used is parsed all the same: nonsense should not wait for
     // the day when the role changes.
@@ -174,10 +253,14 @@ namespace Viscoplastic
     const auto scalar = [&](const std::string &name, const std::string &text) {
       std::optional<Expression<dim>> result;
       AssertThrow(is_given(text) || !uses(*this, name) || name == "Pressure" ||
-                    (solution && name == "Normal stress"),
-                  ExcMessage("'" + entry(id, name) +
-                             "' is missing; the friction law " +
-                             parameters.friction_law + " needs it."));
+                    name == "Gap" || (solution && name == "Normal stress"),
+                  ExcMessage("'" + entry(id, name) + "' is missing; the " +
+                             (name == "Normal stress" ?
+                                "contact law given normal stress" :
+                              name == "Compliance" ?
+                                "contact law normal compliance" :
+                                "friction law " + parameters.friction_law) +
+                             " needs it."));
       if (is_given(text))
         result.emplace(text, entry(id, name));
       if (!uses(*this, name))
@@ -216,7 +299,38 @@ namespace Viscoplastic
     friction_bound = scalar("Friction bound", parameters.friction_bound);
     friction_coefficient =
       scalar("Friction coefficient", parameters.friction_coefficient);
+    slip_rate_factor.emplace(parameters.slip_rate_factor,
+                             entry(id, "Slip rate factor"),
+                             "v");
+    AssertThrow(!slip_rate_factor->depends_on_time(),
+                ExcMessage("'" + entry(id, "Slip rate factor") +
+                           "' depends on t, but only the slip rate v is known "
+                           "there; 'Friction bound' and 'Friction coefficient' "
+                           "may depend on place and time."));
+    if (!uses(*this, "Slip rate factor") ||
+        (!slip_rate_factor->depends_on_position() &&
+         slip_rate_factor->value(Point<1>(), 0.) == 1.))
+      slip_rate_factor.reset();
+    AssertThrow(!(solution && slip_rate_factor),
+                ExcMessage("'" + entry(id, "Slip rate factor") +
+                           "' is given, for which 'Exact solution/Data' = "
+                           "solution makes no data; use 'Data' = scene."));
     normal_stress = scalar("Normal stress", parameters.normal_stress);
+    given_gap     = scalar("Gap", parameters.gap);
+    if (given_gap && given_gap->is_zero())
+      given_gap.reset();
+    given_compliance    = scalar("Compliance", parameters.compliance);
+    compliance_exponent = parameters.compliance_exponent;
+    AssertThrow(!given_compliance || !given_compliance->depends_on_time(),
+                ExcMessage("'" + entry(id, "Compliance") +
+                           "' depends on time; a foundation does not become "
+                           "stiffer or softer, let the gap depend on time."));
+    if (is_given(parameters.foundation_normal))
+      {
+        normal          = given_direction<dim>(parameters.foundation_normal,
+                                      entry(id, "Foundation normal"));
+        normal_is_given = is_unilateral();
+      }
     foundation_displacement =
       scalar("Foundation displacement", parameters.foundation_displacement);
     if (foundation_displacement && foundation_displacement->is_zero())
@@ -247,9 +361,16 @@ namespace Viscoplastic
     compare("Displacement", parameters.displacement, "");
     compare("Traction", parameters.traction, "");
     compare("Pressure", parameters.pressure, "0");
+    compare("Contact law", parameters.contact_law, "bilateral");
+    compare("Gap", parameters.gap, "0");
+    compare("Foundation normal", parameters.foundation_normal, "");
+    compare("Compliance", parameters.compliance, "0");
+    if (parameters.compliance_exponent != 1. && !gives_way())
+      names.push_back("Compliance exponent");
     compare("Friction law", parameters.friction_law, "none");
     compare("Friction bound", parameters.friction_bound, "0");
     compare("Friction coefficient", parameters.friction_coefficient, "0");
+    compare("Slip rate factor", parameters.slip_rate_factor, "1");
     compare("Normal stress", parameters.normal_stress, "0");
     compare("Foundation displacement", parameters.foundation_displacement, "0");
     compare("Foundation motion", parameters.foundation_motion, "");
@@ -276,7 +397,56 @@ namespace Viscoplastic
         AssertThrow(false, ExcMessage(message.str()));
       }
     // rho = g, (5.22), or mu |S|, (5.6).
-    return is_tresca ? factor : factor * std::abs(normal_stress->value(x, t));
+    return is_tresca || has_computed_pressure() ?
+             factor :
+             factor * std::abs(normal_stress->value(x, t));
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::bound_factor(const double slip_rate) const
+  {
+    if (!slip_rate_factor)
+      return 1.;
+    const double result = slip_rate_factor->value(Point<1>(slip_rate), 0.);
+    if (result < 0.)
+      {
+        std::ostringstream message;
+        message << "'" << entry(id, "Slip rate factor") << "' is " << result
+                << " at v = " << slip_rate << "; it must not be negative.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::compliance(const Point<dim> &x) const
+  {
+    const double result = given_compliance->value(x, 0.);
+    if (!(result >= 0.))
+      {
+        std::ostringstream message;
+        message << "'" << entry(id, "Compliance") << "' is " << result
+                << " at x = (" << x << "); it must not be negative.";
+        AssertThrow(false, ExcMessage(message.str()));
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::gap(const Point<dim> &x, const double t) const
+  {
+    return (given_gap ? given_gap->value(x, t) : 0.) +
+           (foundation_displacement ? foundation_displacement->value(x, t) :
+                                      0.);
   }
 
 
@@ -285,7 +455,7 @@ namespace Viscoplastic
   void
   BoundaryCondition<dim>::derive_data()
   {
-    if (solution && friction_law == FrictionLaw::coulomb)
+    if (solution && contact_law == ContactLaw::given_stress)
       normal_stress.emplace(
         [solution = solution, normal = normal](const Point<dim> &x,
                                                const double      t) {
@@ -368,6 +538,8 @@ namespace Viscoplastic
     };
     for (const auto &component : displacement)
       add(component);
+    add(given_gap);
+    add(given_compliance);
     add(foundation_displacement);
     add(friction_bound);
     add(friction_coefficient);
@@ -388,7 +560,10 @@ namespace Viscoplastic
   {
     return (friction_bound && friction_bound->depends_on_time()) ||
            (friction_coefficient && friction_coefficient->depends_on_time()) ||
-           (normal_stress && normal_stress->depends_on_time());
+           (normal_stress && normal_stress->depends_on_time()) ||
+           (is_unilateral() && ((given_gap && given_gap->depends_on_time()) ||
+                                (foundation_displacement &&
+                                 foundation_displacement->depends_on_time())));
   }
 
 

@@ -6,6 +6,8 @@
 #include <viscoplastic_contact/base/subsection.h>
 #include <viscoplastic_contact/scene/material.h>
 
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -69,6 +71,29 @@ namespace Viscoplastic
     }
 
 
+    /// The time in @p text, or @p otherwise if it is empty.
+    double
+    read_time(const std::string &text,
+              const std::string &entry,
+              const double       otherwise)
+    {
+      if (Utilities::trim(text).empty())
+        return otherwise;
+      double t = 0.;
+      try
+        {
+          t = Utilities::string_to_double(text);
+        }
+      catch (const std::exception &)
+        {}
+      AssertThrow(t > 0. && std::isfinite(t),
+                  ExcMessage("'" + entry + "' = " + text +
+                             " is not a time after the beginning."));
+      return t;
+    }
+
+
+
     std::unique_ptr<const ViscoplasticLaw>
     make_law(const std::string                 &section,
              const std::string                 &name,
@@ -87,11 +112,24 @@ namespace Viscoplastic
   Material<dim>::Material(const std::string                 &section,
                           const MaterialParameters          &parameters,
                           ParameterHandler                  &handler,
-                          const std::vector<LawDescription> &laws)
+                          const std::vector<LawDescription> &laws,
+                          const bool                         is_absent)
     : section(section)
-    , law_name(parameters.law)
+    , law_name(is_absent ? "elastic" : parameters.law)
+    , is_absent(is_absent)
+    , added_at(read_time(parameters.added_at,
+                         section + "/Added at",
+                         -std::numeric_limits<double>::infinity()))
+    , removed_at(read_time(parameters.removed_at,
+                           section + "/Removed at",
+                           std::numeric_limits<double>::infinity()))
     , law(make_law(section, law_name, handler, dim, laws))
   {
+    AssertThrow(added_at < removed_at,
+                ExcMessage(
+                  "'" + section + "/Removed at' = " + parameters.removed_at +
+                  " is not later than 'Added at' = " + parameters.added_at +
+                  "."));
     if (!parameters.voigt_matrix.empty())
       {
         // What the file gives is used, or refused; the defaults alone go with
@@ -130,9 +168,21 @@ namespace Viscoplastic
   Stiffness
   Material<dim>::stiffness(const Point<dim> &x) const
   {
-    if (anisotropic)
-      return *anisotropic;
+    const Stiffness result = anisotropic ? *anisotropic : isotropic(x);
+    // 2 mu is Young's modulus where Poisson's ratio is zero.
+    return is_absent ?
+             Stiffness::isotropic(absent_stiffness *
+                                    result.smallest_deviatoric_eigenvalue(),
+                                  0.) :
+             result;
+  }
 
+
+
+  template <int dim>
+  Stiffness
+  Material<dim>::isotropic(const Point<dim> &x) const
+  {
     const auto refuse = [&](const std::string     &entry,
                             const Expression<dim> &expression,
                             const double           value,

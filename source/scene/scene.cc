@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/scene/jump_in_time.h>
 #include <viscoplastic_contact/scene/scene.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace Viscoplastic
@@ -67,10 +68,10 @@ namespace Viscoplastic
     if (source_of_data)
       derive_data();
 
-    for (const std::string &point :
-         Utilities::split_string_list(parameters.output.points, ';'))
-      if (!point.empty())
-        output_points.push_back(parse_point<dim>(point, "Output/Points"));
+    const OutputParameters &output = parameters.output;
+    output_points                  = read_output_points<dim>(output.points);
+    output_lines                   = read_output_lines<dim>(output.lines);
+    output_integrals               = read_output_integrals(output.integrals);
     if (!parameters.error_control.quantity.empty())
       quantity = quantity_of_interest(parameters.error_control.quantity,
                                       boundary,
@@ -136,6 +137,9 @@ namespace Viscoplastic
          warnings_of_data_in_time(*this, triangulation))
       warnings.push_back(warning);
     make_materials(material_ids(triangulation));
+    find_stages(triangulation);
+    for (const std::string &warning : check_output_places(*this, triangulation))
+      warnings.push_back(warning);
     if (exact_solution)
       {
         const bool is_elastic = materials.size() == 1 && !materials[0]->law;
@@ -180,16 +184,25 @@ namespace Viscoplastic
   void
   Scene<dim>::inspect_unused_entries()
   {
+    if (parameters.initial_state.reset_displacement &&
+        !parameters.initial_state.equilibrate && !initial_displacement)
+      warnings.emplace_back(
+        "'Initial state/Reset displacement' changes nothing: without "
+        "'Displacement' or 'Equilibrate' displacements begin with zero.");
     for (const auto &[id, condition] : boundary)
       {
         const BoundaryParameters &given = parameters.boundaries.at(id);
         for (const std::string &name : condition.unused_entries(given))
-          warnings.push_back("'Boundary " + std::to_string(id) + "/" + name +
-                             "' is not used by the role " + given.role +
-                             (condition.role == BoundaryRole::contact ?
-                                " with the friction law " + given.friction_law :
-                                "") +
-                             ".");
+          warnings.push_back(
+            "'Boundary " + std::to_string(id) + "/" + name +
+            "' is not used by the role " + given.role +
+            (condition.role == BoundaryRole::contact ?
+               (given.contact_law == "not given" ?
+                  "" :
+                  " with the contact law " + given.contact_law) +
+                 " with the friction law " + given.friction_law :
+               "") +
+            ".");
       }
   }
 
@@ -206,7 +219,16 @@ namespace Viscoplastic
           condition.role == BoundaryRole::contact)
         {
           const PieceNormal<dim> piece = piece_normal(triangulation, id);
-          condition.normal             = piece.normal;
+          if (condition.normal_is_given)
+            {
+              AssertThrow(faces_towards(triangulation, id, condition.normal),
+                          ExcMessage(
+                            "'Boundary " + std::to_string(id) +
+                            "/Foundation normal' points into the body; it "
+                            "goes from the body into the foundation."));
+              continue;
+            }
+          condition.normal = piece.normal;
           std::ostringstream message;
           message << "Boundary " << id << " has the role "
                   << (condition.role == BoundaryRole::contact ? "contact" :
@@ -216,7 +238,10 @@ namespace Viscoplastic
                   << " degrees from their mean, and 'Geometry/Flatness "
                      "tolerance' is "
                   << tolerance
-                  << "; give each flat piece a boundary id of its own.";
+                  << "; give each flat piece a boundary id of its own"
+                  << (condition.is_unilateral() ?
+                        ", or the foundation a 'Foundation normal'." :
+                        ".");
           AssertThrow(piece.deviation <= tolerance, ExcMessage(message.str()));
         }
   }
@@ -239,7 +264,7 @@ namespace Viscoplastic
     for (const auto &[id, condition] : boundary)
       if (condition.prescribes_all())
         for (const auto &[other_id, other] : boundary)
-          if (other.has_friction())
+          if (other.has_contact_points())
             for (const unsigned int v : vertices[id])
               if (vertices[other_id].count(v) == 1)
                 {
@@ -250,7 +275,8 @@ namespace Viscoplastic
                                             "clamped" :
                                             "prescribed displacement") +
                     ") touches boundary " + std::to_string(other_id) +
-                    " (friction); the theory keeps the closures of Gamma_1 "
+                    (other.has_friction() ? " (friction)" : " (contact)") +
+                    "; the theory keeps the closures of Gamma_1 "
                     "and Gamma_3 apart, and stresses may be singular where "
                     "they meet.");
                   break;
@@ -264,7 +290,7 @@ namespace Viscoplastic
   Scene<dim>::make_materials(const std::set<types::material_id> &ids)
   {
     materials.clear();
-    material_of_id.clear();
+    entries.clear();
     if (parameters.materials.empty())
       {
         materials.push_back(
@@ -273,7 +299,7 @@ namespace Viscoplastic
                                                 parameters.handler,
                                                 parameters.laws));
         for (const types::material_id id : ids)
-          material_of_id[id] = materials[0].get();
+          entries[id] = {materials[0].get()};
         return;
       }
 
@@ -298,7 +324,7 @@ namespace Viscoplastic
                                "."));
         materials.push_back(std::make_unique<const Material<dim>>(
           section, given->second, parameters.handler, parameters.laws));
-        material_of_id[id] = materials.back().get();
+        entries[id] = {materials.back().get()};
       }
     for (const auto &pair : parameters.materials)
       if (ids.count(pair.first) == 0)
@@ -339,7 +365,9 @@ namespace Viscoplastic
   {
     for (const auto &[id, condition] : boundary)
       if (condition.load_depends_on_time() ||
-          (condition.has_friction() && condition.bound_depends_on_time()))
+          (condition.has_contact_points() &&
+           condition.bound_depends_on_time()) ||
+          condition.has_computed_pressure())
         return false;
     return !body_force || !body_force->depends_on_time();
   }
@@ -360,12 +388,50 @@ namespace Viscoplastic
 
   template <int dim>
   bool
-  Scene<dim>::has_contact() const
+  Scene<dim>::has_unilateral_contact() const
   {
     for (const auto &pair : boundary)
-      if (pair.second.role == BoundaryRole::contact)
+      if (pair.second.is_unilateral())
         return true;
     return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_contact() const
+  {
+    return !contact_boundaries().empty();
+  }
+
+
+
+  template <int dim>
+  std::set<types::boundary_id>
+  Scene<dim>::contact_boundaries() const
+  {
+    std::set<types::boundary_id> result;
+    for (const auto &[id, condition] : boundary)
+      if (condition.role == BoundaryRole::contact)
+        result.insert(id);
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::keeps_friction_work() const
+  {
+    constexpr RecordedField work   = RecordedField::friction_work;
+    const OutputParameters &output = parameters.output;
+    bool is_asked_for = output.has(AdditionalField::friction_work) ||
+                        output.point_fields.count(work) > 0 ||
+                        output.line_fields.count(work) > 0;
+    for (const OutputIntegral &integral : output_integrals)
+      is_asked_for |= integral.fields.count(work) > 0;
+    return is_asked_for && has_friction();
   }
 
 
@@ -404,16 +470,45 @@ namespace Viscoplastic
       if (!ids.empty())
         result.push_back(name + " on boundary " + ids);
     };
-    add("bilateral contact with Tresca friction", boundaries([](const auto &b) {
-          return b.friction_law == FrictionLaw::tresca;
-        }));
-    add("Coulomb friction with given normal stress",
-        boundaries([](const auto &b) {
-          return b.friction_law == FrictionLaw::coulomb;
-        }));
-    add("frictionless bilateral contact", boundaries([](const auto &b) {
-          return b.role == BoundaryRole::contact &&
-                 b.friction_law == FrictionLaw::none;
+    const auto add_contact = [&](const std::string &name,
+                                 const ContactLaw   contact_law,
+                                 const FrictionLaw  friction_law) {
+      add(name, boundaries([=](const auto &b) {
+            return b.contact_law == contact_law &&
+                   b.friction_law == friction_law;
+          }));
+    };
+    add_contact("bilateral contact with Tresca friction",
+                ContactLaw::bilateral,
+                FrictionLaw::tresca);
+    add_contact("Coulomb friction with given normal stress",
+                ContactLaw::given_stress,
+                FrictionLaw::coulomb);
+    add_contact("frictionless bilateral contact",
+                ContactLaw::bilateral,
+                FrictionLaw::none);
+    add_contact("unilateral contact with Tresca friction",
+                ContactLaw::unilateral,
+                FrictionLaw::tresca);
+    add_contact("unilateral contact with Coulomb friction of the computed "
+                "pressure",
+                ContactLaw::unilateral,
+                FrictionLaw::coulomb);
+    add_contact("frictionless unilateral contact",
+                ContactLaw::unilateral,
+                FrictionLaw::none);
+    add_contact("normal compliance with Tresca friction",
+                ContactLaw::compliance,
+                FrictionLaw::tresca);
+    add_contact("normal compliance with Coulomb friction of the computed "
+                "pressure",
+                ContactLaw::compliance,
+                FrictionLaw::coulomb);
+    add_contact("frictionless normal compliance",
+                ContactLaw::compliance,
+                FrictionLaw::none);
+    add("friction that depends on the slip rate", boundaries([](const auto &b) {
+          return b.slip_rate_factor.has_value();
         }));
     add("glued contact",
         boundaries([](const auto &b) { return b.is_glued(); }));
@@ -439,6 +534,19 @@ namespace Viscoplastic
         }));
     if (initial_displacement || initial_stress)
       result.push_back("initial displacement or stress");
+    const std::string time_unit = parameters.units.suffix(Quantity::time);
+    for (const auto &[id, entry] : entries)
+      {
+        const Material<dim> &material = *entry.material;
+        std::ostringstream   stages;
+        if (std::isfinite(material.added_at))
+          stages << " added at t = " << material.added_at << time_unit;
+        if (std::isfinite(material.removed_at))
+          stages << (stages.str().empty() ? "" : " and")
+                 << " removed at t = " << material.removed_at << time_unit;
+        if (!stages.str().empty())
+          result.push_back(material.section + stages.str());
+      }
     std::ostringstream tolerance;
     tolerance << "meshes and steps for an error of "
               << 100. * parameters.error_control.tolerance << " %";

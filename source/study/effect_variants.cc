@@ -83,13 +83,15 @@ namespace Viscoplastic
     class Variants
     {
     public:
-      Variants(const Parameters &scene,
-               const SceneData  &means,
-               const double      typical_stress)
+      Variants(const Parameters  &scene,
+               const SceneData   &means,
+               const double       typical_stress,
+               const std::string &contact_force)
         : scene(scene)
         , values(scene.values())
         , means(means)
         , typical_stress(typical_stress)
+        , contact_force(contact_force)
       {}
 
       std::vector<EffectVariant>
@@ -302,7 +304,15 @@ namespace Viscoplastic
         const std::string on         = " on " + section;
         const bool        is_contact = data.role == "contact";
         const bool is_tresca  = is_contact && data.friction_law == "tresca",
-                   is_coulomb = is_contact && data.friction_law == "coulomb";
+                   is_coulomb = is_contact && data.friction_law == "coulomb",
+                   gives_way =
+                     is_contact && data.contact_law == "normal compliance",
+                   is_unilateral =
+                     (is_contact && data.contact_law == "unilateral") ||
+                     gives_way;
+        const auto is_nothing = [this](const std::string &text) {
+          return Utilities::trim(text).empty() || is_zero(text);
+        };
         // The data that this role reads.
         std::vector<std::pair<std::string, std::string>> loads, others;
         if (is_tresca || is_coulomb)
@@ -316,8 +326,44 @@ namespace Viscoplastic
             // Where there is none, there is none.
             add("slip" + on, "never", {entry + "1e6*(" + bound + ')'});
             others.emplace_back(name, bound);
+            if (Utilities::trim(data.slip_rate_factor) != "1")
+              add("dependence of friction on the slip rate" + on,
+                  "none",
+                  {section + "/Slip rate factor=1"});
           }
-        if (is_coulomb)
+        if (is_unilateral)
+          {
+            if (gives_way)
+              add("compliance of the foundation" + on,
+                  "rigid",
+                  {section + "/Contact law=unilateral"});
+            // On curved pieces there is nothing but the foundation's normal.
+            else if (!is_coulomb && data.foundation_normal.empty())
+              add("opening of contact" + on,
+                  "bilateral",
+                  {section + "/Contact law=bilateral",
+                   section + "/Foundation displacement=(" +
+                     (is_nothing(data.gap) ? "0" : data.gap) + ") + (" +
+                     (is_nothing(data.foundation_displacement) ?
+                        "0" :
+                        data.foundation_displacement) +
+                     ')'});
+            if (is_coulomb)
+              {
+                const CoulombPressure other =
+                  scene.solver.coulomb_pressure == CoulombPressure::lagged ?
+                    CoulombPressure::fixed_point :
+                    CoulombPressure::lagged;
+                add("pressure of Coulomb's law (" +
+                      name_of(scene.solver.coulomb_pressure) + ')' + on,
+                    name_of(other),
+                    {"Solver/Coulomb pressure=" + name_of(other)});
+                add_given_pressure(section, on, id, data);
+              }
+            if (!is_nothing(data.gap))
+              others.emplace_back("Gap", data.gap);
+          }
+        if (is_coulomb && !is_unilateral)
           loads.emplace_back("Normal stress", data.normal_stress);
         else if (is_contact)
           loads.emplace_back("Foundation displacement",
@@ -363,6 +409,34 @@ namespace Viscoplastic
               add_over_space(name, components);
             }
         is_load = false;
+      }
+
+      /// The normal force of the run, spread evenly over the face. What the
+      /// foundation held along its normal, something else has to hold.
+      void
+      add_given_pressure(const std::string        &section,
+                         const std::string        &on,
+                         const unsigned int        id,
+                         const BoundaryParameters &data)
+      {
+        const auto n_unilateral =
+          std::count_if(scene.boundaries.begin(),
+                        scene.boundaries.end(),
+                        [](const auto &entry) {
+                          const std::string &law = entry.second.contact_law;
+                          return entry.second.role == "contact" &&
+                                 (law == "unilateral" ||
+                                  law == "normal compliance");
+                        });
+        if (n_unilateral == 1 && data.foundation_normal.empty() &&
+            !contact_force.empty() && contact_force.size() < longest_text)
+          add("computed pressure" + on,
+              "given, the mean over the face",
+              {section + "/Contact law=given normal stress",
+               section + "/Normal stress=-(" + contact_force + ")/" +
+                 exact(means.area(id)),
+               section + "/Gap=",
+               section + "/Foundation displacement=0"});
       }
 
       void
@@ -432,6 +506,7 @@ namespace Viscoplastic
       const std::map<std::string, std::string> values;
       const SceneData                         &means;
       const double                             typical_stress;
+      const std::string                       &contact_force;
       EffectKind                               kind    = EffectKind::problem;
       bool                                     is_load = false;
       std::vector<EffectVariant>               result;
@@ -487,11 +562,12 @@ namespace Viscoplastic
 
 
   std::vector<EffectVariant>
-  effect_variants(const Parameters &scene,
-                  const SceneData  &means,
-                  const double      typical_stress)
+  effect_variants(const Parameters  &scene,
+                  const SceneData   &means,
+                  const double       typical_stress,
+                  const std::string &contact_force)
   {
-    return Variants(scene, means, typical_stress).collect();
+    return Variants(scene, means, typical_stress, contact_force).collect();
   }
 
 

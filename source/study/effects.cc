@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/results/output.h>
+#include <viscoplastic_contact/results/run_record.h>
 #include <viscoplastic_contact/study/effects.h>
 #include <viscoplastic_contact/study/effects_report.h>
 
@@ -41,7 +41,7 @@ namespace Viscoplastic
     {
       overrides.push_back("Output/Directory=" + directory);
       auto runs = std::make_unique<StudyRuns>(files, overrides, MPI_COMM_WORLD);
-      runs->may_choose_steps = true;
+      runs->may_subdivide = true;
       return runs;
     }
 
@@ -68,6 +68,25 @@ namespace Viscoplastic
         for (const double value : table.columns.at(column))
           result = std::max(result, std::isfinite(value) ? value : 0.);
       return result;
+    }
+
+
+
+    /// The size of the force of unilateral contact as an expression of t,
+    /// linear between the steps; empty without such contact.
+    std::string
+    contact_force_of(const Table &table)
+    {
+      if (!table.has("contact_force_x"))
+        return "";
+      const std::vector<double> &times = table.columns.at("t");
+      std::vector<double>        sizes(times.size(), 0.);
+      for (const std::string name :
+           {"contact_force_x", "contact_force_y", "contact_force_z"})
+        if (table.has(name))
+          for (std::size_t i = 0; i < sizes.size(); ++i)
+            sizes[i] = std::hypot(sizes[i], table.columns.at(name)[i]);
+      return piecewise_linear(times, sizes);
     }
 
 
@@ -374,7 +393,8 @@ namespace Viscoplastic
             open = effect_variants(scene,
                                    *data,
                                    largest_of(of_scene.at(level).table,
-                                              "mean_von_mises"));
+                                              "mean_von_mises"),
+                                   contact_force_of(of_scene.at(level).table));
             out << "Effects of " << scene.file << ": " << open.size()
                 << " simplifications" << std::endl;
           }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/json_text.h>
-#include <viscoplastic_contact/results/output.h>
+#include <viscoplastic_contact/results/run_record.h>
 #include <viscoplastic_contact/study/effects_report.h>
 #include <viscoplastic_contact/study/markdown_table.h>
 #include <viscoplastic_contact/study/study_report.h>

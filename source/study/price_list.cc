@@ -56,9 +56,35 @@ namespace Viscoplastic
 
 
   double
-  WorkPrecisionModel::seconds(const double mesh_width, const double steps) const
+  WorkPrecisionModel::refinement_of_steps(const double step) const
   {
-    return cost.seconds(dofs_at(mesh_width), steps, n_set_ups(steps));
+    return chosen_steps ? std::pow(k / step, 1. / order) : k / step;
+  }
+
+
+
+  double
+  WorkPrecisionModel::steps_at(const double step) const
+  {
+    return chosen_steps ? (*chosen_steps)(1. / step, 1.) :
+                          n_steps(phases) * refinement_of_steps(step);
+  }
+
+
+
+  double
+  WorkPrecisionModel::seconds(const double mesh_width, const double step) const
+  {
+    const double n_phases = static_cast<double>(phases.size()),
+                 steps    = std::max(n_phases, steps_at(step)),
+                 planned =
+                   std::max(n_phases,
+                            n_steps(phases) * refinement_of_steps(step));
+    return cost.seconds(dofs_at(mesh_width),
+                        steps,
+                        n_set_ups(steps,
+                                  static_cast<unsigned int>(
+                                    std::min(planned, most_steps))));
   }
 
 
@@ -69,19 +95,27 @@ namespace Viscoplastic
     PredictedRun result;
     result.mesh_level = mesh_level;
     result.h          = model.h * std::pow(0.5, mesh_level);
+    result.k          = std::min(k, model.largest_k);
     result.phases =
-      scale_phases(model.phases, model.k / std::min(k, model.largest_k));
-    result.k               = largest_step(result.phases);
-    result.steps           = n_steps(result.phases);
+      scale_phases(model.phases, model.refinement_of_steps(result.k));
+    const unsigned int n_planned = n_steps(result.phases);
+    result.steps                 = n_planned;
+    if (model.chosen_steps)
+      result.steps = static_cast<unsigned int>(
+        std::clamp(std::round(model.steps_at(result.k)),
+                   static_cast<double>(model.phases.size()),
+                   most_steps));
+    else
+      result.k = largest_step(result.phases);
     result.dofs            = model.dofs_at(result.h);
     result.error           = model.error(result.h, result.k);
-    result.seconds         = model.seconds(result.h, result.steps);
-    const double n_set_ups = model.n_set_ups(result.steps);
-    result.memory = model.cost.memory(result.dofs, result.steps, n_set_ups);
-    result.solver = choose_bulk_solver(
+    const double n_set_ups = model.n_set_ups(result.steps, n_planned);
+    result.seconds = model.cost.seconds(result.dofs, result.steps, n_set_ups);
+    result.memory  = model.cost.memory(result.dofs, result.steps, n_set_ups);
+    result.solver  = choose_bulk_solver(
       model.cost.demand_at(result.dofs, result.steps, n_set_ups));
-    result.is_far =
-      result.h < 0.49 * model.smallest_h || result.k < 0.49 * model.smallest_k;
+    result.is_far = result.h < 0.49 * model.smallest_h ||
+                    result.k < std::pow(0.49, model.order) * model.smallest_k;
     return result;
   }
 
@@ -101,7 +135,7 @@ namespace Viscoplastic
         if (rest <= 0.)
           continue;
         const double k = step_for(model, rest);
-        if (model.k / k * n_steps(model.phases) > most_steps)
+        if (model.steps_at(k) > most_steps)
           continue;
         const PredictedRun candidate = predict(model, level, k);
         if (!best || candidate.seconds < best->seconds)
@@ -158,10 +192,7 @@ namespace Viscoplastic
                    model.error.c_1 > 0. ?
                      model.error.rest(tolerance, share * tolerance) :
                      tolerance);
-        const double steps =
-          std::max<double>(model.phases.size(),
-                           n_steps(model.phases) * model.k / k);
-        lowest = std::min(lowest, model.seconds(h, steps));
+        lowest = std::min(lowest, model.seconds(h, k));
       }
     return lowest;
   }
@@ -196,11 +227,14 @@ namespace Viscoplastic
            const double              budget)
   {
     std::ostringstream text;
-    const auto         describe = [&text](const PredictedRun &run) {
+    const auto         describe = [&](const PredictedRun &run) {
       text << "h = " << digits(run.h) << " (mesh level " << run.mesh_level
-           << "), " << run.steps << " steps, " << digits(run.dofs)
-           << " unknowns, about " << seconds_in_words(run.seconds) << " and "
-           << digits(run.memory, 2) << " MB (" << to_string(run.solver) << ')';
+           << "), ";
+      if (model.chosen_steps)
+        text << "step tolerance " << digits(run.k) << ", about ";
+      text << run.steps << " steps, " << digits(run.dofs) << " unknowns, about "
+           << seconds_in_words(run.seconds) << " and " << digits(run.memory, 2)
+           << " MB (" << to_string(run.solver) << ')';
     };
     text << "Error " << digits(price.tolerance) << ": ";
     if (price.is_in_budget)
@@ -236,14 +270,20 @@ namespace Viscoplastic
          << digits(model.error.second(now.k), 2) << " of the steps), "
          << seconds_in_words(now.seconds) << ".";
     const auto add = [&](const std::string &what, const PredictedRun &next) {
-      text << " Halving " << what << ": error " << digits(next.error) << " for "
+      text << ' ' << what << ": error " << digits(next.error) << " for "
            << digits(next.seconds / now.seconds, 2) << " times the seconds.";
       return std::log(now.error / next.error) /
              std::log(std::max(1.001, next.seconds / now.seconds));
     };
-    const double of_h = add("h", predict(model, 1, model.k)),
-                 of_k = add("k", predict(model, 0, model.k / 2.));
-    add("both", predict(model, 1, model.k / 2.));
+    // In the first order, or with given steps, half of k; else a quarter.
+    const double finer_k = model.k / std::pow(2., model.order);
+    const double of_h    = add("Halving h", predict(model, 1, model.k)),
+                 of_k =
+                   add(!model.chosen_steps ? "Halving k" :
+                       model.order == 1    ? "Half the step tolerance" :
+                                             "A quarter of the step tolerance",
+                       predict(model, 0, finer_k));
+    add("Both", predict(model, 1, finer_k));
     text << " Refine "
          << (of_h > 1.2 * of_k ? "the mesh" :
              of_k > 1.2 * of_h ? "the steps" :

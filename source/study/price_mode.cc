@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/conditional_ostream.h>
 
-#include <viscoplastic_contact/results/output.h>
+#include <viscoplastic_contact/results/run_record.h>
 #include <viscoplastic_contact/study/price_mode.h>
 #include <viscoplastic_contact/study/tolerance_price.h>
 #include <viscoplastic_contact/study/uniform_price.h>
@@ -61,7 +61,7 @@ namespace Viscoplastic
       std::vector<std::string> assignments;
       std::string              measure;
       double                   error = 0., seconds = 0., memory = 0.;
-      /// Of runs to a tolerance.
+      /// Of runs that choose them.
       double cells = 0., steps = 0.;
       /// The sentence of a signal that has come before.
       std::string interruption;
@@ -90,11 +90,12 @@ namespace Viscoplastic
       const PredictedRun &run = *found.price.run;
       result.key              = runs.scene_key();
       result.key.mesh_level   = run.mesh_level;
-      result.assignments      = runs.discretization(result.key, run.phases);
-      result.measure          = found.measure;
-      result.error            = run.error;
-      result.seconds          = run.seconds;
-      result.memory           = run.memory;
+      result.assignments = runs.discretization(result.key, run.phases, run.k);
+      result.measure     = found.measure;
+      result.error       = run.error;
+      result.seconds     = run.seconds;
+      result.memory      = run.memory;
+      result.steps       = run.steps;
       return result;
     }
 
@@ -154,7 +155,6 @@ namespace Viscoplastic
   run_at_price(const CommandLine &command_line, Console &console)
   {
     StudyRuns runs(command_line.files, command_line.overrides, MPI_COMM_WORLD);
-    runs.require_given_steps();
     ConditionalOStream out(console.stream(),
                            Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) ==
                              0);
@@ -196,8 +196,9 @@ namespace Viscoplastic
         << ", without field output\n  memory   "
         << compare(chosen.memory, result.number("peak_memory_MB")) << " MB";
     if (has_tolerance)
-      out << "\n  cells    " << compare(chosen.cells, result.number("cells"))
-          << "\n  steps    " << compare(chosen.steps, result.number("steps"));
+      out << "\n  cells    " << compare(chosen.cells, result.number("cells"));
+    if (has_tolerance || scene.step_control.is_on())
+      out << "\n  steps    " << compare(chosen.steps, result.number("steps"));
     out << std::endl;
     return "";
   }

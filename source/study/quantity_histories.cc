@@ -16,7 +16,8 @@ namespace Viscoplastic
       const auto begins = [&](const std::string &start) {
         return quantity.compare(0, start.size(), start) == 0;
       };
-      if (begins("friction_force") || begins("reaction_"))
+      if (begins("friction_force") || begins("contact_force") ||
+          begins("reaction_"))
         return "force";
       if (begins("point") || quantity == "max_displacement")
         return "displacement";
@@ -107,6 +108,12 @@ namespace Viscoplastic
               size   = std::max(size, std::sqrt(square));
               change = std::max(change, std::sqrt(difference));
             }
+          // Under another contact law the normal force is a reaction or data.
+          if (name == "contact_force" &&
+              std::any_of(others.begin(), others.end(), [&](const Term &term) {
+                return !term.run->has(columns[0]);
+              }))
+            change = 0.;
           result.push_back({name, change, 0.});
           sizes.push_back(size);
           double &most = largest[sort_of_quantity(name)];

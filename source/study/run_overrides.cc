@@ -78,11 +78,29 @@ namespace Viscoplastic
 
 
   double
-  StudyRuns::n_set_ups(const MeshStrategy strategy, const double n_steps) const
+  StudyRuns::n_set_ups(const MeshStrategy strategy,
+                       const double       n_steps,
+                       const unsigned int n_planned) const
   {
-    const double every =
-      steps_per_mesh(strategy, static_cast<unsigned int>(n_steps));
+    const double every = steps_per_mesh(strategy, n_planned);
     return every > 0. ? std::max(1., std::ceil(n_steps / every)) : 1.;
+  }
+
+
+
+  std::vector<StepsUntil>
+  StudyRuns::phases_of(const RunKey &key) const
+  {
+    return scale_phases(phases, std::pow(2., key.time_level));
+  }
+
+
+
+  double
+  StudyRuns::step_tolerance(const RunKey &key) const
+  {
+    const double order = key.variant.order();
+    return scene.step_control.tolerance * std::pow(2., -order * key.time_level);
   }
 
 
@@ -149,7 +167,8 @@ namespace Viscoplastic
 
   std::vector<std::string>
   StudyRuns::discretization(const RunKey                  &key,
-                            const std::vector<StepsUntil> &steps) const
+                            const std::vector<StepsUntil> &steps,
+                            const double                   step_tolerance) const
   {
     std::vector<std::string> result;
     const auto set = [&result](const std::string &entry, const auto &value) {
@@ -182,16 +201,11 @@ namespace Viscoplastic
                            std::to_string(base) + "."));
     set("Geometry/Global refinements", refinements);
     set("Time/Phases", write_phases(steps));
-    // Steps by their error: half as long with half the error per time, or a
-    // quarter of it in the second order.
-    if (may_choose_steps && scene.step_control.is_on())
-      set("Step control/Tolerance",
-          scene.step_control.tolerance *
-            std::pow(scene.time.scheme == TimeScheme::heun ? 4. : 2.,
-                     -key.time_level));
+    if (scene.step_control.is_on())
+      set("Step control/Tolerance", step_tolerance);
     // Runs have the steps that the study says, or none.
-    if (!may_choose_steps &&
-        scene.time.stiffness_policy == StiffnessPolicy::subdivide)
+    else if (!may_subdivide &&
+             scene.time.stiffness_policy == StiffnessPolicy::subdivide)
       set("Time/Stiffness policy", "refuse");
     if (base + level < 0)
       set("Geometry/Arguments",
@@ -229,8 +243,7 @@ namespace Viscoplastic
     const std::string        place        = directory + name(key);
     const bool               is_reference = reference && key == *reference;
     for (const std::string &assignment :
-         discretization(key,
-                        scale_phases(phases, std::pow(2., key.time_level))))
+         discretization(key, phases_of(key), step_tolerance(key)))
       result.push_back(assignment);
     for (const std::string &assignment :
          {"Output/Directory=" + place,
@@ -240,9 +253,14 @@ namespace Viscoplastic
           "Checkpoint/Directory=" + place + "/checkpoint",
           std::string("Error control/Two-level comparison=false")})
       result.push_back(assignment);
+    // A scene without one of its effects may lack what it records.
     if (!has_outputs)
       for (const char *assignment : {"Output/Fields every=0",
                                      "Output/Fields interval=0",
+                                     "Output/Point fields=",
+                                     "Output/Lines=",
+                                     "Output/Line fields=",
+                                     "Output/Integrals=",
                                      "Checkpoint/Every n steps=0",
                                      "Checkpoint/Wall time interval=0"})
         result.emplace_back(assignment);

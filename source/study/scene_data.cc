@@ -16,6 +16,7 @@
 #include <cmath>
 #include <functional>
 #include <iomanip>
+#include <numeric>
 #include <regex>
 #include <sstream>
 
@@ -84,20 +85,8 @@ namespace Viscoplastic
       over_boundary(const std::string &components,
                     const unsigned int id) const override
       {
-        return over_space(components, [&](Places &places) {
-          FEFaceValues<dim> values(fe,
-                                   QGauss<dim - 1>(3),
-                                   update_quadrature_points |
-                                     update_JxW_values);
-          for (const auto &cell : triangulation.active_cell_iterators())
-            if (cell->is_locally_owned())
-              for (const auto f : cell->face_indices())
-                if (cell->face(f)->at_boundary() &&
-                    cell->face(f)->boundary_id() == id)
-                  {
-                    values.reinit(cell, f);
-                    places.add(values);
-                  }
+        return over_space(components, [this, id](Places &places) {
+          add_boundary(id, places);
         });
       }
 
@@ -138,6 +127,17 @@ namespace Viscoplastic
           });
       }
 
+      double
+      area(const unsigned int id) const override
+      {
+        Places places;
+        add_boundary(id, places);
+        return Utilities::MPI::sum(std::accumulate(places.weights.begin(),
+                                                   places.weights.end(),
+                                                   0.),
+                                   communicator);
+      }
+
       VolumetricIntegration
       volumetric_integration() const override
       {
@@ -173,6 +173,23 @@ namespace Viscoplastic
             }
         }
       };
+
+      void
+      add_boundary(const unsigned int id, Places &places) const
+      {
+        FEFaceValues<dim> values(fe,
+                                 QGauss<dim - 1>(3),
+                                 update_quadrature_points | update_JxW_values);
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const auto f : cell->face_indices())
+              if (cell->face(f)->at_boundary() &&
+                  cell->face(f)->boundary_id() == id)
+                {
+                  values.reinit(cell, f);
+                  places.add(values);
+                }
+      }
 
       std::optional<std::string>
       over_space(const std::string                   &components,

@@ -102,11 +102,24 @@ namespace Viscoplastic
     const double dofs =
       finest->number("dofs") *
       std::pow(2., dim * (key.mesh_level - finest->key.mesh_level));
-    const unsigned int steps =
-      n_steps(scale_phases(runs.phases, std::pow(2., key.time_level)));
+    const double steps = expected_steps(runs, known, key);
     return costs.at(name).seconds(dofs,
                                   steps,
-                                  runs.n_set_ups(key.variant.strategy, steps));
+                                  runs.n_set_ups(key.variant.strategy,
+                                                 steps,
+                                                 n_steps(runs.phases_of(key))));
+  }
+
+
+
+  double
+  Study::seconds_left() const
+  {
+    double seconds = 0.;
+    for (const PlannedRun &run : plan)
+      if (!run.record && run.skipped.empty())
+        seconds += expected_seconds(run.key);
+    return seconds;
   }
 
 
@@ -135,16 +148,13 @@ namespace Viscoplastic
         text << ", " << word << record.number(column);
     text << ", " << seconds_in_words(record.number("seconds_total"));
 
-    unsigned int n_left  = 0;
-    double       seconds = 0.;
-    for (const PlannedRun &other : plan)
-      if (!other.record && other.skipped.empty())
-        {
-          ++n_left;
-          seconds += expected_seconds(other.key);
-        }
+    const auto n_left =
+      std::count_if(plan.begin(), plan.end(), [](const PlannedRun &run) {
+        return !run.record && run.skipped.empty();
+      });
     if (n_left > 0)
       {
+        const double seconds   = seconds_left();
         const double in_budget = std::max(0., parameters.budget - elapsed());
         text << "; " << n_left << " left";
         if (std::isfinite(seconds)) // otherwise some are of an unknown kind
@@ -178,11 +188,14 @@ namespace Viscoplastic
     if ((is_known ? seconds : 0.) > in_budget)
       {
         run.skipped =
-          "would take about " + seconds_in_words(seconds) + ", and " +
+          (is_known ?
+             "would take about " + seconds_in_words(seconds) + ", and " :
+             "") +
           seconds_in_words(std::max(0., in_budget)) +
           " of 'Study/Budget' = " + seconds_in_words(parameters.budget) +
           " were left";
-        out << name << ": left out, it " << run.skipped << std::endl;
+        out << name << ": left out" << (is_known ? ", it " : ", ")
+            << run.skipped << std::endl;
         return "";
       }
     console.show_status(
@@ -266,26 +279,105 @@ namespace Viscoplastic
 
 
   std::string
-  Study::make_reference()
+  Study::make_first_runs()
   {
-    PlannedRun &last = plan.back(); // nothing costs more
-    Assert(last.is_reference, ExcInternalError());
-    runs.reference = last.key;
-    if (runs.find(last.key))
-      return "";
-    runs.reference.reset();
-
-    // Coarse runs without it tell how long it takes.
+    const RunKey last = plan.back().key;
     find_finished();
     for (PlannedRun &run : plan)
-      if (!run.record && run.key.variant == last.key.variant &&
+      if (!run.record && run.key.variant == last.variant &&
           run.key.mesh_level == run.key.time_level &&
-          run.key.mesh_level + 2 < last.key.mesh_level)
+          run.key.mesh_level + 2 < last.mesh_level)
         {
           const std::string interruption = make(run);
           if (!interruption.empty())
             return interruption;
+          // Two tell that there will have to be fewer levels.
+          if (records().size() >= 2 && can_take_fewer_levels() &&
+              seconds_left() > parameters.budget - elapsed())
+            return "";
         }
+    return "";
+  }
+
+
+
+  bool
+  Study::can_take_fewer_levels() const
+  {
+    return reference_strategy != MeshStrategy::tolerance &&
+           n_levels > fewest_levels;
+  }
+
+
+
+  std::string
+  Study::levels_in_words() const
+  {
+    return n_levels == parameters.levels ?
+             "" :
+             "'Study/Budget' does not reach the reference run of " +
+               std::to_string(parameters.levels) +
+               " levels: the ladders have " + std::to_string(n_levels) + ".";
+  }
+
+
+
+  bool
+  Study::find_reference()
+  {
+    for (; n_levels >= fewest_levels; --n_levels)
+      {
+        make_plan();
+        runs.reference    = plan.back().key;
+        const auto record = runs.find(plan.back().key);
+        // Of fewer levels, as those of an earlier call may be, unless the
+        // budget reaches further now: the next one has twice the steps on 2^dim
+        // times the cells, and all other runs take about as long as it.
+        if (record && (n_levels == parameters.levels ||
+                       std::pow(2., runs.scene.dimension + 2) *
+                           record->number("seconds_total") >
+                         parameters.budget))
+          {
+            if (n_levels < parameters.levels)
+              out << levels_in_words() << std::endl;
+            return true;
+          }
+        if (reference_strategy == MeshStrategy::tolerance)
+          break;
+      }
+    n_levels = parameters.levels;
+    make_plan();
+    runs.reference.reset();
+    return false;
+  }
+
+
+
+  std::string
+  Study::make_reference()
+  {
+    if (find_reference())
+      return "";
+    while (true)
+      {
+        const RunKey key = plan.back().key; // nothing costs more
+        Assert(plan.back().is_reference, ExcInternalError());
+        runs.reference = key;
+        if (runs.find(key))
+          return "";
+        runs.reference.reset();
+        const std::string interruption = make_first_runs();
+        if (!interruption.empty())
+          return interruption;
+        const double left = parameters.budget - elapsed();
+        if (!can_take_fewer_levels() || !(seconds_left() > left))
+          break;
+        --n_levels;
+        make_plan();
+      }
+    if (n_levels < parameters.levels)
+      out << levels_in_words() << std::endl;
+    PlannedRun &last               = plan.back();
     runs.reference                 = last.key;
     const std::string interruption = make(last);
     if (!last.record)

@@ -162,7 +162,7 @@ namespace Viscoplastic
     for (const RunRecord *record : records)
       {
         samples.push_back({record->number("h"),
-                           record->number("k"),
+                           record->step_measure(),
                            error_of(*record, measure, reference)});
         space.push_back(record->number("estimate_space") +
                         record->number("estimate_initial"));
@@ -177,9 +177,40 @@ namespace Viscoplastic
       return fit_error(samples);
     return fit_error(samples,
                      Finer{reference->number("h"),
-                           reference->number("k"),
+                           reference->step_measure(),
                            is_norm(measure) ? 2. : 1.,
                            1.});
+  }
+
+
+
+  TwoPowers
+  fit_chosen_steps(const Records &records)
+  {
+    std::vector<Sample> samples;
+    for (const RunRecord *record : records)
+      samples.push_back(
+        {1. / record->number("step_tolerance"), 1., record->number("steps")});
+    Prior prior;
+    prior.p      = 1. / records.front()->key.variant.order();
+    prior.weight = 0.3; // some 10 % of chance
+    return fit_two_powers(samples, prior);
+  }
+
+
+
+  double
+  expected_steps(const StudyRuns &runs,
+                 const Records   &records,
+                 const RunKey    &key)
+  {
+    const double planned = n_steps(runs.phases_of(key));
+    if (!runs.scene.step_control.is_on())
+      return planned;
+    const double n_phases = static_cast<double>(runs.phases.size());
+    return std::max(n_phases,
+                    fit_chosen_steps(records)(1. / runs.step_tolerance(key),
+                                              1.));
   }
 
 
@@ -208,19 +239,25 @@ namespace Viscoplastic
                      const RunRecord   *reference)
   {
     WorkPrecisionModel model;
-    model.error      = fit_measure(records, measure, reference);
-    model.dim        = runs.scene.dimension;
-    model.cost       = cost_of(timed);
-    model.h          = runs.h;
-    model.phases     = runs.phases;
-    model.k          = TimeSchedule(runs.scene.time.phases).largest_step().k;
+    model.error  = fit_measure(records, measure, reference);
+    model.dim    = runs.scene.dimension;
+    model.cost   = cost_of(timed);
+    model.h      = runs.h;
+    model.phases = runs.phases;
+    model.k      = TimeSchedule(runs.scene.time.phases).largest_step().k;
+    if (runs.scene.step_control.is_on())
+      {
+        model.k            = runs.scene.step_control.tolerance;
+        model.order        = records.front()->key.variant.order();
+        model.chosen_steps = fit_chosen_steps(timed);
+      }
     model.smallest_h = model.smallest_k =
       std::numeric_limits<double>::infinity();
     model.coarsest_level = std::numeric_limits<int>::min();
     double largest_k     = 0.;
     for (const RunRecord *record : records)
       {
-        const double h = record->number("h"), k = record->number("k"),
+        const double h = record->number("h"), k = record->step_measure(),
                      limit = record->number("step_limit");
         // Nothing coarser than what was measured: there errors obey no law.
         model.coarsest_level =
@@ -234,15 +271,16 @@ namespace Viscoplastic
             model.dofs       = record->number("dofs") *
                          std::pow(h / model.h, static_cast<double>(model.dim));
           }
-        // Stresses may lower it still; implicit schemes go beyond.
-        if (std::isfinite(limit) && limit >= k)
+        // Stresses may lower it still; implicit schemes go beyond, and step
+        // control looks after it.
+        if (!model.chosen_steps && std::isfinite(limit) && limit >= k)
           model.largest_k = std::min(model.largest_k, 0.95 * limit);
       }
     model.largest_k = std::min(model.largest_k, largest_k);
-    model.n_set_ups =
-      [&runs, strategy = records[0]->key.variant.strategy](const double steps) {
-        return runs.n_set_ups(strategy, steps);
-      };
+    model.n_set_ups = [&runs, strategy = records[0]->key.variant.strategy](
+                        const double steps, const unsigned int n_planned) {
+      return runs.n_set_ups(strategy, steps, n_planned);
+    };
     return model;
   }
 

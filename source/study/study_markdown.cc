@@ -46,6 +46,11 @@ namespace Viscoplastic
           columns = {"tolerance"};
           head    = {"run", "tolerance"};
         }
+      else if (study.runs.scene.step_control.is_on())
+        {
+          columns = {"h", "step_tolerance", "k"};
+          head    = {"run", "h", "TOL", "k"};
+        }
       for (const auto &[column, title] :
            {std::make_pair("cells", "cells"),
             std::make_pair("dofs", "unknowns"),
@@ -101,8 +106,11 @@ namespace Viscoplastic
       std::string text = table_head(head);
       for (const Ladder ladder : all_ladders)
         {
-          const std::string size = ladder == Ladder::time ? "k" : "h";
-          const Records     runs = runs_of(study, result.variant, ladder);
+          const auto size = [ladder](const RunRecord &record) {
+            return ladder == Ladder::time ? record.step_measure() :
+                                            record.number("h");
+          };
+          const Records runs = runs_of(study, result.variant, ladder);
           for (std::size_t i = 1; i < runs.size(); ++i)
             {
               const RunRecord         &from = *runs[i - 1], &to = *runs[i];
@@ -115,7 +123,7 @@ namespace Viscoplastic
                   const double order =
                     std::log(error_of(from, measure, study.reference()) /
                              error_of(to, measure, study.reference())) /
-                    std::log(from.number(size) / to.number(size));
+                    std::log(size(from) / size(to));
                   row.push_back(number_or_dash(order));
                   is_known |= std::isfinite(order);
                 }
@@ -135,22 +143,27 @@ namespace Viscoplastic
       const TwoPowers   &error = result.model->error;
       const CostModel   &cost  = result.model->cost;
       const Records      timed = study.timed(result.variant);
+      // What stands for the time steps in the law.
+      const std::string k = result.model->chosen_steps ? "TOL" : "k";
       text << "Fit to the " << measure_in_words(result.measure)
            << ", relative:\n\n    error = ";
       if (error.m == 1.)
         text << digits(error.c_1) << " h^" << digits(error.p) << " + "
-             << digits(error.c_2) << " k^" << digits(error.q) << "\n\n";
+             << digits(error.c_2) << ' ' << k << '^' << digits(error.q)
+             << "\n\n";
       else
         text << "((" << digits(error.c_1) << " h^" << digits(error.p)
-             << ")^2 + (" << digits(error.c_2) << " k^" << digits(error.q)
+             << ")^2 + (" << digits(error.c_2) << ' ' << k << '^'
+             << digits(error.q)
              << ")^2)^(1/2)\n\nThe parts add up in squares, as orthogonal "
                 "ones do: this fits better than their sum. ";
       if (!error.is_separable)
-        text << "The runs refine h and k together, so that their parts cannot "
+        text << "The runs refine h and " << k
+             << " together, so that their parts cannot "
                 "be told apart; half of the error is given to each. ";
       for (const auto &[is_fitted, name] :
-           {std::make_pair(error.p_is_fitted, "p, that of h,"),
-            std::make_pair(error.q_is_fitted, "q, that of k,")})
+           {std::make_pair(error.p_is_fitted, std::string("p, that of h,")),
+            std::make_pair(error.q_is_fitted, "q, that of " + k + ',')})
         if (!is_fitted)
           text << "The exponent " << name
                << " does not show in these runs and is the theoretical 1. ";
@@ -164,11 +177,11 @@ namespace Viscoplastic
            << " (root mean square) and " << digits(error.misfit.worst_factor, 3)
            << " at worst (`" << result.records[error.misfit.worst_sample]->name
            << "`).\n";
-      const RunRecord *finest = result.records.back();
-      const double     h = finest->number("h"), k = finest->number("k");
+      const RunRecord *finest  = result.records.back();
+      const double     of_mesh = error.first(finest->number("h")),
+                   of_steps    = error.second(finest->step_measure());
       text << "At the finest run `" << finest->name << "` the mesh has "
-           << std::lround(100. * error.first(h) /
-                          (error.first(h) + error.second(k)))
+           << std::lround(100. * of_mesh / (of_mesh + of_steps))
            << " % of the sum of both parts, the steps have the rest.\n\n";
       const auto power = [](const TwoPowers &fit) {
         std::string formula = digits(fit.c_1) + " dofs^" + digits(fit.p, 3);
@@ -176,6 +189,12 @@ namespace Viscoplastic
           formula += " + " + digits(fit.c_2);
         return formula;
       };
+      if (const auto &steps = result.model->chosen_steps)
+        text << "The number of steps to their tolerance:\n\n    steps = "
+             << digits(steps->c_1) << " TOL^-" << digits(steps->p) << " + "
+             << digits(steps->c_2) << "\n\nwhich misses by a factor of "
+             << digits(std::exp(steps->misfit.rms)) << " and "
+             << digits(steps->misfit.worst_factor) << " at worst.\n\n";
       for (const auto &[kind, fit] : cost.solvers)
         text << "With "
              << (kind == BulkSolverKind::direct ? "the direct solver" :
@@ -219,7 +238,7 @@ namespace Viscoplastic
                           "mesh level",
                           "h",
                           "steps",
-                          "k",
+                          result.model->chosen_steps ? "TOL" : "k",
                           "unknowns",
                           "solver",
                           "seconds",
@@ -340,6 +359,11 @@ namespace Viscoplastic
             "all times. In adaptive runs, h is the width of a uniform mesh "
             "with as many cells. Runs to a tolerance choose meshes and steps "
             "themselves: their cells and unknowns are means over the steps.\n";
+    if (study.runs.scene.step_control.is_on())
+      text << "\nThe steps are chosen by their error, to the tolerance TOL, "
+              "`Step control/Tolerance`: the ladder `time` divides it by 2 (by "
+              "4 with Heun's method), so that steps are half as long; its "
+              "orders are against TOL, and k is the longest step of a run.\n";
     for (const VariantResult &result : results)
       {
         text << "\n## " << result.variant.name() << "\n\n"
@@ -362,6 +386,9 @@ namespace Viscoplastic
       if (!run.skipped.empty())
         skipped +=
           "- `" + study.runs.name(run.key) + "`: " + run.skipped + ".\n";
+    const std::string fewer = study.levels_in_words();
+    if (!fewer.empty())
+      skipped = fewer + (skipped.empty() ? "\n" : "\n\n") + skipped;
     text << "\n## Left out\n\n"
          << (skipped.empty() ? "Nothing.\n" : skipped) << "\n## Pictures\n\n"
          << "    contrib/plot " << study.runs.directory << "\n";

@@ -51,11 +51,11 @@ namespace Viscoplastic
     , reference_strategy(runs.scene.error_control.has_tolerance() ?
                            MeshStrategy::tolerance :
                            MeshStrategy::uniform)
+    , n_levels(parameters.levels)
     , console(console)
     , out(console.stream(),
           Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
   {
-    runs.require_given_steps();
     AssertThrow(runs.scene.error_control.has_tolerance() ||
                   !contains(strategies, "tolerance"),
                 ExcMessage(
@@ -64,9 +64,9 @@ namespace Viscoplastic
                   "or take uniform or adaptive."));
     AssertThrow(has_exact_solution ||
                   reference_strategy == MeshStrategy::tolerance ||
-                  parameters.levels >= 3,
+                  n_levels >= fewest_levels,
                 ExcMessage(
-                  "'Study/Levels' = " + std::to_string(parameters.levels) +
+                  "'Study/Levels' = " + std::to_string(n_levels) +
                   " is too few for a scene without an exact solution: whether "
                   "its finest run can serve as a reference shows only in three "
                   "levels; take at least 3, or give 'Exact solution' or "
@@ -79,7 +79,7 @@ namespace Viscoplastic
   std::vector<std::pair<int, int>>
   Study::levels_of(const MeshStrategy strategy, const Ladder ladder) const
   {
-    const int                        finest = parameters.levels - 1;
+    const int                        finest = static_cast<int>(n_levels) - 1;
     std::vector<std::pair<int, int>> result;
     if (strategy == MeshStrategy::tolerance)
       {
@@ -100,7 +100,8 @@ namespace Viscoplastic
   void
   Study::make_plan()
   {
-    const int  finest    = static_cast<int>(parameters.levels) - 1;
+    plan.clear();
+    const int  finest    = static_cast<int>(n_levels) - 1;
     const auto schemes   = items(parameters.time_schemes,
                                name_of(runs.scene.time.scheme)),
                histories = items(parameters.stress_histories,

@@ -3,6 +3,8 @@
 
 #include <viscoplastic_contact/base/json_text.h>
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/units.h>
+#include <viscoplastic_contact/parameters/choices.h>
 #include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/study/study_record.h>
 
@@ -49,6 +51,8 @@ namespace Viscoplastic
             return true;
         }
       static const std::vector<std::string> names{"friction_force",
+                                                  "contact_force",
+                                                  "contact_area",
                                                   "slip_area",
                                                   "friction_dissipation",
                                                   "viscous_dissipation",
@@ -142,6 +146,16 @@ namespace Viscoplastic
 
 
 
+  unsigned int
+  MethodVariant::order() const
+  {
+    return order_of(scheme == name_of(TimeScheme::heun) ?
+                      TimeScheme::heun :
+                      TimeScheme::forward_euler);
+  }
+
+
+
   Table
   read_table(const std::string &file)
   {
@@ -152,7 +166,7 @@ namespace Viscoplastic
                 ExcMessage("There is no table in '" + file + "'."));
     std::istringstream header(line);
     while (std::getline(header, item, ','))
-      table.names.push_back(item);
+      table.names.push_back(without_label(item));
     while (std::getline(in, line))
       {
         std::istringstream row(line);
@@ -182,6 +196,14 @@ namespace Viscoplastic
   {
     const auto found = numbers.find(column);
     return found == numbers.end() ? not_a_number : found->second;
+  }
+
+
+
+  double
+  RunRecord::step_measure() const
+  {
+    return number(numbers.count("step_tolerance") > 0 ? "step_tolerance" : "k");
   }
 
 

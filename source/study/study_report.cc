@@ -59,7 +59,7 @@ namespace Viscoplastic
                                                         "estimate_quantity"}})
         columns.insert(columns.end(), more.begin(), more.end());
       text << "run,strategy,scheme,history,solver,ladder,mesh_level,time_level,"
-              "tolerance";
+              "tolerance,step_tolerance";
       for (const std::string &column : columns)
         text << ',' << column;
       for (const std::string &name : quantities(study))
@@ -75,8 +75,8 @@ namespace Viscoplastic
                    << variant.scheme << ',' << variant.history << ','
                    << to_string(choose_bulk_solver(record.solver_demand)) << ','
                    << to_string(ladder) << ',' << record.key.mesh_level << ','
-                   << record.key.time_level << ','
-                   << record.number("tolerance");
+                   << record.key.time_level << ',' << record.number("tolerance")
+                   << ',' << record.number("step_tolerance");
               for (const std::string &column : columns)
                 text << ',' << record.number(column);
               for (const std::string &name : quantities(study))
@@ -158,6 +158,15 @@ namespace Viscoplastic
                              {"rms_of_log", cost.misfit.rms},
                              {"worst_factor", cost.misfit.worst_factor},
                              {"memory_rms_of_log", cost.memory_misfit.rms}}));
+      if (study.runs.scene.step_control.is_on())
+        {
+          const TwoPowers steps = fit_chosen_steps(study.timed(result.variant));
+          costs.back()["steps"] = {{"c", steps.c_1},
+                                   {"q", steps.p},
+                                   {"q_is_fitted", steps.p_is_fitted},
+                                   {"constant", steps.c_2},
+                                   {"rms_of_log", steps.misfit.rms}};
+        }
     }
 
 
@@ -213,16 +222,18 @@ namespace Viscoplastic
                                   {"tolerance", price.tolerance},
                                   {"in_budget", price.is_in_budget}}));
           if (price.run)
-            prices.back().update({{"h", price.run->h},
-                                  {"mesh_level", price.run->mesh_level},
-                                  {"k", price.run->k},
-                                  {"steps", price.run->steps},
-                                  {"dofs", price.run->dofs},
-                                  {"predicted_error", price.run->error},
-                                  {"solver", to_string(price.run->solver)},
-                                  {"seconds", price.run->seconds},
-                                  {"memory_MB", price.run->memory},
-                                  {"halving_factor", price.halving}});
+            prices.back().update(
+              {{"h", price.run->h},
+               {"mesh_level", price.run->mesh_level},
+               {result.model->chosen_steps ? "step_tolerance" : "k",
+                price.run->k},
+               {"steps", price.run->steps},
+               {"dofs", price.run->dofs},
+               {"predicted_error", price.run->error},
+               {"solver", to_string(price.run->solver)},
+               {"seconds", price.run->seconds},
+               {"memory_MB", price.run->memory},
+               {"halving_factor", price.halving}});
         }
     }
 

@@ -175,17 +175,6 @@ namespace Viscoplastic
 
 
   void
-  StudyRuns::require_given_steps() const
-  {
-    AssertThrow(!scene.step_control.is_on(),
-                ExcMessage("A study compares runs with the steps of "
-                           "'Time/Phases'; set 'Step control/Tolerance' = 0 "
-                           "for it."));
-  }
-
-
-
-  void
   StudyRuns::lock_directory()
   {
     on_first_rank(communicator, [&] {
@@ -326,8 +315,12 @@ namespace Viscoplastic
       if (key.variant.strategy == MeshStrategy::tolerance)
         record.numbers["tolerance"] = tolerance(key);
       else
-        record.numbers["set_ups"] =
-          n_set_ups(key.variant.strategy, record.number("steps"));
+        record.numbers["set_ups"] = n_set_ups(key.variant.strategy,
+                                              record.number("steps"),
+                                              n_steps(phases_of(key)));
+      if (key.variant.strategy != MeshStrategy::tolerance &&
+          scene.step_control.is_on())
+        record.numbers["step_tolerance"] = step_tolerance(key);
       std::string &list = record.stamp["overrides"];
       for (const std::string &assignment : all_overrides)
         list += (list.empty() ? "" : "; ") + assignment;

@@ -8,16 +8,12 @@
 
 namespace Viscoplastic
 {
-  namespace
+  double
+  affordable_memory()
   {
-    /// Of this machine, in MB.
-    double
-    physical_memory()
-    {
-      return 1e-6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
-             static_cast<double>(sysconf(_SC_PAGESIZE));
-    }
-  } // namespace
+    return 0.5e-6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+           static_cast<double>(sysconf(_SC_PAGESIZE));
+  }
 
 
 
@@ -53,10 +49,11 @@ namespace Viscoplastic
         // iterations than those of the run that is priced.
         for (key.time_level = most_steps;; --key.time_level)
           {
-            const unsigned int steps =
-              n_steps(scale_phases(runs.phases, std::pow(2., key.time_level)));
+            const double steps = expected_steps(runs, known, key);
             const double n_set_ups =
-              runs.n_set_ups(key.variant.strategy, steps);
+              runs.n_set_ups(key.variant.strategy,
+                             steps,
+                             n_steps(runs.phases_of(key)));
             expected       = cost.seconds(dofs, steps, n_set_ups);
             memory         = cost.memory(dofs, steps, n_set_ups);
             outcome.record = runs.find(key);
@@ -66,7 +63,7 @@ namespace Viscoplastic
           }
         if (!outcome.record)
           {
-            if (expected > left || memory > 0.5 * physical_memory())
+            if (expected > left || memory > affordable_memory())
               break;
             console.show_status("Timing run " + runs.name(key) + ", about " +
                                 seconds_in_words(expected));

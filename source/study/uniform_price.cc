@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/study/uniform_price.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Viscoplastic
 {
@@ -16,22 +17,78 @@ namespace Viscoplastic
 
 
 
-    /// Four runs: @p finest, and with h and k each doubled alone and both.
+    /// The time level of the finest pilots: coarser than the scene where it has
+    /// so many steps, or so small a tolerance of them, that pilots twice as
+    /// coarse still tell something. Where each is as fine as the scene in
+    /// space, @p must_save steps.
+    int
+    finest_time_level(const StudyRuns &runs, const bool must_save)
+    {
+      const double n_phases = static_cast<double>(runs.phases.size());
+      const auto   may_be   = [&](const int level) {
+        RunKey coarsest     = runs.scene_key();
+        coarsest.time_level = level - 1;
+        return runs.scene.step_control.is_on() ?
+                     runs.step_tolerance(coarsest) <= StudyRuns::largest_tolerance :
+                     n_steps(runs.phases) >=
+                   std::pow(2., 1 - coarsest.time_level) * n_phases;
+      };
+      for (int level = must_save ? -2 : -1; level < 1; ++level)
+        if (may_be(level))
+          return level;
+      return 1;
+    }
+
+
+
+    /// Pilots on two mesh levels, the finer one of which is that of @p finest,
+    /// or on that alone; with steps as long as there, and twice as long.
     PilotRuns
-    make_pilots(const StudyRuns &runs, const RunKey &finest, Console &console)
+    make_pilots(const StudyRuns &runs,
+                const RunKey    &finest,
+                const bool       has_coarser,
+                Console         &console)
     {
       PilotRuns pilots;
-      for (const auto &[m, t] : {std::make_pair(-1, -1),
-                                 std::make_pair(-1, 0),
-                                 std::make_pair(0, -1),
-                                 std::make_pair(0, 0)})
-        if (!add_pilot_run(
-              runs,
-              {finest.variant, finest.mesh_level + m, finest.time_level + t},
-              console,
-              pilots))
-          break;
+      for (int m = has_coarser ? -1 : 0; m <= 0; ++m)
+        for (int t = -1; t <= 0; ++t)
+          if (!add_pilot_run(
+                runs,
+                {finest.variant, finest.mesh_level + m, finest.time_level + t},
+                console,
+                pilots))
+            return pilots;
       return pilots;
+    }
+
+
+
+    /// Pilots on one mesh do not tell what the mesh does to the error: one more
+    /// on a finer mesh, with the longest steps of these, if it takes no more
+    /// than @p seconds. Without it, or where it fails, the law is a
+    /// theoretical one.
+    void
+    add_finer_pilot(const StudyRuns &runs,
+                    const double     seconds,
+                    Console         &console,
+                    PilotRuns       &pilots)
+    {
+      const Records   known = pilots.all();
+      const CostModel cost  = cost_of(known);
+      RunKey          key   = known.front()->key;
+      ++key.mesh_level;
+      const double steps     = expected_steps(runs, known, key),
+                   n_set_ups = runs.n_set_ups(key.variant.strategy,
+                                              steps,
+                                              n_steps(runs.phases_of(key))),
+                   dofs      = std::pow(2., runs.scene.dimension) *
+                          known.front()->number("dofs");
+      if (!runs.find(key) &&
+          (cost.seconds(dofs, steps, n_set_ups) > seconds ||
+           cost.memory(dofs, steps, n_set_ups) > affordable_memory()))
+        return;
+      add_pilot_run(runs, key, console, pilots);
+      pilots.failure.clear();
     }
   } // namespace
 
@@ -49,60 +106,67 @@ namespace Viscoplastic
     UniformPrice       result;
     const bool         is_small  = runs.n_cells <= small_mesh;
     const int          n_coarser = runs.n_coarser_meshes();
-    if (!is_small && n_coarser < 1)
-      {
-        result.failure =
-          "--price needs pilot runs on coarser meshes, but the mesh of " +
-          digits(runs.n_cells) +
-          " cells cannot be halved: 'Geometry/Global refinements' = " +
-          std::to_string(runs.scene.geometry.global_refinements) +
-          "; give a mesh twice or four times as coarse and refine it once or "
-          "twice globally.";
-        return result;
-      }
-    RunKey             finest   = runs.scene_key();
-    const unsigned int n        = n_steps(runs.phases);
-    const std::size_t  n_phases = runs.phases.size();
-    finest.mesh_level           = is_small ? 1 : n_coarser >= 2 ? -1 : 0;
-    finest.time_level = n >= 8 * n_phases ? -1 : n >= 4 * n_phases ? 0 : 1;
+    // The mesh of a file that is not refined has nothing coarser.
+    const bool has_two_meshes = is_small || n_coarser >= 1;
+    RunKey     finest         = runs.scene_key();
+    finest.mesh_level         = is_small ? 1 : n_coarser >= 2 ? -1 : 0;
+    finest.time_level         = finest_time_level(runs, !has_two_meshes);
 
     runs.lock_directory();
-    PilotRuns pilots = make_pilots(runs, finest, console);
+    PilotRuns pilots = make_pilots(runs, finest, has_two_meshes, console);
     // Long steps may be unstable or fail otherwise: then shorter ones follow.
     while (!pilots.failure.empty() && ++finest.time_level <= 1)
-      pilots = make_pilots(runs, finest, console);
-    result.interruption = pilots.interruption;
-    if (!pilots.failure.empty())
-      result.failure = "The pilot runs for --price fail: " + pilots.failure;
-    if (!result.interruption.empty() || !result.failure.empty())
+      pilots = make_pilots(runs, finest, has_two_meshes, console);
+    const auto has_failed = [&] {
+      result.interruption = pilots.interruption;
+      if (!pilots.failure.empty())
+        result.failure = "The pilot runs for --price fail: " + pilots.failure;
+      return !result.interruption.empty() || !result.failure.empty();
+    };
+    if (has_failed())
       return result;
-    result.measure = best_measure(pilots.all(), nullptr);
+    result.measure = best_measure(pilots.all(), nullptr, 2);
     if (result.measure.empty())
       {
         result.failure = no_error_to_go_by;
         return result;
       }
-    out << "Pilot runs:\n" << in_words(pilots.records, result.measure);
-
-    const double budget        = runs.scene.study.budget;
-    double       pilot_seconds = pilots.seconds();
-    Records      timed         = pilots.all();
-    const auto   fit           = [&] {
+    const double budget = runs.scene.study.budget;
+    const auto   fit    = [&](const Records &timed) {
       result.model =
         fit_work_precision(runs, pilots.all(), timed, result.measure, nullptr);
     };
-    fit();
+    const auto seconds_left = [&](const double spent, const double price) {
+      return seconds_for_timing(spent, std::min({price, budget, seconds}));
+    };
+    fit(pilots.all());
+    if (!has_two_meshes)
+      {
+        if (const auto wanted = cheapest(result.model, eps))
+          add_finer_pilot(runs,
+                          seconds_left(pilots.seconds(), wanted->seconds),
+                          console,
+                          pilots);
+        if (has_failed())
+          return result;
+        fit(pilots.all());
+      }
+    out << "Pilot runs:\n" << in_words(pilots.records, result.measure);
+    if (!has_two_meshes && pilots.records.size() == 2)
+      out << "A finer mesh would take too long for a pilot, and there is none "
+             "coarser: the error of the mesh is taken to be of first order in "
+             "h.\n";
+    double  pilot_seconds = pilots.seconds();
+    Records timed         = pilots.all();
     // A run on a mesh that is much finer than those of the pilots may have
     // another solver.
     TimingRuns timings;
     if (const auto wanted = cheapest(result.model, eps))
-      timings = make_timing_runs(
-        runs,
-        pilots.all(),
-        wanted->mesh_level,
-        seconds_for_timing(pilot_seconds,
-                           std::min({wanted->seconds, budget, seconds})),
-        console);
+      timings = make_timing_runs(runs,
+                                 pilots.all(),
+                                 wanted->mesh_level,
+                                 seconds_left(pilot_seconds, wanted->seconds),
+                                 console);
     result.interruption = timings.interruption;
     if (!result.interruption.empty())
       return result;
@@ -112,7 +176,7 @@ namespace Viscoplastic
         pilot_seconds += record.number("seconds_total");
         timed.push_back(&record);
       }
-    fit();
+    fit(timed);
     out << "Prices by the " << measure_in_words(result.measure)
         << ", from pilots of " << seconds_in_words(pilot_seconds) << ":\n";
     const auto prices =

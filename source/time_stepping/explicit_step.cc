@@ -136,7 +136,7 @@ namespace Viscoplastic
       {
         // The predictor of Heun's method may have been another one.
         const ContactReport earlier = solution.report;
-        solution.stay(problem, d.space);
+        solution.stay(problem, d.space, d.face.get());
         solution.report.add_earlier(earlier);
         solution.is_unchanged = earlier.linear_iterations == 0;
         return;

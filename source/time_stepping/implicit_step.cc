@@ -388,7 +388,8 @@ namespace Viscoplastic
 
     DistributedVector ghosted_change = d.space.ghosted_vector();
     d.space.to_cartesian(change, ghosted_change);
-    std::vector<Tensor<1, 2>> slips, slip_changes;
+    const std::vector<double> &bounds = solution.state.friction.bound;
+    std::vector<Tensor<1, 2>>  slips, slip_changes;
     if (d.face)
       {
         DistributedVector increment(base);
@@ -401,12 +402,16 @@ namespace Viscoplastic
       double friction = 0.;
       for (unsigned int p = 0; p < slips.size(); ++p)
         {
-          const Tensor<1, 2> slip = slips[p] + s * slip_changes[p];
-          const double       norm = slip.norm(), rest = slip_changes[p].norm();
-          if (rest > 0. && std::isfinite(problem.bounds[p]))
-            friction += problem.bounds[p] * (norm > 1e-14 * rest ?
-                                               (slip * slip_changes[p]) / norm :
-                                               (s < 0.5 ? rest : -rest));
+          const FrictionFace::Point &point = d.face->layout().points[p];
+          const Tensor<1, 2>         slip  = slips[p] + s * slip_changes[p];
+          const double norm = slip.norm(), rest = slip_changes[p].norm();
+          if (point.gives_way())
+            friction +=
+              point.compliance.force(slip[0] - bounds[p]) * slip_changes[p][0];
+          else if (rest > 0. && std::isfinite(bounds[p]) && !point.is_obstacle)
+            friction += bounds[p] * (norm > 1e-14 * rest ?
+                                       (slip * slip_changes[p]) / norm :
+                                       (s < 0.5 ? rest : -rest));
         }
       return slope + s * curvature +
              Utilities::MPI::sum(friction, d.space.communicator) +
@@ -514,7 +519,7 @@ namespace Viscoplastic
     if (!is_zero(*solution.end_rate))
       return {};
     solution.state.z = old.z;
-    solution.stay(problem, d.space);
+    solution.stay(problem, d.space, d.face.get());
     solution.is_implicit = true;
     solution.note(*solution.end_rate);
     return solution;

@@ -231,19 +231,47 @@ namespace Viscoplastic
             const FrictionFace::Point &point = layout.points[p];
             Tensor<1, 2>              &s     = to.friction.slip[p];
             const Tensor<1, 3> values = layout.node_values(x, point.node);
-            if (to.friction.sticks[p])
+            if (to.friction.sticks[p] || point.gives_way())
               continue;
             const Tensor<1, 2> before = s;
             s                         = slip(point, values);
+            const auto stop_by        = [&](const Tensor<1, 3> &change) {
+              layout.set_node_values(layout.node_values(stop, point.node) +
+                                       change,
+                                     point.node,
+                                     stop);
+            };
+            if (point.is_obstacle)
+              {
+                const double beyond = s[0] - to.friction.bound[p];
+                if (beyond <= 0.)
+                  continue;
+                stop_by(-beyond / point.map[0].norm_square() * point.map[0]);
+                s[0]                  = to.friction.bound[p];
+                to.friction.sticks[p] = true;
+                continue;
+              }
             if (to.friction.bound[p] == 0.)
               continue;
-            if (before * s <= 0. && layout.n_node_points(point.node) == 1)
+            if (before * s <= 0. && layout.has_plain_friction(point.node))
               {
-                layout.set_node_values(-1. * values, point.node, stop);
+                stop_by(layout.n_node_points(point.node) == 1 ?
+                          -1. * values :
+                          -1. * node_force(point, s));
                 s = Tensor<1, 2>();
               }
             to.friction.sticks[p] = s.norm() == 0.;
           }
+        for (unsigned int p = 0; p < layout.points.size(); ++p)
+          if (const FrictionFace::Point &point = layout.points[p];
+              point.gives_way())
+            {
+              to.friction.slip[p] =
+                slip(point,
+                     layout.node_values(x, point.node) +
+                       layout.node_values(stop, point.node));
+              to.friction.sticks[p] = to.friction.penetration(p) > 0.;
+            }
         face->restriction().add(1., stop, to.u);
       }
     space.to_cartesian(to.u, to.ghosted_u);

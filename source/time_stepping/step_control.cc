@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -39,6 +40,10 @@ namespace Viscoplastic
     /// How far contributions of steps may be trusted to go on to cancel, and
     /// what is left of a budget that has been exceeded.
     constexpr double least_cancellation = 0.1, least_rest = 0.05;
+    /// Of the logarithm of the step size that the error allows: a jump by more
+    /// says nothing of further ones.
+    constexpr double most_telling_growth = 0.3;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
     /// More steps than that up to a time of the phases are a stiff scene, not a
     /// short step.
     constexpr double most_divisions = 1e7;
@@ -117,12 +122,12 @@ namespace Viscoplastic
   StepControl::land_on(const std::vector<double> &kinks,
                        const std::vector<double> &jumps)
   {
-    if (!is_on)
-      return;
     const auto add = [&](const double t) {
       if (t <= 0. || t >= schedule.end_time())
         return;
       data_kinks.push_back(t);
+      if (!is_on)
+        return;
       // There may be one that rounding separates from it.
       const TimeSchedule::Phase &phase = schedule.phase_at(t);
       const double               near  = 1e-9 * (phase.end - phase.start);
@@ -324,12 +329,23 @@ namespace Viscoplastic
     before       = present;
     present.size = new_size;
     present.unsigned_sum += errors.indicator;
-    double factor = largest_growth;
+    double factor   = largest_growth;
+    present.allowed = infinity;
     if (ratio > 0.)
       {
         const double measured = std::max(ratio, least_ratio);
         const double best     = std::pow(aim / measured, 1. / order);
-        factor                = std::pow(aim / measured, 0.3 / order);
+        present.allowed       = best * step.k;
+        if (before.allowed > 0. && before.allowed < infinity)
+          {
+            const double growth =
+              std::clamp(std::log(present.allowed / before.allowed),
+                         -most_telling_growth,
+                         most_telling_growth);
+            present.growth_weight = 0.9 * before.growth_weight + 1.;
+            present.growth += (growth - before.growth) / present.growth_weight;
+          }
+        factor = std::pow(aim / measured, 0.3 / order);
         if (before.last_ratio > 0.)
           factor *= std::pow(before.last_ratio / measured, 0.4 / order);
         if (best >= 1. && best < least_change)
@@ -382,20 +398,48 @@ namespace Viscoplastic
   double
   StepControl::expected_steps(const unsigned int n,
                               const double       t,
-                              const double       k) const
+                              const double       k,
+                              const double       limit) const
   {
     if (t >= schedule.end_time() || k <= 0.)
       return n;
-    if (is_on)
-      return n + std::ceil((schedule.end_time() - t) / k);
-    // The steps of the phases, divided as the last one is.
-    double steps = n, from = t;
-    while (from < schedule.end_time())
+    double steps = n;
+    for (double from = t; from < schedule.end_time();)
       {
-        const auto &phase = schedule.phase_at(from);
-        steps +=
-          std::round((phase.end - from) / std::min(k, phase.step_size()));
-        from = phase.end;
+        const auto &phase      = schedule.phase_at(from);
+        const bool  is_present = from == t;
+        double      left       = phase.end - from,
+               size            = is_present ? k : phase.step_size();
+        from                   = phase.end;
+        if (!is_on)
+          {
+            // Those of the phase, divided as the last one is.
+            steps += std::round(left / std::min(k, phase.step_size()));
+            continue;
+          }
+        double     most        = largest(phase.start);
+        const bool has_a_limit = needs_limit() && limit < infinity;
+        if (has_a_limit)
+          most = std::min(most, limit);
+        if (output_interval > 0.)
+          most = std::min(most, output_interval);
+        size                 = std::min(size, most);
+        const double allowed = std::clamp(present.allowed, size, most);
+        for (; size < allowed && left > size; ++steps)
+          {
+            left -= size;
+            size = std::min(largest_growth * size, allowed);
+          }
+        // k, k e^g, k e^2g, ... add up to what is left.
+        // Up to a limit they grow too little to tell that from chance.
+        const double growth  = is_present && !has_a_limit ?
+                                 std::max(0., present.growth) :
+                                 0.,
+                     equal   = left / size,
+                     growing = growth > 1e-3 ?
+                                 std::log1p(growth * equal) / growth :
+                                 equal;
+        steps += std::ceil(std::max(left / most, growing) * (1. - 1e-10));
       }
     return steps;
   }

@@ -11,14 +11,20 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Whether all multipliers are in their balls, and so a solution at rest.
+    /// Whether all multipliers are in their balls, and so a solution at rest;
+    /// obstacles must not move.
+    template <int dim>
     bool
-    holds_at_rest(const FrictionState &old, const std::vector<double> &bounds)
+    holds_at_rest(const ContactFace<dim>    &face,
+                  const FrictionState       &old,
+                  const std::vector<double> &bounds)
     {
-      if (old.n_points() != bounds.size())
+      if (old.n_points() != bounds.size() ||
+          (face.has_obstacles() && face.bounds_depend_on_time()))
         return false;
       for (unsigned int p = 0; p < bounds.size(); ++p)
         if (!(bounds[p] >= old.bound[p] ||
+              face.layout().points[p].is_obstacle ||
               old.multiplier[p].norm() <= bounds[p]))
           return false;
       return true;
@@ -95,7 +101,8 @@ namespace Viscoplastic
   template <int dim>
   void
   StepSolution<dim>::stay(const StepProblem<dim>     &problem,
-                          const AdmissibleSpace<dim> &space)
+                          const AdmissibleSpace<dim> &space,
+                          const ContactFace<dim>     *face)
   {
     const State<dim> &old   = problem.old.state;
     state.u                 = old.u;
@@ -103,14 +110,24 @@ namespace Viscoplastic
     state.friction          = old.friction;
     FrictionState &friction = state.friction;
     friction.bound          = problem.bounds;
+    if (problem.bounds_follow_pressure)
+      {
+        friction.bound = problem.given_bounds;
+        face->add_computed_bounds(problem.time_step.t,
+                                  old.friction,
+                                  friction.bound,
+                                  problem.slip_rates);
+      }
     for (unsigned int p = 0; p < friction.n_points(); ++p)
       {
-        friction.slip[p]   = Tensor<1, 2>();
-        friction.sticks[p] = friction.bound[p] > 0.;
+        friction.slip[p] = Tensor<1, 2>();
+        if (!face->layout().points[p].is_obstacle)
+          friction.sticks[p] = friction.bound[p] > 0.;
       }
     // The bound on the error is that of the solve.
     report            = problem.old.report;
-    report.iterations = report.linear_iterations = 0;
+    report.iterations = report.linear_iterations = report.bound_iterations = 0;
+    report.contraction                                                     = 0.;
     report.seconds = report.plain_seconds = 0.;
     is_unchanged                          = true;
   }
@@ -141,7 +158,9 @@ namespace Viscoplastic
       }
     if (discretization.face)
       unchanged = unchanged &&
-                  holds_at_rest(old.state.friction, problem.bounds) &&
+                  holds_at_rest(*discretization.face,
+                                old.state.friction,
+                                problem.bounds) &&
                   (problem.foundation_step.size() == 0 ||
                    problem.foundation_step.all_zero());
     return Utilities::MPI::min(unchanged ? 1 : 0,
@@ -166,9 +185,13 @@ namespace Viscoplastic
 
 
   template void
-  StepSolution<2>::stay(const StepProblem<2> &, const AdmissibleSpace<2> &);
+  StepSolution<2>::stay(const StepProblem<2> &,
+                        const AdmissibleSpace<2> &,
+                        const ContactFace<2> *);
   template void
-  StepSolution<3>::stay(const StepProblem<3> &, const AdmissibleSpace<3> &);
+  StepSolution<3>::stay(const StepProblem<3> &,
+                        const AdmissibleSpace<3> &,
+                        const ContactFace<3> *);
   template bool
   data_are_unchanged(const Discretization<2> &, const StepProblem<2> &);
   template bool

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -48,14 +49,18 @@ namespace Viscoplastic
     const FaceRestriction &face   = d.face_restriction();
     SolverDemand           demand = d.solver_demand();
     demand.max_poissons_ratio     = max_poissons_ratio;
+    if (space.is_held_by_contact() && !springs)
+      springs = std::make_unique<ProximalSprings<dim>>(d);
+    const DistributedMatrix &solved =
+      springs ? springs->attach(matrix) : matrix;
     if (bulk_solver &&
         bulk_solver->is_exact() ==
           (choose_bulk_solver(demand) == BulkSolverKind::direct) &&
-        bulk_solver->renew(matrix))
+        bulk_solver->renew(solved))
       return;
     bulk_solver.reset(); // factors are what fills memory
     bulk_solver =
-      make_bulk_solver(make_bulk_system(space, matrix, face), demand);
+      make_bulk_solver(make_bulk_system(space, solved, face), demand);
   }
 
 
@@ -86,19 +91,44 @@ namespace Viscoplastic
           }
         else
           friction = FrictionState(problem.bounds);
-        std::vector<bool> sticks(face.n_dofs());
+        const auto &positions = d.face->restriction().positions();
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
-          std::fill(sticks.begin() + face.first_dof[node],
-                    sticks.begin() + face.first_dof[node + 1],
-                    friction.sticks[face.first_point[node]]);
-        for (unsigned int k = 0; k < face.n_dofs(); ++k)
-          if (sticks[k])
-            {
-              const unsigned int i = d.face->restriction().positions()[k];
-              u.begin()[i] =
-                old_u.begin()[i] +
-                (foundation_step.size() > 0 ? foundation_step[k] : 0.);
-            }
+          {
+            const unsigned int begin    = face.first_dof[node],
+                               p        = face.first_point[node],
+                               obstacle = face.first_obstacle(node);
+            // The increment of the node relative to the foundation.
+            Tensor<1, 3> carried, x;
+            if (foundation_step.size() > 0)
+              carried = face.node_values(foundation_step, node);
+            for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
+              {
+                const unsigned int dof = positions[begin + i];
+                x[i] = u.begin()[dof] - old_u.begin()[dof] - carried[i];
+              }
+            const bool sticks = p < obstacle && friction.sticks[p];
+            if (sticks && obstacle == face.first_point[node + 1])
+              x = 0.;
+            else if (sticks && face.has_plain_friction(node))
+              x -= node_force(face.points[p], slip(face.points[p], x));
+            for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
+              {
+                const Tensor<1, 3> &normal = face.points[o].map[0];
+                if (face.points[o].gives_way())
+                  continue;
+                friction.sticks[o] =
+                  friction.sticks[o] && friction.multiplier[o][0] > 0.;
+                const double left = friction.bound[o] - normal * x;
+                if (friction.sticks[o] || left < 0.)
+                  x += left / normal.norm_square() * normal;
+              }
+            if (sticks || obstacle < face.first_point[node + 1])
+              for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
+                {
+                  const unsigned int dof = positions[begin + i];
+                  u.begin()[dof] = old_u.begin()[dof] + carried[i] + x[i];
+                }
+          }
       }
     space.set_prescribed(problem.time_step.t, u);
     return u;
@@ -111,13 +141,17 @@ namespace Viscoplastic
   StepSolver<dim>::rounding_error(const Data              &data,
                                   const DistributedVector &u) const
   {
-    const AdmissibleSpace<dim> &space = discretization.space;
-    double                      sum   = 0.;
+    const AdmissibleSpace<dim> &space  = discretization.space;
+    double                      sum    = 0.;
+    const auto                  square = [](const double x) { return x * x; };
+    for (unsigned int k = 0; k < data.foundation_step.size(); ++k)
+      sum +=
+        diagonal.begin()[discretization.face_restriction().positions()[k]] *
+        square(data.foundation_step[k]);
     for (std::size_t i = 0; i < space.excluded().size(); ++i)
       if (!space.excluded()[i])
         {
           const double stiffness = diagonal.begin()[i];
-          const auto   square    = [](const double x) { return x * x; };
           sum +=
             stiffness * (square(u.begin()[i]) + square(data.old_u.begin()[i])) +
             (square(data.load.begin()[i]) +
@@ -168,6 +202,95 @@ namespace Viscoplastic
                          DistributedVector       &u,
                          FrictionState           &friction)
   {
+    const SolverParameters &parameters =
+      discretization.scene().parameters.solver;
+    ContactReport report =
+      solve_with_given_bounds(problem, right_side, tolerance, u, friction);
+    if (!problem.bounds_follow_pressure || !discretization.slipping_face())
+      return report;
+
+    const ContactFace<dim> &face        = *discretization.face;
+    double                  last_change = 0.;
+    for (;;)
+      {
+        std::vector<double> bounds = problem.given_bounds;
+        face.add_computed_bounds(problem.time_step.t,
+                                 friction,
+                                 bounds,
+                                 problem.slip_rates);
+        double change = 0., sum = 0.;
+        for (unsigned int p = 0; p < bounds.size(); ++p)
+          if (!face.layout().points[p].is_obstacle)
+            {
+              change += std::abs(bounds[p] - friction.bound[p]);
+              sum += bounds[p];
+            }
+        change = face.layout().sum(change);
+        sum    = face.layout().sum(sum);
+        // Beside the error of the solves, ratios mean nothing.
+        if (report.bound_iterations > 0 && std::isfinite(last_change) &&
+            last_change > 1e3 * tolerance * sum)
+          report.contraction =
+            std::max(report.contraction, change / last_change);
+        if (change <= parameters.coulomb_tolerance * sum)
+          return report;
+        std::ostringstream message;
+        message << "The fixed point of Coulomb's law is not found in "
+                << report.bound_iterations
+                << " solves of the step: the friction bounds still change by "
+                << change / sum
+                << " of their sum, and the last solve has reduced the change "
+                   "by the factor "
+                << change / last_change
+                << ". For a friction coefficient so large the problem itself "
+                   "may have no unique solution; 'Solver/Coulomb pressure' = "
+                   "lagged takes the pressure of the step before.";
+        AssertThrow(report.bound_iterations < parameters.maximal_iterations,
+                    ExcMessage(message.str()));
+        last_change    = change;
+        friction.bound = bounds;
+        ContactReport again =
+          solve_with_given_bounds(problem, right_side, tolerance, u, friction);
+        ++again.bound_iterations;
+        again.add_earlier(report);
+        report = again;
+      }
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  StepSolver<dim>::solve_with_given_bounds(const StepProblem<dim>  &problem,
+                                           const DistributedVector &right_side,
+                                           const double             tolerance,
+                                           DistributedVector       &u,
+                                           FrictionState           &friction)
+  {
+    if (!springs)
+      return solve_regular(problem, right_side, tolerance, u, friction);
+    return springs->solve(
+      problem,
+      right_side,
+      tolerance,
+      *bulk_solver,
+      [&](const DistributedVector &right, const double inner_tolerance) {
+        return solve_regular(problem, right, inner_tolerance, u, friction);
+      },
+      u,
+      friction);
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  StepSolver<dim>::solve_regular(const StepProblem<dim>  &problem,
+                                 const DistributedVector &right_side,
+                                 const double             tolerance,
+                                 DistributedVector       &u,
+                                 FrictionState           &friction)
+  {
     // All of it in proportion gives the solution in proportion: where squares
     // would leave the range of numbers, another unit does. In a ramp that
     // begins like exp(-1/t) that is nothing unusual; a whole run of this kind
@@ -183,7 +306,13 @@ namespace Viscoplastic
                                         size,
                                         least_size,
                                         largest_size)));
-    if (size == 0. || size >= 1e-100)
+    // A power of the penetration is not in proportion.
+    const auto &boundary = discretization.scene().boundary;
+    if (size == 0. || size >= 1e-100 ||
+        std::any_of(boundary.begin(), boundary.end(), [](const auto &pair) {
+          return pair.second.gives_way() &&
+                 pair.second.compliance_exponent != 1.;
+        }))
       return solve_in_unit(data, tolerance, u, friction);
 
     const double unit    = std::ldexp(1., std::max(std::ilogb(size), -1000));
@@ -204,14 +333,15 @@ namespace Viscoplastic
     const DistributedVector old_u            = in_unit(data.old_u),
                             load             = in_unit(data.load),
                             other_right_side = in_unit(right_side);
-    Vector<double> foundation_step(data.foundation_step);
+    const std::vector<double> bounds         = friction.bound;
+    Vector<double>            foundation_step(data.foundation_step);
     if (foundation_step.size() > 0)
       foundation_step /= unit;
     scale(1. / unit);
     ContactReport report = solve_in_unit(
       {old_u, load, other_right_side, foundation_step}, tolerance, u, friction);
     scale(unit);
-    friction.bound = problem.bounds;
+    friction.bound = bounds;
     report.duality_gap *= unit * unit;
     report.error *= unit;
     bulk_solver->set_rounding_error(unit * bulk_solver->rounding_error());
@@ -286,16 +416,29 @@ namespace Viscoplastic
         bulk_solver->solve(right_side, u, tolerance);
         return;
       }
-    const FrictionFace  &face = d.face->layout();
-    const Vector<double> no_force(face.n_dofs());
-    Vector<double>       change(face.n_dofs());
+    const FrictionFace &face = d.face->layout();
+    Vector<double>      force(face.n_dofs()), change(face.n_dofs());
     for (unsigned int p = 0; p < friction.n_points(); ++p)
-      // Nothing holds a point without friction.
-      friction.sticks[p] = friction.bound[p] > 0.;
-    bulk_solver->begin(right_side, u);
+      {
+        const FrictionFace::Point &point = face.points[p];
+        // Nothing holds a point without friction, or off the foundation.
+        friction.sticks[p] = point.is_obstacle ?
+                               friction.multiplier[p][0] > 0. :
+                               friction.bound[p] > 0.;
+        if (point.gives_way())
+          face.set_node_values(face.node_values(force, point.node) +
+                                 node_force(point, friction.multiplier[p]),
+                               point.node,
+                               force);
+      }
+    DistributedVector right(right_side);
+    if (springs)
+      // From where the body is, springs carry nothing.
+      springs->add_load(u, right);
+    bulk_solver->begin(right, u);
     bulk_solver->set_truncation(make_truncation(face, friction, {}));
     // As a rule the change is less than a hundredth of u.
-    bulk_solver->correct(no_force,
+    bulk_solver->correct(force,
                          std::clamp(100. * tolerance, 1e-10, 1e-4),
                          change);
     bulk_solver->search_terms(change);

@@ -77,7 +77,7 @@ namespace Viscoplastic
       const FrictionState    &friction = state.friction;
       std::vector<double>     work(friction.n_points());
       for (unsigned int p = 0; p < work.size(); ++p)
-        if (face.weights()[p] > 0.)
+        if (face.weights()[p] > 0. && !face.layout().points[p].is_obstacle)
           work[p] =
             friction.multiplier[p] * friction.slip[p] / face.weights()[p];
       state.friction_work = face.nodal_field(work);
@@ -85,6 +85,28 @@ namespace Viscoplastic
         for (std::size_t i = 0; i < discretization.space.relevant.n_elements();
              ++i)
           state.friction_work.begin()[i] += old.friction_work.begin()[i];
+    }
+  } // namespace
+
+
+
+  namespace
+  {
+    /// Whether any friction bound follows from the pressures of a state.
+    /// Collective.
+    template <int dim>
+    bool
+    has_computed_bounds(const Discretization<dim> &d,
+                        const FrictionState       &state,
+                        const double               t,
+                        const std::vector<double> &slip_rates)
+    {
+      std::vector<double> bounds(d.face->layout().points.size(), 0.);
+      d.face->add_computed_bounds(t, state, bounds, slip_rates);
+      return d.face->layout().any(
+        std::any_of(bounds.begin(), bounds.end(), [](const double bound) {
+          return bound > 0.;
+        }));
     }
   } // namespace
 
@@ -139,8 +161,7 @@ namespace Viscoplastic
             if (control.accepts(time_step, errors, has_event))
               {
                 step.n_rejections = n_rejections;
-                if (discretization.face &&
-                    scene.parameters.output.has(AdditionalField::friction_work))
+                if (discretization.face && scene.keeps_friction_work())
                   add_friction_work(discretization, state, step.end.state);
                 return step;
               }
@@ -175,9 +196,47 @@ namespace Viscoplastic
                              old_rate};
     if (d.face)
       {
-        problem.bounds = d.face->bounds(time_step.t);
         problem.foundation_step =
           d.face->foundation_step(time_step.t_old, time_step.t);
+        DistributedVector u;
+        if (d.face->has_obstacles())
+          {
+            u = d.space.owned_vector();
+            d.space.to_frames(accepted.state.u, u);
+            d.space.set_prescribed(time_step.t, u);
+          }
+        const State<dim> &state = accepted.state;
+        problem.slip_rates =
+          d.face->slip_rates(state.velocity, state.t - state.k, state.t);
+        problem.bounds = d.face->step_bounds(time_step.t,
+                                             u,
+                                             problem.foundation_step,
+                                             problem.slip_rates);
+        if (d.face->has_computed_pressure() &&
+            scene.parameters.solver.coulomb_pressure ==
+              CoulombPressure::fixed_point)
+          {
+            problem.bounds_follow_pressure = true;
+            problem.given_bounds           = problem.bounds;
+          }
+        // Without a pressure before, a fixed point is looked for from stick.
+        const FrictionState &old = accepted.state.friction;
+        if (problem.bounds_follow_pressure &&
+            !has_computed_bounds(d, old, time_step.t, problem.slip_rates))
+          {
+            FrictionState pressed(problem.bounds);
+            for (auto &multiplier : pressed.multiplier)
+              multiplier[0] = std::numeric_limits<double>::infinity();
+            d.face->add_computed_bounds(time_step.t,
+                                        pressed,
+                                        problem.bounds,
+                                        problem.slip_rates);
+          }
+        else
+          d.face->add_computed_bounds(time_step.t,
+                                      old,
+                                      problem.bounds,
+                                      problem.slip_rates);
       }
     return problem;
   }

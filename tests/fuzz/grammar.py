@@ -21,7 +21,8 @@ class Units:
 @dataclass
 class Body:
     """A coarse mesh: pieces says of each boundary id whether it is flat,
-    planes are its cuts in x along faces of cells, points lie inside."""
+    planes are its cuts in x along faces of cells, points lie inside, and
+    outwards goes out of the body at some of its boundaries."""
 
     generator: str
     arguments: str
@@ -30,6 +31,7 @@ class Body:
     planes: list = field(default_factory=list)
     points: list = field(default_factory=list)
     ids: str = ""
+    outwards: dict = field(default_factory=dict)
 
 
 def flat(*ids):
@@ -177,6 +179,11 @@ class Scene:
             sides = [pick((1, 1, 2, 0.5, 0.1)) for _ in range(self.dim)]
             n = ", ".join(map(str, cells))
             planes = [sides[0] * i / cells[0] for i in range(1, cells[0])]
+            outwards = {
+                2 * axis + end: [(2 * end - 1) * (i == axis) for i in range(self.dim)]
+                for axis in range(self.dim)
+                for end in (0, 1)
+            }
             return Body(
                 "subdivided_hyper_rectangle",
                 f"{n} : {origin} : {self.point(*sides)} : true",
@@ -184,6 +191,7 @@ class Scene:
                 flat_sides,
                 planes,
                 [[s * self.random.random() for s in sides] for _ in range(2)],
+                outwards=outwards,
             )
         if kind == "L":
             # in 3D deal.II tells no faces apart
@@ -215,12 +223,15 @@ class Scene:
         if kind == "half shell" and self.dim == 2:
             n = pick((2, 3, 4))
             arguments = f"{origin} : {radii} : {n} : true"
-            return Body("half_hyper_shell", arguments, n, curved(0, 1) | flat(2, 3))
+            pieces = curved(0, 1) | flat(2, 3)
+            outwards = {0: (-1, 0), 1: (1, 0)}
+            return Body("half_hyper_shell", arguments, n, pieces, outwards=outwards)
         if kind in ("half shell", "quarter shell"):
             pieces = curved(0, 1) | flat(*range(2, self.dim + 2))
             n = 3
             arguments = f"{origin} : {radii} : {n} : true"
-            return Body("quarter_hyper_shell", arguments, n, pieces)
+            outwards = {0: [-1] * self.dim, 1: [1] * self.dim}
+            return Body("quarter_hyper_shell", arguments, n, pieces, outwards=outwards)
         if kind == "shell":
             n = pick((6, 8)) if self.dim == 2 else 6
             arguments = f"{origin} : {radii} : {n} : true"
@@ -233,7 +244,9 @@ class Scene:
         if kind in ("hole", "half ball"):
             n = 4 if self.dim == 2 else 6
             arguments = f"{origin} : {self.length(1)}"
-            return Body("half_hyper_ball", arguments, n, curved(0) | flat(1))
+            outwards = {0: [1] + [0] * (self.dim - 1)}
+            pieces = curved(0) | flat(1)
+            return Body("half_hyper_ball", arguments, n, pieces, outwards=outwards)
         if kind == "quarter ball":
             near = f"abs({{}}) < {self.length(1e-6)}"
             ids = f"if({near.format('x')}, 1, if({near.format('y')}, 2, 3))"
@@ -241,7 +254,10 @@ class Scene:
             pieces = curved(0) | flat(*range(1, self.dim + 1))
             n = 3 if self.dim == 2 else 4
             arguments = f"{origin} : {self.length(1)}"
-            return Body("quarter_hyper_ball", arguments, n, pieces, ids=ids)
+            outwards = {0: [1] * self.dim}
+            return Body(
+                "quarter_hyper_ball", arguments, n, pieces, ids=ids, outwards=outwards
+            )
         if kind == "cylinder":
             return Body("cylinder", radii, 10, curved(0) | flat(1, 2))
         arguments = f"{self.length(0.6)} : {self.length(0.4)} : {self.length(1)}"
@@ -284,6 +300,7 @@ class Scene:
             moved = True
             shift = [self.random.choice((0, 1, -3, 50)) for _ in range(self.dim)]
             self.set("Geometry/Translation", self.point(*shift))
+        self.outwards = {} if moved else body.outwards
         if body.points and not moved and self.chance(0.4):
             n = self.random.randint(1, len(body.points))
             points = "; ".join(self.point(*p) for p in body.points[:n])
@@ -405,11 +422,14 @@ class Scene:
                 roles += ("contact",) * 3 + ("symmetry",)
                 role = self.random.choice(roles)
             if role in ("contact", "symmetry", "glued") and not self.pieces[id]:
-                role = "clamped" if id == holder else "free"
-            self.boundary(f"Boundary {id}", role, whole=id == holder)
+                # Only unilateral contact takes a curved face, whose foundation
+                # has a normal.
+                if role != "contact" or id not in self.outwards:
+                    role = "clamped" if id == holder else "free"
+            self.boundary(id, role, whole=id == holder)
 
-    def boundary(self, section, role, whole):
-        entry = lambda name: f"{section}/{name}"
+    def boundary(self, id, role, whole):
+        entry = lambda name: f"Boundary {id}/{name}"
         self.set(entry("Role"), "contact" if role == "glued" else role)
         if role == "displacement":
             parts = [
@@ -424,22 +444,66 @@ class Scene:
                 self.set(entry("Traction"), self.vector(self.traction))
         elif role in ("contact", "glued"):
             laws = ("tresca",) * 3 + ("coulomb",) * 2 + ("none", "glued")
-            self.contact(entry, "glued" if role == "glued" else self.random.choice(laws))
+            law = "glued" if role == "glued" else self.random.choice(laws)
+            unilateral = law != "glued" and self.chance(0.4)
+            if not self.pieces[id]:
+                law = self.random.choice(("none", "tresca", "coulomb"))
+                unilateral = True
+            self.contact(entry, law, unilateral)
+            if unilateral:
+                self.foundation(entry, id)
 
-    def contact(self, entry, law):
+    def foundation(self, entry, id):
+        """Where it is, of contact that opens and closes."""
+        pick = self.random.choice
+        size = self.length(self.strain * self.spread(-1.5, 0))
+        far = ("0", "0", "1", "[x]^2", "([x] - 0.5)^2", "([x]^2 + [y]^2)")
+        far += ("(1 + sin(9*[x]*[y]))", "if([x] > 0.5, 0, 1)", "abs([x] - 0.4)")
+        if self.equilibrate:
+            far += ("([x] - 0.3)", "cos(7*[x])")  # overlaps at the beginning
+        gap = f"{size}*{self.in_units(pick(far))}"
+        if self.chance(0.4):
+            gap += f" + ({self.displacement()})*{self.from_zero()}"
+        if gap != f"{size}*0" or self.chance(0.5):
+            self.set(entry("Gap"), gap)
+        if not self.pieces[id] or (id in self.outwards and self.chance(0.3)):
+            tilt = [pick((0, 0, 0.1, -0.3)) for _ in range(self.dim)]
+            normal = [a + b for a, b in zip(self.outwards[id], tilt)]
+            self.set(entry("Foundation normal"), ", ".join(f"{n:g}" for n in normal))
+
+    def compliance(self, entry):
+        """A foundation from softer than the body to hardly different from rigid."""
+        exponent = self.random.choice((1, 1, 1.5, 2, 3))
+        unit = self.units.stress / self.units.length**exponent
+        size = self.strain ** (1 - exponent) * self.spread(-1, 5)
+        self.set(entry("Contact law"), "normal compliance")
+        self.set(entry("Compliance"), self.number(size, unit) + f"*{self.in_space()}")
+        self.set(entry("Compliance exponent"), str(exponent))
+
+    def contact(self, entry, law, unilateral):
         pick = self.random.choice
         self.set(entry("Friction law"), law)
+        if unilateral and self.chance(0.25):
+            self.compliance(entry)
+        elif unilateral:
+            self.set(entry("Contact law"), "unilateral")
         size = pick((0, 1e-9, 0.01, 0.03, 0.1, 0.1, 0.3, 0.3, 1, 1, 10, 1e6))
         if law == "tresca":
             vary = f"*{self.in_space()}*{self.not_negative_in_time()}"
             self.set(entry("Friction bound"), self.stress(size * self.strain) + vary)
         if law == "coulomb":
-            pressure = self.stress(-self.strain * self.spread(-1, 0.5))
-            self.set(entry("Normal stress"), self.datum(pressure))
-            coefficient = pick((0, 0.01, 0.1, 0.3, 0.5, 1, 3, 1e5))
+            coefficients = (0, 0.01, 0.1, 0.3, 0.5, 1, 3, 1e5)
+            if unilateral:
+                coefficients = (0, 0.1, 0.2, 0.3, 0.3, 0.5, 1, 30)
+                self.maybe(0.5, "Solver/Coulomb pressure", "lagged", "fixed point")
+                self.maybe(0.4, "Solver/Coulomb tolerance", "1e-3", "1e-9")
+            else:
+                pressure = self.stress(-self.strain * self.spread(-1, 0.5))
+                self.set(entry("Normal stress"), self.datum(pressure))
+            coefficient = pick(coefficients)
             vary = f"*{self.in_space()}*{self.not_negative_in_time()}"
             self.set(entry("Friction coefficient"), f"{coefficient}{vary}")
-        elif self.chance(0.35):
+        if (law != "coulomb" or unilateral) and self.chance(0.35):
             self.set(entry("Foundation displacement"), self.datum(self.displacement()))
         if law != "none" and self.chance(0.35):
             motions = [self.vector(self.displacement)]

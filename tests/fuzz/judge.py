@@ -54,7 +54,8 @@ def defect_of_numbers(work, stdout):
                     finite = math.isfinite(float(value))
                 except ValueError:
                     return f"statistics.csv has {value[:20]!r} in the column {name}"
-                if not finite and name.strip() not in UNBOUNDED_COLUMNS:
+                column = name.partition(" [")[0].strip()  # without unit
+                if not finite and column not in UNBOUNDED_COLUMNS:
                     return f"statistics.csv has {value.strip()} in the column {name}"
     for line in stdout.splitlines():
         # names that the scene gives are no numbers

@@ -51,6 +51,8 @@ EFFORT = {
     "linear_iterations",
     "duality_gap",
     "algebraic_error",
+    "bound_iterations",
+    "contraction",
     "estimate_algebraic",
 }
 
@@ -98,6 +100,11 @@ def lattice(points):
     return np.floor(np.asarray(points, float) * 2**16 + 0.31).astype(int)
 
 
+def without_unit(name):
+    """"t" of "t [day]", as columns and fields are called in scenes with units."""
+    return re.sub(r" \[[^]]*\]$", "", name)
+
+
 def has_points(vtu):
     piece = next(xml.parse(vtu).getroot().iter("Piece"))
     return int(piece.attrib["NumberOfPoints"]) > 0
@@ -117,9 +124,10 @@ class Fields:
         self.points = np.concatenate(points).astype(float)
         self.cells = np.concatenate(cells)
         self.point_data, self.cell_data = {}, {}
-        for name in pieces[0].point_data:
-            values = np.concatenate([p.point_data[name] for p in pieces])
+        for label in pieces[0].point_data:
+            values = np.concatenate([p.point_data[label] for p in pieces])
             values = values.astype(float)
+            name = without_unit(label)
             if not name.startswith(CELL_DATA):
                 self.point_data[name] = values
                 continue
@@ -150,7 +158,7 @@ class Run:
 
     @property
     def statistics(self):
-        """{column: array over steps}, in file order."""
+        """{column without unit: array over steps}, in file order."""
         if not hasattr(self, "_statistics"):
             with open(self.directory / "statistics.csv", newline="") as file:
                 rows = list(csv.reader(file))
@@ -158,7 +166,7 @@ class Run:
             if any(len(row) != width for row in rows):
                 raise AssertionError("statistics.csv has rows of unequal length")
             table = np.array([[float(v) for v in row] for row in rows[1:]])
-            names = [name.strip() for name in rows[0]]
+            names = [without_unit(name.strip()) for name in rows[0]]
             self._statistics = dict(zip(names, table.T))
         return self._statistics
 
@@ -300,6 +308,13 @@ class TestCase(unittest.TestCase):
                 f"(difference {got - wanted:.3g}, allowed "
                 f"{relative * abs(wanted) + absolute:.3g}, at index {worst})"
             )
+
+    def assertRefused(self, process, *sentences):
+        """The run of run(..., check=False) has ended with these sentences."""
+        self.assertNotEqual(process.returncode, 0)
+        words = " ".join(process.stderr.split())
+        for sentence in sentences:
+            self.assertIn(sentence, words)
 
     def check_identities(self, result, tolerance=1e-10, balance=None):
         """The discrete identities that hold at every step of every scene.

@@ -177,6 +177,28 @@ def compare_sets(pairs, result):
         ]
 
 
+def compare_touching(pairs, result):
+    """Where contact that opens is closed."""
+    largest_pressure = max(largest([a["contact_pressure"]]) for _, a, _ in pairs)
+    largest_gap = max(largest([a["gap"]]) for _, a, _ in pairs)
+    for time, *both in pairs:
+        pressures, gaps = (
+            [v[key] for v in both] for key in ("contact_pressure", "gap")
+        )
+        result.n_points += len(gaps[0])
+        differs = (pressures[0] > 0) != (pressures[1] > 0)
+        tie = np.logical_and.reduce(
+            [pressure <= TIE * largest_pressure for pressure in pressures]
+            + [gap <= TIE * largest_gap for gap in gaps]
+        )
+        result.n_ties += int((differs & tie).sum())
+        result.flips += [
+            f"t = {time:g}: pressure {pressures[0][i]:.3g} and {pressures[1][i]:.3g}, "
+            f"gap {gaps[0][i]:.3g} and {gaps[1][i]:.3g}"
+            for i in np.flatnonzero(differs & ~tie)
+        ]
+
+
 def compare(one, other):
     """Measure what differs between two finished runs of one scene."""
     result = Comparison()
@@ -184,8 +206,14 @@ def compare(one, other):
     names = ["solution", *["contact"] * (one.directory / "contact.pvd").exists()]
     series = {name: paired(one, other, name, result) for name in names}
     compare_fields(series, result)
-    if "stick_area" in one.statistics:
-        compare_sets(series["contact"], result)
+    contact = series.get("contact")
+    if contact and "contact_pressure" in contact[0][1]:
+        compare_touching(contact, result)
+        if result.n_ties > 0:
+            result.columns.pop("contact_area", None)
+    # contact that opens has these areas also where nothing has friction
+    if "stick_area" in one.statistics and contact and "stick" in contact[0][1]:
+        compare_sets(contact, result)
         if result.n_ties > 0:  # then these areas are matters of taste
             result.columns.pop("stick_area", None)
             result.columns.pop("slip_area", None)

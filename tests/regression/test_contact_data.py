@@ -466,7 +466,7 @@ class Held(TestCase):
           set Contact tolerance = 1e-10
         end
         """
-    NOTE = "Note: nothing slips on boundary 2, "
+    NOTE = "Note: nothing slips or opens on boundary 2, "
     HELD = {"Geometry/Arguments": "1, 1 : 0, 0 : 1, 1 : true"}
     SPACE = {
         "Dimension": 3,

@@ -230,12 +230,18 @@ class Voice(Manners):
         self.assertEqual(steps, ["1", "2", "3", "4"])
 
     def test_long_runs_do_not_flood(self):
-        """Some 200 lines for 1000 steps, the last step among them."""
+        """At most some 200 lines for 1000 steps, of which many repeat themselves; the
+        last step is among them, and what is left out is counted."""
         arguments = (*SMALL, "--set", "Time/Phases=1: 1000",
                      "--set", "Output/Fields every=0")
         text = self.call(SLAB, *arguments).stdout
         lines = [line for line in text.splitlines() if line.startswith("Step ")]
-        self.assertTrue(190 <= len(lines) <= 202, len(lines))
+        self.assertTrue(20 <= len(lines) <= 202, len(lines))
+        left_out = re.findall(
+            r"  \((\d+) steps?(?: like the line above)? left out\)$", text, re.M
+        )
+        self.assertGreater(text.count("like the line above"), 5)
+        self.assertEqual(len(lines) + sum(map(int, left_out)), 1000)
         self.assertIn("1000/1000", lines[-1])
         self.assertEqual(len(self.column(self.work / "output/slab", "t")), 1001)
 
@@ -250,18 +256,22 @@ class Voice(Manners):
             *("--set", "Step control/Landing times=0.3001, 0.7, 0.7001, 1.5, 1.5001"),
         ).stdout
         lines = re.findall(
-            r"^Step +(\d+)/~(\d+)  t = (\S+) .*  left (?:< )?\d", text, re.M
+            r"^Step +(\d+)/~(\d+)  t = (\S+) .*  left \d", text, re.M
         )
+        # The first three know nothing of their growth.
+        self.assertEqual(re.findall(r"^Step (\d+)  t = ", text, re.M), ["1", "2", "3"])
+        self.assertEqual(lines[0][0], "4")
         n_steps = int(re.search(r"^Steps: (\d+) accepted", text, re.M).group(1))
         self.assertEqual(lines[-1][:2], (str(n_steps), str(n_steps)))
         self.assertGreater(len(lines), 20)
-        for n, expected, t in lines[5:]:
-            self.assertLess(int(expected), 2 * n_steps, f"step {n}, t = {t}")
-            self.assertGreater(int(expected), 0.5 * n_steps, f"step {n}, t = {t}")
+        for n, expected, t in lines:
+            self.assertLess(int(expected), 1.5 * n_steps, f"step {n}, t = {t}")
+            # That slip is to come nobody knows before it begins.
+            self.assertGreater(int(expected), n_steps / 3, f"step {n}, t = {t}")
 
     def test_one_line_on_a_terminal(self):
         """The present step is written over the one before, within the width
-        of the terminal; the log gets lines all the same."""
+        of the terminal; the log gets lines all the same, here of all steps."""
         master, slave = pty.openpty()
         environment = {
             name: value
@@ -269,7 +279,7 @@ class Voice(Manners):
             if not name.startswith(("OMPI_", "PMI"))
         }
         process = subprocess.Popen(
-            [EXECUTABLE, SLAB, "--log", "log", "--set", "Time/Phases=1: 60"],
+            [EXECUTABLE, SLAB, "--log", "log", "--verbose", "--set", "Time/Phases=1: 60"],
             cwd=self.work,
             env={**environment, "OMP_NUM_THREADS": "1", "TERM": "xterm"},
             stdin=subprocess.DEVNULL,

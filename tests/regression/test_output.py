@@ -454,6 +454,7 @@ class FullDisk(TestCase):
             "statistics.csv",
             "solution.pvd",
             "contact.pvd",
+            "boundary_00000.pvtu",
             "solution_00000.pvtu",
             "contact_00000.0.vtu",
             "solution_00004.0.vtu",

@@ -128,7 +128,9 @@ class Opens(TestCase):
         self.assertColoured(self.draw(result, loader))
 
     def test_three_dimensions_two_views(self):
-        result = run("pad_adaptive", {"Time/Phases": "0.5: 5"}, ranks=2)
+        """In a scene with units, which the names of its fields have."""
+        units = {"Units/Length": "mm", "Units/Time": "s", "Units/Stress": "MPa"}
+        result = run("pad_adaptive", {**units, "Time/Phases": "0.5: 5"}, ranks=2)
         image = self.render(result)
         self.assertColoured(image)
         middle = image.shape[1] * 55 // 100

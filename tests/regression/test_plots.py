@@ -36,7 +36,9 @@ from plotting import (
 from matplotlib.quiver import Quiver, QuiverKey
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d
-from plotting.body import MANY, VIEW, field, numbers_at, tiles
+from plotting.body import tiles
+from plotting.body_3d import VIEW, numbers_at
+from plotting.body_base import MANY, field
 from plotting.expression import evaluate
 from plotting.faces import lines, planes, state_runs
 from plotting.results import (
@@ -47,6 +49,7 @@ from plotting.results import (
     read_parameters,
     read_statistics,
 )
+from plotting.units import Units
 
 MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
 
@@ -93,8 +96,12 @@ def block(*extent, cells=(4, 2, 3), displacement=0.0):
     return SimpleNamespace(
         name="block",
         solution=[(0.0, Path())],
+        statistics={},
+        units={},
         body=lambda index: mesh,
         face=lambda index: None,
+        boundary=lambda: None,
+        dimension=lambda: dim,
     )
 
 
@@ -129,8 +136,10 @@ def sliding_block():
         solution=[(float(i), Path()) for i in range(3)],
         contact=[(float(i), Path()) for i in range(3)],
         statistics={},
+        units={},
         body=lambda index: bodies[index],
         face=lambda index: faces[index],
+        boundary=lambda: None,
         dimension=lambda: 3,
     )
 
@@ -157,7 +166,7 @@ class Figures(TestCase):
         plt.close("all")
 
     def draw(self, results, view=VIEW):
-        options = SimpleNamespace(magnification=None, view=view)
+        options = SimpleNamespace(magnification=None, view=view, label=[])
         scale = fields.scale(results, [0], options, "von_mises")
         figure = fields.draw(results, 0, options, scale)
         figure.draw_without_rendering()
@@ -180,13 +189,13 @@ class Figures(TestCase):
                 self.assertEqual(len(labels), 3)
                 powers = {label.get_text()[3:] for label in labels}
                 self.assertEqual(len(powers), 1, powers)
-                plain = 1e-3 <= max(extent) < 1e4
+                plain = 1e-2 <= max(extent) < 1e4
                 self.assertEqual(powers == {""}, plain, powers)
                 (axes,) = [a for a in figure.axes if a.name == "3d"]
                 groups = [self.boxes([label]) for label in labels]
                 for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
                     groups += [self.boxes([number]) for number in numbers_at(axis)]
-                    self.assertFalse(axis.offsetText.get_visible())
+                    self.assertEqual(axis.offsetText.get_text(), "")
                 for these, those in itertools.combinations(groups, 2):
                     for a, b in itertools.product(these, those):
                         self.assertFalse(a.overlaps(b), (extent, view))
@@ -211,7 +220,7 @@ class Figures(TestCase):
     def test_frames_have_the_same_ranges(self):
         """A slip of 2e-5 is drawn shorter than one of 3.6e-4, whatever the mesh."""
         results = sliding_block()
-        options = SimpleNamespace(magnification=None, view=VIEW)
+        options = SimpleNamespace(magnification=None, view=VIEW, label=[])
         for module, n_arrows in ((overview, 1), (contact, 1), (fields, 0)):
             name = ["displacement"] if module is fields else []
             scale = module.scale(results, range(3), options, *name)
@@ -230,13 +239,16 @@ class Figures(TestCase):
                     expected = (0.0, 2e-5 / 3.6e-4, 1.0)[i] / 8
                     self.assertClose(drawn.max(initial=0), expected, 1e-9)
                 if module is overview:
-                    self.assertEqual(keys, ["slip, at most 0.00036"], f"frame {i}")
+                    self.assertEqual(keys, ["slip, at most 360 × $10^{-6}$"], f"frame {i}")
                 plt.close(figure)
 
     def test_colours_reach_the_extremes_of_nodal_values(self):
         results = block(1.0, 0.5, displacement=0.1)
         scale = fields.scale(
-            results, [0], SimpleNamespace(magnification=None), "displacement_x"
+            results,
+            [0],
+            SimpleNamespace(magnification=None, label=[]),
+            "displacement_x",
         )
         self.assertClose((scale.shade.norm.vmin, scale.shade.norm.vmax), (0, 0.05), 1e-12)
 
@@ -390,6 +402,36 @@ class Numbers(TestCase):
         self.assertClose(found[0].component(along), 1, absolute=1e-12)
         self.assertClose(found[1].component(along), 0.6, absolute=1e-12)
 
+    def test_curved_piece(self):
+        """With contact that opens and closes an arc is one piece, a corner parts."""
+        angles = np.linspace(0, np.pi / 2, 10)
+        arc = [(np.cos(a), np.sin(a)) for a in angles]
+        points, cells = polyline([*arc, (0, 3)])
+        data = {"contact_pressure": np.zeros(len(points)), "gap": np.ones(len(points))}
+        found = lines(Mesh(points, cells, **data))
+        self.assertEqual([len(line.nodes) for line in found], [2, 10])
+        chord = 2 * np.sin(np.pi / 36)
+        # from the end with the smaller x
+        self.assertClose(found[1].start, (0, 1), absolute=1e-12)
+        self.assertClose(found[1].s, chord * np.arange(10), absolute=1e-12)
+        around = np.column_stack([points[:, 1], -points[:, 0], 0 * points[:, 0]])
+        self.assertClose(found[1].component(around)[1:-1], 1, absolute=1e-12)
+        # without it each straight piece is one
+        self.assertEqual(len(lines(Mesh(points, cells))), 10)
+
+    def test_states_of_open_contact(self):
+        from plotting.faces import friction_state
+
+        points, cells = polyline([(i, 0) for i in range(3)])
+        of = {"contact_pressure": (1, 0, 0, 0), "gap": (0, 0, 1, 1)}
+        mesh = Mesh(points, cells, **of)
+        none, open_ = style.NO_FRICTION, style.NO_CONTACT
+        self.assertEqual(friction_state(mesh).tolist(), [none, none, open_, open_])
+        friction = {"stick": (1, 0, 0, 1), "bound": (1, 0, 0, 1)}
+        mesh = Mesh(points, cells, **of, **friction)
+        sticks = style.STICKING
+        self.assertEqual(friction_state(mesh).tolist(), [sticks, none, open_, sticks])
+
     def test_runs_of_states(self):
         self.assertEqual(
             [tuple(map(int, run)) for run in state_runs(np.array([1, 1, 0, -1, -1]))],
@@ -419,14 +461,15 @@ class Numbers(TestCase):
         self.assertEqual(sorted(np.bincount(owners)), [2, 2, 3])
 
     def test_planes_are_seen_from_outside(self):
-        """On the underside of a cube with x to the right y points down."""
+        """The normal points out of the body; y is up, from whichever side."""
         bits = [(i, j, k) for k in (0, 1) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
         body = Mesh(bits, [range(8)])
         for cell, normal in (([0, 1, 2, 3], (0, 0, -1)), ([4, 5, 6, 7], (0, 0, 1))):
             (plane,) = planes(Mesh(bits, [cell]), body)
             self.assertClose(plane.normal, normal, absolute=1e-12)
             self.assertEqual((plane.label(0), plane.label(1)), ("$x$", "$y$"))
-            self.assertEqual(plane.reversed, [1] if normal[2] < 0 else [])
+            self.assertEqual(plane.through_the_body, normal[2] < 0)
+            self.assertClose(plane.directions, [(1, 0, 0), (0, 1, 0)], absolute=1e-12)
             self.assertClose(plane.area, 1, absolute=1e-12)
 
     def test_thinned_nodes_are_a_regular_pattern(self):
@@ -444,6 +487,14 @@ class Numbers(TestCase):
         peaked = style.Shade(np.append(np.linspace(0, 1, 999), 50.0), "test")
         self.assertLess(peaked.norm.vmax, 1.01)
         self.assertEqual(peaked.extend, "max")
+        for values in ([0.1, 1.0], [-1.0, -0.1]):
+            shade = style.Shade(np.array(values), "test")
+            dark, light = (
+                sum(shade.colours(np.array([value]))[0, :3])
+                for value in sorted(shade.ends(), key=abs)
+            )
+            self.assertLess(dark, light)
+            self.assertIn(0.0, shade.ends())  # as a tenth is near
         uniform = style.Shade(np.full(5, 3.0), "test")
         self.assertLess(uniform.norm.vmin, 3)
         self.assertGreater(uniform.norm.vmax, 3)
@@ -532,13 +583,13 @@ class Numbers(TestCase):
             for panel in errors.PANELS
             if panel.chosen(statistics)
         }
-        self.assertEqual(list(chosen), ["error in the\nenergy norm, %"])
-        panel, names = chosen["error in the\nenergy norm, %"]
+        self.assertEqual(list(chosen), ["error in the\nenergy norm"])
+        panel, names = chosen["error in the\nenergy norm"]
         self.assertEqual(
             names, ["estimate_space", "estimate_time", "estimate_total"]
         )
         figure, axes = plt.subplots()
-        history.draw_panel(axes, panel, names, statistics)
+        history.draw_panel(axes, panel, names, statistics, Units())
         tops = [line.get_ydata().max() for line in axes.get_lines()[:3]]
         self.assertClose(np.array(tops), np.array([3.0, 1.0, 4.0]), 1e-12)
         plt.close(figure)
@@ -591,15 +642,26 @@ class Pictures(TestCase):
         return process.stderr
 
     def test_everything_in_two_dimensions(self):
-        result = run("slab", {**SMALL_SLAB, "Output/Fields every": 4})
+        result = run(
+            "slab",
+            {
+                **SMALL_SLAB,
+                "Output/Fields every": 4,
+                "Output/Lines": "0, 0 : 2, 0 : 33; 1, 0 : 1, 1 : 17",
+                "Output/Line fields": "slip, stress",
+            },
+        )
         reason = "^Not drawn: efficiency: there is no exact solution.*$"
         names = self.draw(result, "--all", "--dpi", 60, reason=reason)
         self.assertLessEqual(
             {"overview.png", "von_mises.png", "displacement_x.png", "stress_xy.png",
              "pressure.png", "contact.png", "history.png", "hysteresis.png",
-             "stick-slip.png"},
+             "stick-slip.png", "lines.png"},
             names,
         )
+        self.assertEqual(self.draw(result, "lines", "--columns", "slip_x"), {"lines.png"})
+        message = self.refuse(result, "lines", "--columns", "slip")
+        self.assertIn("no line has the columns slip; there are displacement_x", message)
         self.assertNotIn("estimator.png", names)
         # the overview alone, as contrib/run wants it
         self.assertEqual(self.draw(result, plot=plot_afresh), {"results.png"})
@@ -610,6 +672,27 @@ class Pictures(TestCase):
         self.assertEqual(pdf.read_bytes()[:4], b"%PDF")
         file = result.directory / "loop"
         self.assertEqual(self.draw(result, "hysteresis", "--output", file), {"loop.png"})
+
+    def test_contact_that_opens(self):
+        """A block on a bent foundation, with and without friction."""
+        law = {
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Gap": "0.05*(x - 1)^2",
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": 0.3,
+            "Boundary 3/Role": "displacement",
+            "Boundary 3/Displacement": "0.02*max(t - 1, 0); -0.02*min(t, 1)",
+        }
+        for friction in "coulomb", "none":
+            with self.subTest(friction=friction):
+                law["Boundary 2/Friction law"] = friction
+                result = run("slab", {**SMALL_SLAB, **law, "Output/Fields every": 4})
+                asked = ["overview", "contact", "history"]
+                asked += ["stick-slip"] if friction == "coulomb" else []
+                names = self.draw(result, *asked, "--dpi", 60)
+                self.assertEqual(len(names), len(asked))
+        columns = "contact_area,max_pressure,max_gap,contact_force_y"
+        self.draw(result, "history", "--columns", columns)
 
     def test_map_agrees_with_the_statistics(self):
         """The slipping part of each row of the stick-slip map is slip_area."""
@@ -681,8 +764,9 @@ class Pictures(TestCase):
 
     def test_without_friction(self):
         result = run("elastic_frictionless")
-        self.draw(result, "overview", "contact", "history", "hysteresis")
+        self.draw(result, "overview", "contact", "history")
         self.assertIn("no friction", self.refuse(result, "stick-slip"))
+        self.assertIn("nothing dissipates", self.refuse(result, "hysteresis"))
 
     def test_without_contact_and_with_the_ends_only(self):
         result = run(
@@ -692,6 +776,7 @@ class Pictures(TestCase):
         self.assertIn("without contact", self.refuse(result, "contact"))
         self.assertIn("without contact", self.refuse(result, "stick-slip"))
         result = run("slab", {**SMALL_SLAB, "Output/Fields every": 0})
+        self.assertIn("has no 'Output/Lines'", self.refuse(result, "lines"))
         self.assertIn("'Output/Fields every = 1'", self.refuse(result, "stick-slip"))
 
     def test_efficiency(self):

@@ -103,6 +103,22 @@ class Runs(TestCase):
         self.assertIn("slip", " ".join(self.results.face(-1).data))
         self.assertEqual(self.results.index(time=0.3), 1)
 
+    def test_lines(self):
+        """Those of the scene, not those that an earlier run has left there."""
+        self.assertEqual(self.results.lines(), [])
+        with self.assertRaisesRegex(UserError, "has 0 lines"):
+            self.results.line()
+        for lines in "0, 0 : 1, 0 : 3; 0, 0 : 0, 1 : 4", "0, 0 : 1, 0 : 3":
+            results = self.program.run(
+                page_scene(),
+                self.work / "lines",
+                overrides={**SHORT, "Output/Lines": lines, "Output/Line fields": "stress"},
+            )
+            self.assertEqual(len(results.lines()), lines.count(";") + 1)
+        line = results.line()
+        np.testing.assert_allclose(line["s"][-3:], [0, 0.5, 1])
+        self.assertEqual(len(line["stress_xy"]), 3 * len(results.solution))
+
     def test_record(self):
         self.assertEqual(
             self.results.parameters["Material", "maxwell", "Viscosity"], "0.5"

@@ -90,9 +90,37 @@ SCENES = {
             {**phases("1.5: 8"), "Mesh refinement/Cell budget": 700}
         ),
     },
+    "opening": {
+        "verification/hertz_2d": Scene(refined(3)),
+        "verification/hertz_disc_2d": Scene(refined(4)),
+        "verification/hertz_3d": Scene(
+            {**phases("1: 4"), "Mesh refinement/Cell budget": 1200}
+        ),
+        "verification/hertz_ball_3d": Scene(
+            {**refined(2), "Geometry/Boundary refinements": ""}
+        ),
+        "verification/indentation_3d": Scene({**refined(0), **phases("0.1: 1, 2: 5")}),
+        "verification/partial_slip_2d": Scene(
+            {
+                **refined(2),
+                **phases("1: 1, 3: 4"),
+                "Solver/Coulomb tolerance": 1e-10,
+            }
+        ),
+        "verification/flat_punch_2d": Scene(
+            {**phases("1: 6"), "Mesh refinement/Cell budget": 400}
+        ),
+        "verification/rubbing_2d": Scene(),
+        "verification/soft_ground_3d": Scene(phases("1: 2")),
+        # exact, so that errors are rounding
+        "verification/tilted_plane_2d": Scene(
+            {**refined(2), "Exact solution/Displacement": ""}
+        ),
+    },
     "laws": {
         "verification/cantilever_creep": Scene(phases("2.6: 10")),
         "verification/layers": Scene(),
+        "verification/excavated_column": Scene(),
         "verification/uniform_strain": Scene(),
         "verification/perzyna_compression_2d": Scene(phases("1: 20, 4: 20")),
         "verification/perzyna_compression_3d": Scene(phases("1: 20, 4: 20")),
@@ -119,11 +147,33 @@ SCENES = {
         "demos/brake_pad_3d": Scene(
             {**cells(12, 6, 3, to="0.1, 0.05, 0.012"), **phases("0.1: 4, 1: 8")}
         ),
+        "demos/brake_pad_pressed_3d": Scene({**refined(0), **phases("0.1: 4, 1: 8")}),
+        "demos/ball_zener_3d": Scene(
+            {
+                "Geometry/Arguments": "6, 4, 2 : -12, 0, -12 : 24, 12, 0 : true",
+                **phases("0.02: 2, 0.3: 3, 0.5: 6, 0.52: 2, 1.5: 8"),
+            }
+        ),
         "demos/rod_seal_2d": Scene(
             {
                 "Geometry/File": SOURCE / "prm" / "demos" / "rod_seal_2d.msh",
                 **refined(0),
                 **phases("1: 5, 2.5: 6, 3.5: 4, 5: 4"),
+            }
+        ),
+        "demos/salt_drift_2d": Scene(
+            {
+                "Geometry/File": SOURCE / "prm" / "demos" / "salt_drift_2d.msh",
+                **refined(0),
+                **phases("20: 10, 60: 10"),
+            }
+        ),
+        "demos/salt_joint_2d": Scene(
+            {
+                "Geometry/Arguments": "8, 8 : -1, 0 : 1, 4 : true",
+                # times of events are found to a tolerance
+                "Step control/Tolerance": 0,
+                **phases("20: 2, 40: 20, 100: 20"),
             }
         ),
         "demos/salt_pillar_2d": Scene(
@@ -216,6 +266,9 @@ class Scenes(SameOnAllRanks):
 
     def test_adaptive(self):
         self.check_group("adaptive", identities=True)
+
+    def test_opening(self):
+        self.check_group("opening", ranks=(1, 3), identities=True)
 
     # What these have beyond the others acts at a point: two numbers suffice.
 

@@ -267,6 +267,28 @@ class Page(Folder):
             page.write(file, "slab", "text\n")
         self.assertEqual(file.read_text(), "# Mine\n")
 
+    def test_redraw(self):
+        """Pictures of the studies that are there; the parts of the page stay."""
+        file = self.folder / "page.md"
+        page.write(file, "slab", "fits of the slab\n")
+        rows = synthetic.rows()
+        synthetic.write(self.folder / "results" / "slab" / "study", rows)
+        process = subprocess.run(
+            [sys.executable, SOURCE / "contrib" / "make_results", "--redraw"]
+            + ["--results", self.folder / "results", "--page", file],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.assertEqual((process.returncode, process.stderr), (0, ""))
+        self.assertEqual(
+            sorted(path.name for path in (self.folder / "images").iterdir()),
+            [f"accuracy_slab_{name}.png" for name in ("convergence", "cost", "work_precision")],
+        )
+        parts = page.parts_of(file.read_text())
+        self.assertEqual(parts["slab"], "fits of the slab\n")
+        self.assertEqual(parts["prices"], page.NOT_YET)
+
     def check(self, files, overrides):
         """The program accepts the scene."""
         process = subprocess.run(

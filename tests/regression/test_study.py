@@ -119,7 +119,7 @@ class Ladders(TestCase):
             self.assertEqual(process.returncode, 0, process.stderr)
             rows = folder.rows()
             names = list(rows[0])
-            levels = ["mesh_level", "time_level", "tolerance"]
+            levels = ["mesh_level", "time_level", "tolerance", "step_tolerance"]
             expected = TEXTS + levels + NUMBERS + ERRORS + ESTIMATES
             self.assertEqual(names[: len(expected)], expected)
             for quantity in names[len(expected) :: 2]:
@@ -214,6 +214,62 @@ class Ladders(TestCase):
             for name in re.findall(r"^  (\S+) +\d+\.\d+ +\d+ %", log, re.M):
                 if name != "whole":
                     self.assertIn(f"`{name}`", manual)
+
+    def test_steps_that_their_error_chooses(self):
+        """The time ladder is their tolerance: halved, or quartered in the second
+        order; steps are counted."""
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Global_refinements=1,
+            Time__Phases="1: 8",
+            Step_control__Tolerance=0.1,
+            Step_control__Resolve_events="false",
+            Study__Levels=3,
+            Study__Target_errors="0.1, 0.05",
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            rows = folder.ladder("time")
+            self.assertEqual([row["step_tolerance"] for row in rows], [0.1, 0.05, 0.025])
+            self.assertEqual([row["cells"] for row in rows], [1024] * 3)
+            steps = np.array([row["steps"] for row in rows])
+            print("steps:", steps)
+            growth = steps[1:] / steps[:-1]
+            self.assertGreater(growth.min(), 1.6)
+            self.assertLess(growth.max(), 2.4)
+            self.assertLess(rows[-1]["error_energy"], 0.7 * rows[0]["error_energy"])
+            about = json.loads((folder.study / "study.json").read_text())
+            fit = next(f for f in about["fits"] if f["error"] == "error_energy")
+            print("fit:", {k: fit[k] for k in ("C_h", "p", "C_k", "q", "m")})
+            self.assertClose(fit["p"], 1, absolute=0.2)
+            self.assertClose(fit["q"], 1, absolute=0.35)
+            for row in folder.rows():
+                parts = [
+                    fit["C_h"] * row["h"] ** fit["p"],
+                    fit["C_k"] * row["step_tolerance"] ** fit["q"],
+                ]
+                value = np.linalg.norm(parts, ord=fit["m"])
+                self.assertClose(value, row["error_energy"], 0.1)
+            (cost,) = about["costs"]
+            for row in rows:
+                counted = cost["steps"]["c"] * row["step_tolerance"] ** -cost["steps"]["q"]
+                self.assertClose(counted + cost["steps"]["constant"], row["steps"], 0.15)
+            for price in about["prices"]:
+                self.assertNotIn("k", price)
+                self.assertGreater(price["steps"], 8)
+                self.assertLess(price["step_tolerance"], 0.10001)
+            text = (folder.study / "study.md").read_text()
+            for part in ("TOL^", "steps = ", "Half the step tolerance"):
+                self.assertIn(part, text)
+
+            folder.set(
+                Study__Time_schemes="Heun", Study__Levels=2, Study__Ladders="both"
+            )
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            rows = folder.ladder("both")
+            self.assertEqual([row["step_tolerance"] for row in rows], [0.1, 0.025])
+            self.assertEqual({row["scheme"] for row in rows}, {"Heun"})
 
     def test_three_dimensions(self):
         with Folder(
@@ -359,6 +415,36 @@ class Ladders(TestCase):
             self.assertClose(float(cells[4]), 0.31, 1e-4, what="extrapolated")
             self.assertEqual(cells[6], "good")
 
+    def test_fewer_levels_where_the_budget_ends(self):
+        """A reference that nobody can wait for would leave errors unknown."""
+        with Folder(
+            VERIFICATION / "slab.prm",
+            Geometry__Arguments="4, 2 : 0, 0 : 2, 1 : true",
+            Geometry__Global_refinements=0,
+            Time__Phases="1: 1, 2: 1",
+            Study__Levels=8,
+            Study__Ladders="both",
+            Study__Target_errors=1,  # nothing to be timed
+            Study__Budget=10,
+        ) as folder:
+            process = folder.run("study")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            found = re.search(
+                r"does not reach the reference run of 8 levels: the ladders have (\d)\.",
+                process.stdout,
+            )
+            self.assertTrue(found, process.stdout)
+            levels = int(found.group(1))
+            self.assertIn(levels, range(3, 8))
+            rows = folder.ladder("both")
+            self.assertEqual(rows[-1]["run"], f"uniform_h{levels}_k{levels}")
+            self.assertEqual(
+                json.loads((folder.study / "study.json").read_text())["reference_run"],
+                rows[-1]["run"],
+            )
+            self.assertTrue(all(row["error_energy"] > 0 for row in rows[:-1]), rows)
+            self.assertIn(found.group(0), (folder.study / "study.md").read_text())
+
     def test_two_ranks(self):
         with Folder(
             MANUFACTURED / "tresca_2d.prm",
@@ -463,14 +549,6 @@ class Refused(TestCase):
             self.assertIn("'Study/Levels' = 2 is too few", self.refuse(folder, "study"))
             self.assertFalse(folder.results.exists())
 
-    def test_tolerance_of_the_steps_alone(self):
-        with Folder(
-            MANUFACTURED / "tresca_2d.prm", Step_control__Tolerance=0.1
-        ) as folder:
-            refusal = self.refuse(folder, "study")
-            self.assertIn("Time/Phases", refusal)
-            self.assertIn("'Step control/Tolerance' = 0", refusal)
-
     def test_runs_to_no_tolerance(self):
         with Folder(
             MANUFACTURED / "tresca_2d.prm", Study__Strategies="tolerance"
@@ -531,13 +609,6 @@ class Refused(TestCase):
         ) as folder:
             self.assertIn("needs an error", self.refuse(folder, "--price=0.1"))
             self.assertFalse(folder.results.exists())
-        with Folder(
-            MANUFACTURED / "tresca_2d.prm",
-            Geometry__Generator="subdivided_hyper_cube",
-            Geometry__Arguments="40 : 0 : 1 : true",
-            Geometry__Global_refinements=0,
-        ) as folder:
-            self.assertIn("cannot be halved", self.refuse(folder, "--price=0.1"))
 
 
 class Price(TestCase):
@@ -569,6 +640,45 @@ class Price(TestCase):
             before = folder.finished()
             self.assertEqual(folder.run("--price=0.05", "--check").returncode, 0)
             self.assertEqual(folder.finished(), before)
+
+    def test_of_steps_that_their_error_chooses(self):
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Global_refinements=1,
+            Time__Phases="1: 8",
+            Step_control__Tolerance=0.025,
+            Step_control__Resolve_events="false",
+        ) as folder:
+            process = folder.run("--price=0.06")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertIn("  --set 'Step control/Tolerance=", process.stdout)
+            for name, factor in ("error", 1.6), ("steps", 1.5):
+                found = re.search(
+                    rf"{name} +([\d.e-]+) predicted, ([\d.e-]+) found", process.stdout
+                )
+                self.assertTrue(found, process.stdout)
+                predicted, actual = map(float, found.groups())
+                print(name, "predicted and found:", predicted, actual)
+                self.assertLess(max(predicted / actual, actual / predicted), factor)
+
+    def test_of_a_mesh_that_cannot_be_made_coarser(self):
+        """It is a pilot itself, and a finer one follows where there is time."""
+        with Folder(
+            MANUFACTURED / "tresca_2d.prm",
+            Geometry__Generator="subdivided_hyper_cube",
+            Geometry__Arguments="40 : 0 : 1 : true",
+            Geometry__Global_refinements=0,
+            Time__Phases="1: 16",
+        ) as folder:
+            process = folder.run("--price=0.05", "--check", ranks=2)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
+            pilots = set(folder.finished())
+            self.assertLessEqual({"uniform_h0_k-3", "uniform_h0_k-2"}, pilots)
+            self.assertFalse(any("_h-" in name for name in pilots), pilots)
+            finer = [name for name in pilots if "_h1_" in name]
+            message = "taken to be of first order in h"
+            self.assertEqual(message in process.stdout, not finer, process.stdout)
 
     def test_of_a_tolerance_beside_one_mesh(self):
         with Folder(

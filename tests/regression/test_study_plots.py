@@ -102,6 +102,26 @@ class Numbers(Folder):
             self.assertTrue((np.diff(seconds[frontier]) > 0).all())
             self.assertTrue((np.diff(errors[frontier]) < 0).all())
 
+    def test_frontier_of_runs_that_gain(self):
+        seconds, errors = [1, 2, 3, 4, 5], [1.0, 0.95, 0.8, 0.75, 0.5]
+        self.assertEqual(rates.efficient_frontier(seconds, errors, 0.1), [0, 2, 4])
+
+    def test_frontier_without_detours(self):
+        """The third run gains next to nothing: it is far above the line between its
+        neighbours, the fourth 15 % above its own."""
+        seconds = 2.0 ** np.array([0, 1, 2, 3, 6])
+        errors = 2.0 ** np.array([0, -3, -3.2, -5.2, -9])
+        found = rates.without_detours(seconds, errors, range(5))
+        self.assertEqual(found, [0, 1, 3, 4])
+        self.assertEqual(rates.without_detours(seconds, errors, range(5), 1.01), [0, 1, 4])
+        self.assertEqual(rates.without_detours(seconds, errors, [2]), [2])
+
+    def test_where_fits_fit(self):
+        fit = {"C_h": 2.0, "p": 1.0, "C_k": 0.0, "q": 1.0}
+        h = np.array([0.4, 0.2, 0.1])
+        good = rates.fits(fit, h, h, np.array([1.0, 0.43, 0.19]))
+        self.assertEqual(good.tolist(), [False, True, True])
+
     def test_cheapest_within(self):
         seconds, errors = [1, 2, 4, 3], [0.3, 0.1, 0.01, 0.05]
         self.assertEqual(rates.cheapest_within(0.1, seconds, errors), 1)
@@ -322,7 +342,7 @@ class Pictures(Folder):
             for axes in figure.axes
         ]
         self.assertEqual(lines, [3, 2], "ladders in the panels of h and k")
-        rows, _ = cost.chosen(study)
+        rows, _ = cost.chosen(study, study.variants())
         _, heads, labels = cost.positions(study, rows)
         self.assertEqual(labels[-2:], ["25 %", "12.5 %"])
         self.assertEqual(heads[-1][1], "tolerance")
@@ -342,13 +362,63 @@ class Pictures(Folder):
         synthetic.write(self.folder, rows, synthetic.about(rows))
         self.assertEqual(self.draw("--dpi", 50), list(self.NAMES))
         study = Study(self.folder)
-        looks = [str(look) for look in study.looks().values()]
-        self.assertEqual(len(set(looks)), len(variants), "curves that look alike")
-        shown, remark = cost.chosen(study)
+        groups = study.groups("error_energy")
+        self.assertEqual([len(group) for group in groups], [3, 4, 4, 1])
+        self.assertEqual(sorted(sum(groups, [])), sorted(variants))
+        strategies = [variant[0] for variant in groups[0]]
+        self.assertEqual(strategies, ["uniform", "adaptive", "tolerance"])
+        for group in groups:
+            looks = [str(look) for look in study.looks(group).values()]
+            self.assertEqual(len(set(looks)), len(group), "curves that look alike")
+        shown, remark = cost.chosen(study, groups[1])
         self.assertLessEqual(len(shown), cost.MOST_RUNS)
-        self.assertIn("of 180 runs", remark)
+        self.assertIn("of 60 runs", remark)
         found = set(zip(*(study[name][shown] for name in VARIANT)))
-        self.assertEqual(found, set(variants))
+        self.assertEqual(found, set(groups[1]))
+        names = self.draw("work-precision", "--all", "--dpi", 50)
+        numbers = ("", "_2", "_3", "_4")
+        self.assertEqual(names, [f"work_precision{number}.png" for number in numbers])
+
+    def test_best_of_each_strategy(self):
+        """The one that is cheapest at the smallest error that all of them reach."""
+        rows = []
+        for scheme, seconds, finest in (
+            ("a", 1, 4), ("b", 2000, 0.9), ("c", 3, 1.9), ("d", 9, 4)
+        ):
+            for strategy in ("uniform", "adaptive"):
+                for row in synthetic.rows(
+                    variants=((strategy, scheme, "cell means"),), ladders=("both",)
+                ):
+                    if strategy == "uniform":
+                        row["error_energy"] *= finest / 4
+                        row["seconds_total"] *= seconds
+                    else:
+                        row["seconds_total"] /= seconds
+                    rows.append(row)
+        study = Study(synthetic.write(self.folder, rows))
+        best = study.groups("error_energy")[0]
+        # c needs one refinement less than a, for thrice the seconds of a run; b two,
+        # for far more seconds; adaptive runs differ in their seconds alone
+        expected = [("adaptive", "b", "cell means"), ("uniform", "c", "cell means")]
+        self.assertEqual(best, expected)
+
+    def test_plateau_of_the_reference(self):
+        """Grey up to the error that the reference is estimated to have."""
+        rows = synthetic.rows(variants=(UNIFORM,))
+        about = {**synthetic.about(rows), "reference_run": "finest"}
+        study = Study(synthetic.write(self.folder, rows, about))
+        self.assertIsNone(study.error_of_reference("error_energy"))
+        (self.folder / "finest").mkdir()
+        (self.folder / "finest" / "run.json").write_text(
+            '{"estimated_error": {"relative": 0.05}}'
+        )
+        self.assertEqual(study.error_of_reference("error_energy"), 0.05)
+        self.assertIsNone(study.error_of_reference("error_h1"))
+        self.addCleanup(plt.close, "all")
+        for module in (convergence, work_precision):
+            figure = module.draw(study, "error_energy")
+            (area,) = figure.axes[0].patches[-1:]
+            self.assertClose(area.get_xy()[:, 1].max(), 0.05, relative=1e-12)
 
     def test_only_time_is_refined(self):
         rows = synthetic.rows(ladders=("time",), known=())
@@ -405,7 +475,7 @@ class Pictures(Folder):
             self.assertEqual(drawn, wanted)
             texts = [text.get_text() for text in axes.get_legend().get_texts()]
             self.assertIn("1.00 ($h$ and $k$)", texts[0])
-            self.assertIn("fit", texts)
+            self.assertIn("fit, where it is within 10 %", texts)
         figure = work_precision.draw(study, "error_energy")
         lines = [line.get_xydata() for line in figure.axes[0].lines]
         points = {tuple(point) for line in lines for point in np.round(line, 9)}

@@ -165,7 +165,7 @@ namespace Viscoplastic::Testing
                                                         mean_dilatation);
       laws         = std::make_unique<FlowLaws<dim>>(*stress_space);
       loads        = std::make_unique<Loads<dim>>(*space);
-      if (scene.has_friction())
+      if (scene.has_contact_points())
         face = std::make_unique<ContactFace<dim>>(*space);
     }
 

@@ -19,14 +19,15 @@ namespace Viscoplastic::Testing
   /// A rotated box that rubs on two sides which meet: bilaterally below
   /// (moving foundation), with given normal stress at x = 0; clamped at x = 2.
   /// 2n cells along x, refined @p n_levels times, and once more near a vertex
-  /// of the face if @p refined.
+  /// of the face if @p refined. @p contact_law is that of the side below.
   template <int dim>
   struct BulkScenario : Body<dim>
   {
     explicit BulkScenario(const unsigned int n,
                           const unsigned int n_levels,
-                          const bool         refined = false)
-      : Body<dim>(text(n, n_levels))
+                          const bool         refined     = false,
+                          const std::string &contact_law = "bilateral")
+      : Body<dim>(text(n, n_levels, contact_law))
     {
       if (refined)
         {
@@ -47,7 +48,9 @@ namespace Viscoplastic::Testing
     }
 
     static std::string
-    text(const unsigned int n, const unsigned int n_levels)
+    text(const unsigned int n,
+         const unsigned int n_levels,
+         const std::string &contact_law)
     {
       std::string text =
         box<dim>(n,
@@ -58,9 +61,10 @@ namespace Viscoplastic::Testing
                  "set Friction coefficient = 0.3\nset Normal stress = -1") +
         boundary(1, "set Role = clamped") +
         boundary(2,
-                 "set Role = contact\nset Friction law = tresca\n"
-                 "set Friction bound = 0.4\n"
-                 "set Foundation displacement = -0.1*t") +
+                 "set Role = contact\nset Contact law = " + contact_law +
+                   "\nset Friction law = tresca\n"
+                   "set Friction bound = 0.4\n"
+                   "set Foundation displacement = -0.1*t") +
         boundary(3, "set Role = free");
       for (unsigned int id = 4; id < 2 * dim; ++id)
         text +=

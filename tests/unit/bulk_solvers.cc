@@ -12,6 +12,8 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 namespace
 {
@@ -457,111 +459,6 @@ namespace
           }
     EXPECT_EQ(n_couplings > 0,
               Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1);
-  }
-
-
-
-  TYPED_TEST(BulkSolvers, FrictionalSolutionsAgree)
-  {
-    constexpr int           dim       = TypeParam::value;
-    constexpr double        tolerance = 1e-9;
-    const BulkScenario<dim> scenario(dim == 2 ? 8 : 3, true);
-    const FrictionFace     &face = scenario.face->layout();
-    // The load is a rough one of size 1 a node; so are these bounds.
-    auto bounds = scenario.face->bounds(0.5);
-    for (double &bound : bounds)
-      bound *= dim == 2 ? 20. : 60.;
-
-    std::vector<DistributedVector> solutions;
-    std::vector<FrictionState>     states;
-    for (const auto &solver : scenario.solvers())
-      {
-        DistributedVector u(scenario.start);
-        Vector<double>    increment(face.n_dofs());
-        FrictionState     state(bounds);
-        solver->begin(scenario.load, u);
-        const ContactReport report =
-          ContactSolver(50).solve(*solver, face, tolerance, increment, state);
-        EXPECT_LE(report.relative_error, tolerance);
-        EXPECT_LE(report.iterations, 20u);
-
-        // Equilibrium with the friction forces, whatever the solver says.
-        DistributedVector residual(scenario.load);
-        scenario.matrix.vmult(residual, u);
-        residual.sadd(-1., 1., scenario.load);
-        scenario.set_excluded_to_zero(residual);
-        const double   size    = residual.l2_norm();
-        Vector<double> on_face = scenario.face->restriction().gather(residual);
-        Vector<double> force(face.n_dofs());
-        unsigned int   n_stick = 0;
-        for (unsigned int p = 0; p < face.points.size(); ++p)
-          {
-            const unsigned int node = face.points[p].node;
-            face.set_node_values(face.node_values(force, node) +
-                                   node_force(face.points[p],
-                                              state.multiplier[p]),
-                                 node,
-                                 force);
-            n_stick += state.sticks[p];
-          }
-        n_stick = Utilities::MPI::sum(n_stick, MPI_COMM_WORLD);
-        EXPECT_GT(n_stick, 0u);
-        EXPECT_LT(n_stick, scenario.face->n_global_points());
-        scenario.face->restriction().add(-1., force, residual);
-        EXPECT_LT(residual.l2_norm(), 1e-6 * size);
-
-        // Slip belongs to the displacement.
-        DistributedVector moved(u);
-        moved -= scenario.start;
-        const auto slips = scenario.face->slips(moved, {});
-        for (unsigned int p = 0; p < slips.size(); ++p)
-          EXPECT_LT((slips[p] - state.slip[p]).norm(), 1e-11);
-        solutions.push_back(u);
-        states.push_back(state);
-      }
-    for (unsigned int s = 1; s < solutions.size(); ++s)
-      {
-        SCOPED_TRACE(s);
-        solutions[s] -= solutions[0];
-        EXPECT_LT(solutions[s].l2_norm(), 1e-6 * solutions[0].l2_norm());
-        EXPECT_EQ(states[s].sticks, states[0].sticks);
-        for (unsigned int p = 0; p < face.points.size(); ++p)
-          EXPECT_LT((states[s].multiplier[p] - states[0].multiplier[p]).norm(),
-                    1e-6);
-      }
-  }
-
-
-
-  TYPED_TEST(BulkSolvers, MultigridWithSeveralLevels)
-  {
-    // Large enough that ML does not just factorize.
-    constexpr int           dim = TypeParam::value;
-    const BulkScenario<dim> scenario(dim == 2 ? 7 : 2, 2);
-    ASSERT_GT(scenario.dof_handler.n_dofs(), 2500u);
-    DistributedVector load(scenario.load);
-    scenario.set_excluded_to_zero(load);
-    for (const auto &solver : scenario.solvers())
-      {
-        SCOPED_TRACE(solver->name());
-        DistributedVector u(scenario.start);
-        const unsigned    n = solver->solve(scenario.load, u, 1e-9);
-        EXPECT_LT(n, 60u);
-        DistributedVector residual(scenario.load);
-        scenario.matrix.vmult(residual, u);
-        residual.sadd(-1., 1., scenario.load);
-        scenario.set_excluded_to_zero(residual);
-        EXPECT_LT(residual.l2_norm(), 1e-6 * load.l2_norm());
-
-        if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
-          {
-            DistributedVector exact(scenario.start);
-            scenario.direct()->solve(scenario.load, exact, 1e-9);
-            const double size = exact.l2_norm();
-            exact -= u;
-            EXPECT_LT(exact.l2_norm(), 1e-6 * size);
-          }
-      }
   }
 
 

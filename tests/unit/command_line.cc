@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/run/command_line.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 
@@ -112,24 +113,60 @@ namespace
 
 
 
+  /// The lines in the log of a run whose step n is step(n).
+  std::vector<std::string>
+  lines_of_run(const unsigned int                               n_steps,
+               const std::function<StepProgress(unsigned int)> &step,
+               const bool                                       verbose = false)
+  {
+    const Folder      folder;
+    const std::string log = (folder.path / "log").string();
+    {
+      Console  console(MPI_COMM_SELF, true, log, false, verbose);
+      Progress progress(console, n_steps);
+      for (unsigned int n = 0; n <= n_steps; ++n)
+        progress.report(step(n), 0.01 * n);
+    }
+    std::ifstream            file(log);
+    std::vector<std::string> lines;
+    std::string              line;
+    while (std::getline(file, line))
+      lines.push_back(line);
+    return lines;
+  }
+
+
+
+  /// The numbers of the steps in some lines.
+  std::vector<unsigned int>
+  steps_of(const std::vector<std::string> &lines)
+  {
+    std::vector<unsigned int> result;
+    for (const std::string &line : lines)
+      result.push_back(std::stoul(line.substr(5)));
+    return result;
+  }
+
+
+
+  StepProgress
+  plain_step(const unsigned int n)
+  {
+    return {n, 0.1 * n, n > 0 ? 0.1 : 0., 64., 3, 0.5, {}};
+  }
+
+
+
   TEST(Progress, LinesAreFew)
   {
     for (const unsigned int n_steps : {1u, 7u, 200u, 201u, 100000u})
       {
-        const Folder      folder;
-        const std::string log = (folder.path / "log").string();
-        {
-          Console  console(MPI_COMM_SELF, true, log);
-          Progress progress(console, n_steps);
-          for (unsigned int n = 0; n <= n_steps; ++n)
-            progress.report({n, 0.1 * n, n > 0 ? 0.1 : 0., 64., 3, 0.5, {}},
-                            0.01 * n);
-        }
-        std::ifstream            file(log);
-        std::vector<std::string> lines;
-        std::string              line;
-        while (std::getline(file, line))
-          lines.push_back(line);
+        // Each step has other iterations than the one before.
+        const auto lines = lines_of_run(n_steps, [&](const unsigned int n) {
+          StepProgress step       = plain_step(n);
+          step.contact_iterations = 3 + (n_steps - n) % 2;
+          return step;
+        });
         if (n_steps <= 200)
           EXPECT_EQ(lines.size(), n_steps);
         else
@@ -145,6 +182,68 @@ namespace
           << lines.back();
         EXPECT_NE(lines.back().find("left 0 s"), std::string::npos);
       }
+  }
+
+
+
+  TEST(Progress, LinesThatRepeatAreThinnedOut)
+  {
+    using Steps      = std::vector<unsigned int>;
+    const auto lines = lines_of_run(100, plain_step);
+    // Distances grow, up to a tenth of the run.
+    EXPECT_EQ(steps_of(lines),
+              (Steps{1, 2, 4, 9, 19, 29, 39, 49, 59, 69, 79, 89, 99, 100}));
+    EXPECT_EQ(lines[1].find("left out"), std::string::npos);
+    EXPECT_NE(lines[2].find("  (1 step like the line above left out)"),
+              std::string::npos);
+    EXPECT_NE(lines[4].find("  (9 steps like the line above left out)"),
+              std::string::npos);
+    EXPECT_EQ(lines_of_run(100, plain_step, /* verbose = */ true).size(), 100u);
+
+    // What differs is told at once, and what follows is new again.
+    const auto changing = lines_of_run(40, [](const unsigned int n) {
+      StepProgress step = plain_step(n);
+      if (n >= 30)
+        step.contact_iterations = 4;
+      return step;
+    });
+    EXPECT_EQ(steps_of(changing),
+              (Steps{1, 2, 4, 8, 12, 16, 20, 24, 28, 30, 31, 33, 37, 40}));
+    EXPECT_NE(changing[9].find("contact iterations 4"), std::string::npos);
+    EXPECT_NE(changing[9].find("(1 step like the line above left out)"),
+              std::string::npos);
+  }
+
+
+
+  TEST(Progress, EventsHaveLinesOfTheirOwn)
+  {
+    // Of 10000 steps, in which iterations go to and fro.
+    const auto step = [](const unsigned int n) {
+      StepProgress step       = plain_step(n);
+      step.contact_iterations = 3 + n % 2;
+      step.slipping           = n < 1234 ? 0. : n < 6789 ? 0.3 : 1.;
+      if (n >= 4321)
+        step.n_cells = 128;
+      return step;
+    };
+    const auto lines = lines_of_run(10000, step);
+    EXPECT_LE(lines.size(), 206u);
+    const auto steps = steps_of(lines);
+    for (const unsigned int n : {1234u, 4321u, 6789u})
+      EXPECT_EQ(std::count(steps.begin(), steps.end(), n), 1) << n;
+    // Not all of the steps before are like the line above.
+    const std::string &line = *(std::find(steps.begin(), steps.end(), 4321u) -
+                                steps.begin() + lines.begin());
+    EXPECT_NE(line.find("steps left out)"), std::string::npos) << line;
+
+    // A mesh that changes in each step floods nothing either.
+    const auto meshes = lines_of_run(10000, [](const unsigned int n) {
+      StepProgress step = plain_step(n);
+      step.n_cells      = n;
+      return step;
+    });
+    EXPECT_LE(meshes.size(), 402u);
   }
 
 

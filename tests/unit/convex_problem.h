@@ -33,8 +33,8 @@ namespace Viscoplastic::Testing
   }
 
 
-  /// J(u) = 1/2 u . A u - l . u + sum_c rho_c |s_c|. The unknowns of the face
-  /// are the last ones.
+  /// J(u) = 1/2 u . A u - l . u + sum_c rho_c |s_c|, where s_c <= d_c at
+  /// obstacles, whose bound is d_c. The unknowns of the face are the last ones.
   struct Problem
   {
     FullMatrix<double>  A;
@@ -104,14 +104,23 @@ namespace Viscoplastic::Testing
 
     void
     add_node(const unsigned int                            n_dofs,
-             const std::vector<std::vector<Tensor<1, 3>>> &planes)
+             const std::vector<std::vector<Tensor<1, 3>>> &planes,
+             const std::vector<Tensor<1, 3>>              &normals = {})
     {
+      FrictionFace::Point point;
+      point.node = face.n_nodes();
       for (const auto &rows : planes)
         {
-          FrictionFace::Point point;
-          point.node       = face.n_nodes();
           point.n_tangents = rows.size();
           std::copy(rows.begin(), rows.end(), point.map.begin());
+          face.points.push_back(point);
+        }
+      point.n_tangents   = 1;
+      point.is_obstacle  = true;
+      face.has_obstacles = face.has_obstacles || !normals.empty();
+      for (const auto &normal : normals)
+        {
+          point.map = {{normal, Tensor<1, 3>()}};
           face.points.push_back(point);
         }
       face.first_dof.push_back(face.first_dof.back() + n_dofs);
@@ -224,6 +233,40 @@ namespace Viscoplastic::Testing
 
 
 
+  /// Nodes in unilateral contact with 0 to 2 tangents, and at corners with two
+  /// obstacles. Some distances are zero.
+  inline Problem
+  random_unilateral_problem(const unsigned int seed,
+                            const unsigned int n_tangents,
+                            const bool         with_corners)
+  {
+    Random             random(seed);
+    Problem            problem;
+    const unsigned int n_nodes = random.integer(3, 6);
+    for (unsigned int n = 0; n < n_nodes; ++n)
+      {
+        const unsigned int        n_dofs = n_tangents + 1;
+        auto                      rows   = random_rows(random, n_dofs, n_dofs);
+        std::vector<Tensor<1, 3>> normals{rows.back()};
+        if (with_corners && n_dofs > 1)
+          normals.push_back(random_rows(random, 1, n_dofs)[0]);
+        rows.pop_back();
+        problem.add_node(n_dofs,
+                         rows.empty() ?
+                           std::vector<std::vector<Tensor<1, 3>>>() :
+                           std::vector<std::vector<Tensor<1, 3>>>{rows},
+                         normals);
+      }
+    fill_at_random(problem, random, random.integer(2, 6), 0., 1.5);
+    for (unsigned int p = 0; p < problem.bounds.size(); ++p)
+      if (problem.face.points[p].is_obstacle)
+        problem.bounds[p] =
+          std::max(0., problem.bounds[p] - 0.5) * random.integer(0, 1);
+    return problem;
+  }
+
+
+
   struct Solution
   {
     Vector<double>            u;
@@ -239,7 +282,7 @@ namespace Viscoplastic::Testing
    *     min 1/2 lambda . B A^-1 B^T lambda - lambda . B (A^-1 l - u_prev),
    *     |lambda_c| <= rho_c,
    *
-   * to rounding.
+   * to rounding; for obstacles with lambda_c d_c more and lambda_c >= 0.
    */
   inline Solution
   reference_solution(const Problem &problem)
@@ -261,7 +304,10 @@ namespace Viscoplastic::Testing
     std::vector<double>       C(m * m), q(m);
     for (unsigned int j = 0; j < m; ++j)
       {
-        q[j]                 = free_slips[j / 2][j % 2];
+        q[j] = free_slips[j / 2][j % 2] -
+               (problem.face.points[j / 2].is_obstacle && j % 2 == 0 ?
+                  problem.bounds[j / 2] :
+                  0.);
         lambda[j / 2][j % 2] = 1.;
         const auto slips     = problem.slips(displacement(lambda));
         for (unsigned int i = 0; i < m; ++i)
@@ -293,8 +339,11 @@ namespace Viscoplastic::Testing
                   gradient[a] +=
                     C[(2 * c + a) * m + j] * extrapolated[j / 2][j % 2];
               }
-            lambda[c] =
-              clip(extrapolated[c] - gradient / largest, problem.bounds[c]);
+            lambda[c] = extrapolated[c] - gradient / largest;
+            if (problem.face.points[c].is_obstacle)
+              lambda[c][0] = std::max(0., lambda[c][0]);
+            else
+              lambda[c] = clip(lambda[c], problem.bounds[c]);
             uphill += (extrapolated[c] - lambda[c]) * (lambda[c] - old[c]);
             change = std::max(change, (lambda[c] - extrapolated[c]).norm());
             size   = std::max(size, lambda[c].norm());

@@ -344,7 +344,10 @@ namespace Viscoplastic::Testing
     double     gap   = 0.5 * (unbalanced * solve_dense(problem.A, unbalanced));
     const auto slips = problem.slips(result.u);
     for (unsigned int c = 0; c < slips.size(); ++c)
-      if (slips[c].norm() > 1e-14) // infinite bounds
+      if (problem.face.points[c].is_obstacle)
+        gap +=
+          result.state.multiplier[c][0] * (problem.bounds[c] - slips[c][0]);
+      else if (slips[c].norm() > 1e-14) // infinite bounds
         gap += problem.bounds[c] * slips[c].norm() -
                result.state.multiplier[c] * slips[c];
     return gap;
@@ -374,6 +377,21 @@ namespace Viscoplastic::Testing
       {
         const double       bound  = problem.bounds[c];
         const Tensor<1, 2> lambda = result.state.multiplier[c];
+        if (problem.face.points[c].is_obstacle)
+          {
+            const double left = bound - slips[c][0];
+            EXPECT_GE(left, -1e-13 * slip_scale);
+            EXPECT_GE(lambda[0], 0.);
+            if (result.state.sticks[c])
+              {
+                EXPECT_LE(left, 1e-13 * slip_scale);
+              }
+            else
+              {
+                EXPECT_EQ(lambda[0], 0.);
+              }
+            continue;
+          }
         EXPECT_LE(lambda.norm(), bound * (1. + 1e-14));
         EXPECT_LT((slips[c] - result.state.slip[c]).norm(), 1e-13 * slip_scale);
         if (result.state.sticks[c])

@@ -119,6 +119,55 @@ namespace
 
 
 
+  TEST(EffectVariants, PressureThatIsGivenInstead)
+  {
+    const std::string contact = "set Role = contact\n"
+                                "set Contact law = unilateral\n"
+                                "set Friction law = coulomb\n"
+                                "set Friction coefficient = 0.3\n"
+                                "end\n",
+                      half    = "set Dimension = 2\n"
+                                "subsection Geometry\n"
+                                "set Arguments = 4, 2 : 0, 0 : 2, 1 : true\n"
+                                "end\n"
+                                "subsection Boundary 0\n"
+                                "set Role = clamped\n"
+                                "end\n"
+                                "subsection Boundary 1\n"
+                                "set Role = free\n"
+                                "end\n"
+                                "subsection Boundary 2\n" +
+                             contact + "subsection Boundary 3\n",
+                      free = "set Role = free\nend\n";
+    const auto given = [](const std::string &text, const std::string &force) {
+      Folder                   folder;
+      const Parameters         scene({folder.add("scene.prm", text)});
+      const auto               data = SceneData::of(scene, MPI_COMM_WORLD);
+      std::vector<std::string> found;
+      for (const EffectVariant &variant :
+           effect_variants(scene, *data, 2., force))
+        if (variant.effect.rfind("computed pressure", 0) == 0)
+          {
+            found = variant.overrides;
+            const Parameters simpler({folder.add("scene.prm", text)}, found);
+            EXPECT_EQ(simpler.boundaries.at(2).contact_law,
+                      "given normal stress");
+          }
+      return found;
+    };
+    EXPECT_EQ(
+      given(half + free, "3*t"),
+      (std::vector<std::string>{"Boundary 2/Contact law=given normal stress",
+                                "Boundary 2/Normal stress=-(3*t)/2",
+                                "Boundary 2/Gap=",
+                                "Boundary 2/Foundation displacement=0"}));
+    // The force is not known, or belongs to two pieces.
+    EXPECT_TRUE(given(half + free, "").empty());
+    EXPECT_TRUE(given(half + contact, "3*t").empty());
+  }
+
+
+
   TEST(EffectVariants, OfTheDiscretization)
   {
     const auto all = variants_of(square + "subsection Material\n"
@@ -350,6 +399,25 @@ namespace
     EXPECT_NEAR(changes[1].change, 1e-9 / (1e-3 * 5.), 1e-15);
     for (const QuantityChange &none : changes_between(run, run))
       EXPECT_EQ(none.change, 0.);
+  }
+
+
+
+  TEST(QuantityHistories, ContactForceOfOtherContactLaws)
+  {
+    const auto unilateral =
+      table({0., 1.},
+            {{"contact_force_y", {0., -4.}}, {"stored_energy", {0., 2.}}});
+    const auto given   = table({0., 1.}, {{"stored_energy", {0., 1.}}});
+    const auto changes = changes_between(unilateral, given);
+    ASSERT_EQ(changes.size(), 2u);
+    EXPECT_EQ(changes[0].quantity, "contact_force");
+    EXPECT_EQ(changes[0].change, 0.);
+    EXPECT_DOUBLE_EQ(changes[1].change, 0.5);
+    const auto weaker =
+      table({0., 1.},
+            {{"contact_force_y", {0., -3.}}, {"stored_energy", {0., 2.}}});
+    EXPECT_DOUBLE_EQ(changes_between(unilateral, weaker)[0].change, 0.25);
   }
 
 

@@ -206,6 +206,7 @@ namespace
     return compatibility_violation(*body.space,
                                    body.loads->assemble(0.),
                                    body.face.get(),
+                                   body.space->ghosted_vector(),
                                    friction)
       .relative;
   }

@@ -8,6 +8,7 @@
 #include "refusals.h"
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
+#include <viscoplastic_contact/parameters/wrong_lines.h>
 
 #include <random>
 

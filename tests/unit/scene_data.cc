@@ -69,6 +69,8 @@ namespace
                 2. / 3.,
                 1e-14);
     // What is the same everywhere is its own mean.
+    EXPECT_NEAR(square.data->area(2), 2., 1e-12);
+    EXPECT_NEAR(cube.data->area(4), 2., 1e-12);
     EXPECT_FALSE(square.data->over_boundary("3*t; 2", 2));
     EXPECT_FALSE(square.data->over_boundary("", 2));
   }

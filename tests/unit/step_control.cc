@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// The choice of time steps on model problems, and what counts as an event.
+// The choice of time steps on model problems.
 
-#include <viscoplastic_contact/contact/contact_event.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 
 #include <gtest/gtest.h>
@@ -212,6 +211,78 @@ namespace
 
 
 
+  /// How many steps were foreseen after each of a run's steps.
+  struct Foreseen
+  {
+    std::vector<double> after_step;
+    double              actual;
+  };
+
+  Foreseen
+  foresee(const TimeSchedule                                &schedule,
+          const std::function<StepErrors(const TimeStep &)> &errors,
+          const double                                       limit = infinity)
+  {
+    const auto  parameters = with_tolerance(0.1);
+    StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
+    Foreseen    result;
+    double      t    = 0.;
+    const auto  done = steps(
+      control,
+      schedule.end_time(),
+      [&](const TimeStep &step) {
+        if (step.t_old > t)
+          {
+            result.after_step.push_back(control.expected_steps(
+              step.n - 1, step.t_old, step.t_old - t, limit));
+            t = step.t_old;
+          }
+        return errors(step);
+      },
+      {},
+      limit);
+    result.actual = done.size();
+    return result;
+  }
+
+
+
+  TEST(StepControl, StepsToComeAreForeseenFromTheFirstOn)
+  {
+    // d = 10 k^2 allows steps of 0.01, a thousand times the first of each
+    // phase.
+    const TimeSchedule schedule("5: 500000, 10: 500000");
+    for (const double limit : {infinity, 0.002})
+      {
+        const Foreseen run = foresee(
+          schedule,
+          [](const TimeStep &step) {
+            return StepErrors{10. * step.k * step.k, step.k, step.t};
+          },
+          limit);
+        EXPECT_GT(run.actual, limit < 0.01 ? 5000. : 1000.);
+        for (const double n : run.after_step)
+          EXPECT_NEAR(n, run.actual, 0.2 * run.actual);
+      }
+  }
+
+
+
+  TEST(StepControl, StepsOfARelaxationAreForeseenFromTheirGrowth)
+  {
+    // d = k^2/(1 + t) allows steps of 0.1 (1 + t): none is as long as another,
+    // and a million of the first kind would be needed.
+    const TimeSchedule schedule("1e5: 1000000");
+    const Foreseen     run = foresee(schedule, [](const TimeStep &step) {
+      return StepErrors{step.k * step.k / (1. + step.t_old), step.k, step.t};
+    });
+    EXPECT_LT(run.actual, 200.);
+    for (std::size_t n = 5; n < run.after_step.size(); ++n)
+      EXPECT_NEAR(run.after_step[n], run.actual, 0.5 * run.actual) << n;
+  }
+
+
+
   TEST(StepControl, AJumpIsPassedWithTheSmallestStep)
   {
     // An error at t = 0.31 that no step size reduces.
@@ -395,92 +466,5 @@ namespace
     EXPECT_TRUE(fixed.retries(fixed.propose(0, 0., infinity), true));
     StepControl refuses(off, StiffnessPolicy::refuse, schedule, 1, 0.);
     EXPECT_FALSE(refuses.retries(refuses.propose(0, 0., infinity), true));
-  }
-
-
-
-  /// Points with sticking given by '.', slip to the right or left by '>', '<'.
-  FrictionState
-  points(const std::string &signs, const std::vector<double> &bounds = {})
-  {
-    FrictionState state(bounds.empty() ? std::vector<double>(signs.size(), 1.) :
-                                         bounds);
-    for (unsigned int p = 0; p < signs.size(); ++p)
-      {
-        state.sticks[p] = signs[p] == '.';
-        if (!state.sticks[p])
-          state.multiplier[p][0] = signs[p] == '>' ? 1. : -1.;
-      }
-    return state;
-  }
-
-
-
-  TEST(ContactEvent, BeginCoverEndTurn)
-  {
-    const FrictionFace face;
-    const auto event = [&](const std::string &from, const std::string &to) {
-      return has_contact_event(face, points(from), points(to), false);
-    };
-    EXPECT_TRUE(event("...", "..>"));
-    EXPECT_TRUE(event(".>>", ">>>"));
-    EXPECT_TRUE(event("...", ">>>"));
-    EXPECT_TRUE(event("..>", "..."));
-    EXPECT_TRUE(event(".<>", ".>>"));
-    EXPECT_FALSE(event("...", "..."));
-    EXPECT_FALSE(event("..>", ".>>"));
-    EXPECT_FALSE(event(".>>", "..>"));
-    EXPECT_FALSE(event(">>>", ".>>"));
-    EXPECT_FALSE(event(">>>", ">>>"));
-    // Behind a kink of the data, an end and a turn are no news.
-    EXPECT_FALSE(has_contact_event(face, points("..>"), points("..."), true));
-    EXPECT_FALSE(has_contact_event(face, points("..>"), points("..<"), true));
-    EXPECT_TRUE(has_contact_event(face, points("..."), points("..<"), true));
-    // Points without friction slip always, glued ones never.
-    const std::vector<double> bounds{0., 1., infinity};
-    EXPECT_FALSE(
-      has_contact_event(face, points(">.."), points(">..", bounds), false));
-    EXPECT_TRUE(
-      has_contact_event(face, points(">.."), points(">>.", bounds), false));
-    EXPECT_TRUE(has_contact_event(
-      face, points(".>>"), points("..>", {1., 1., 0.}), false));
-    EXPECT_FALSE(has_contact_event(face, points(""), points(""), false));
-  }
-
-
-
-  TEST(ContactEvents, TurningCostsWork)
-  {
-    // Points with the bound 2 whose multiplier turns by an angle while they
-    // slip by 3.
-    const auto state = [](const std::vector<double> &angles) {
-      FrictionState result(std::vector<double>(angles.size(), 2.));
-      for (unsigned int p = 0; p < angles.size(); ++p)
-        {
-          result.sticks[p]        = false;
-          result.multiplier[p][0] = 2. * std::cos(angles[p]);
-          result.multiplier[p][1] = 2. * std::sin(angles[p]);
-        }
-      return result;
-    };
-    const FrictionFace face;
-    const auto work = [&](const FrictionState &from, const FrictionState &to) {
-      std::vector<Tensor<1, 2>> slips(to.multiplier);
-      for (Tensor<1, 2> &slip : slips)
-        slip *= 1.5;
-      return turning_work(face, from, to, slips);
-    };
-    const double n_ranks = face.sum(1.);
-    EXPECT_NEAR(work(state({0., 1.}), state({0., 1.})), 0., 1e-14);
-    EXPECT_NEAR(work(state({0., 0.2}), state({0.3, 0.1})),
-                n_ranks * 6. * (2. - std::cos(0.3) - std::cos(0.1)),
-                1e-13);
-    // Slip that turns back counts as a right angle, slip that begins or ends
-    // not.
-    EXPECT_NEAR(work(state({0.}), state({numbers::PI})), n_ranks * 6., 1e-13);
-    FrictionState at_rest = state({0.});
-    at_rest.sticks[0]     = true;
-    EXPECT_EQ(work(at_rest, state({0.5})), 0.);
-    EXPECT_EQ(work(state({0.5}), at_rest), 0.);
   }
 } // namespace

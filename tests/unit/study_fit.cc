@@ -457,6 +457,54 @@ namespace
 
 
 
+  TEST(PriceList, StepsToATolerance)
+  {
+    // Heun's method: 20 TOL^(-1/2) steps, and five for events.
+    WorkPrecisionModel  m = model();
+    std::vector<Sample> steps;
+    for (const double tolerance : {0.16, 0.04, 0.01})
+      steps.push_back(
+        {1. / tolerance, 1., 20. * std::pow(tolerance, -0.5) + 5.});
+    Prior prior;
+    prior.p        = 0.5;
+    m.chosen_steps = fit_two_powers(steps, prior);
+    m.order        = 2;
+    m.k            = 0.04;
+    m.largest_k    = 0.16;
+    m.smallest_k   = 0.01;
+
+    const PredictedRun finer = predict(m, 0, 0.0025);
+    EXPECT_EQ(finer.steps, 405u);
+    EXPECT_EQ(finer.k, 0.0025);
+    // A sixteenth of the tolerance: four times as many steps.
+    EXPECT_EQ(write_phases(finer.phases), "0.5: 40, 1: 40");
+    EXPECT_NEAR(finer.seconds, m.seconds(m.h, 0.0025), 1e-3 * finer.seconds);
+    EXPECT_FALSE(finer.is_far); // one level beyond
+    EXPECT_TRUE(predict(m, 0, 0.0006).is_far);
+    EXPECT_EQ(predict(m, 0, 1.).k, 0.16); // coarser has not been measured
+
+    const auto found = cheapest(m, 0.01);
+    ASSERT_TRUE(found);
+    EXPECT_LE(found->error, 0.01 * (1. + 1e-12));
+    for (int level = -2; level <= 10; ++level)
+      for (double k = 0.16; k > 1e-5; k /= 1.1)
+        {
+          const PredictedRun other = predict(m, level, k);
+          if (other.error <= 0.01)
+            {
+              EXPECT_GE(other.seconds, 0.99 * found->seconds);
+            }
+        }
+    EXPECT_LE(ideal_seconds(m, 0.01), 1.01 * found->seconds);
+    EXPECT_NE(
+      in_words(m, list_prices(m, {0.01}, 1e9)[0], 1e9).find("step tolerance"),
+      std::string::npos);
+    EXPECT_NE(next_refinement(m).find("A quarter of the step tolerance"),
+              std::string::npos);
+  }
+
+
+
   TEST(PriceList, ErrorsWithoutOnePart)
   {
     WorkPrecisionModel m = model();

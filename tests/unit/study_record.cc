@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "folder.h"
 #include <viscoplastic_contact/results/run_phases.h>
+#include <viscoplastic_contact/results/statistics.h>
 #include <viscoplastic_contact/study/study_record.h>
 
 #include <gtest/gtest.h>
@@ -168,5 +170,41 @@ namespace
                     std::string::npos)
             << exception.what();
         }
+  }
+
+
+
+  /// A table of a scene with units is read, and goes on, by the names of its
+  /// columns.
+  TEST(StudyRecord, TablesWithUnits)
+  {
+    const Testing::Folder folder;
+    const std::string     file = folder.add("statistics.csv", "");
+    {
+      Statistics table(file, [](const std::string &column) {
+        return column == "t" ? " [day]" : "";
+      });
+      for (const int n : {0, 1})
+        {
+          table.add("step", n);
+          table.add("t", 2. * n);
+          table.end_row();
+        }
+    }
+    {
+      Statistics table(file, /* last_step = */ 1);
+      table.add("step", 2);
+      table.add("t", 5.);
+      table.end_row();
+      table.add("step", 3);
+      table.add("k", 5.);
+      EXPECT_THROW(table.end_row(), std::exception); // another column
+    }
+    const Viscoplastic::Table table = read_table(file);
+    EXPECT_EQ(table.names, (std::vector<std::string>{"step", "t"}));
+    EXPECT_EQ(table.columns.at("t"), (std::vector<double>{0., 2., 5.}));
+    std::string header;
+    std::getline(std::ifstream(file) >> std::ws, header);
+    EXPECT_EQ(header, "step,t [day]");
   }
 } // namespace

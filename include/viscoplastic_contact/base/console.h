@@ -22,13 +22,15 @@ namespace Viscoplastic
   public:
     /**
      * @p quiet leaves the standard output alone, not the log. @p has_terminal
-     * allows a status line, see stdout_is_terminal(). Throws ExcMessage if
-     * @p log_file, unless empty, cannot be written.
+     * allows a status line, see stdout_is_terminal(). @p verbose: nothing is
+     * left out for brevity. Throws ExcMessage if @p log_file, unless empty,
+     * cannot be written.
      */
     explicit Console(const MPI_Comm     communicator = MPI_COMM_WORLD,
                      const bool         quiet        = false,
                      const std::string &log_file     = "",
-                     const bool         has_terminal = false);
+                     const bool         has_terminal = false,
+                     const bool         verbose      = false);
 
     /// Leaves the last status line where it is.
     ~Console();
@@ -57,6 +59,13 @@ namespace Viscoplastic
     has_status() const
     {
       return is_terminal;
+    }
+
+    /// Whether all is to be told, also what repeats itself.
+    bool
+    is_verbose() const
+    {
+      return verbose;
     }
 
     /// Columns of the terminal.
@@ -100,6 +109,7 @@ namespace Viscoplastic
 
     const bool               speaks;
     const bool               is_terminal;
+    const bool               verbose;
     const std::string        log_name;
     std::ofstream            log_file;
     Buffer                   buffer;

@@ -62,11 +62,11 @@ namespace Viscoplastic
       return std::max(last, mean());
     }
 
-    /// Whether the last one is much longer than those before.
+    /// The first ones may be tiny, and how fast they grow shows in some more.
     bool
-    grows() const
+    is_known() const
     {
-      return last > 1.2 * mean();
+      return weights > 3.;
     }
 
   private:
@@ -96,28 +96,34 @@ namespace Viscoplastic
     std::optional<double> error_estimate = {};
     /// With an error estimate: its total over the energy norm of the solution.
     std::optional<double> relative_error = {};
-    /// Where steps are chosen on the way: how many the run may have, and which
-    /// part of its time is done.
+    /// Where steps are chosen on the way: which part of the time is done, and
+    /// how many the run may have, if that is known already.
+    std::optional<double> done           = {};
     std::optional<double> expected_steps = {};
-    double                done           = 0.;
-    /// Whether steps still become longer, so that fewer may do.
-    bool steps_grow = false;
   };
 
 
 
   /**
    * Tells how a run proceeds. A terminal shows the present step in a line that
-   * changes. Otherwise, and in the log, steps are lines, at most about 200 of
-   * them in a run; statistics.csv has all steps.
+   * changes. Otherwise, and in the log, steps are lines. Where steps differ
+   * from the line above in nothing but their time, lines come at growing
+   * distances of 1, 2, 5, 10, 20, ... steps, at most a tenth of the run. Of 200
+   * equal parts of the run each has at most one line, and another one if the
+   * mesh changes or slip begins or ends in it. Lines tell how many steps have
+   * been left out before them. statistics.csv has all steps.
    */
   class Progress
   {
   public:
     /// @p n_steps: of the run, unless each step says how many it expects.
-    Progress(Console &console, const unsigned int n_steps)
+    /// @p time_unit stands behind times, such as " day".
+    Progress(Console           &console,
+             const unsigned int n_steps,
+             const std::string &time_unit = "")
       : console(console)
       , n_steps(n_steps)
+      , time_unit(time_unit)
     {}
 
     /// A step has been made, @p elapsed seconds after the beginning of the
@@ -128,12 +134,32 @@ namespace Viscoplastic
   private:
     static constexpr unsigned int max_lines = 200;
 
+    /// Whether a step other than the last one gets a line. @p text is what it
+    /// has to tell beside its time, @p done the part of the run.
+    bool
+    is_worth_a_line(const StepProgress &step,
+                    const std::string  &text,
+                    const double        done);
+
     Console           &console;
     const unsigned int n_steps;
+    const std::string  time_unit;
     RemainingTime      remaining;
     double             last_elapsed = 0., last_shown = -1.;
-    /// Of max_lines equal parts of the run, those that are done.
-    double last_part = 0.;
+
+    /// What the last line has told, and at which distance of it there is
+    /// another one that tells the same.
+    std::string  last_text;
+    unsigned int next_distance = 1;
+    /// Steps without a line since then, those like it among them.
+    unsigned int n_left_out = 0, n_left_out_alike = 0;
+    /// Of the step before: cells, and whether none, some or all of the face
+    /// slips.
+    double last_cells = 0.;
+    int    last_slip  = 0;
+    /// The part of the run that had been done at the last line, and at the last
+    /// one because of an event; negative before the first.
+    double done_at_line = -1., done_at_event = -1.;
   };
 
 

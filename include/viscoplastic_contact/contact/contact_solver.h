@@ -4,6 +4,8 @@
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/friction_points.h>
 
+#include <algorithm>
+
 namespace Viscoplastic
 {
   /// How a frictional solve went.
@@ -13,6 +15,10 @@ namespace Viscoplastic
     unsigned int iterations = 0;
     /// Linear iterations of all of them.
     unsigned int linear_iterations = 0;
+    /// Solves for a fixed point of the friction bounds, and the largest factor
+    /// by which one has reduced their change.
+    unsigned int bound_iterations = 0;
+    double       contraction      = 0.;
     /// Primal minus dual energy, a bound on half the squared energy error.
     double duality_gap = 0.;
     /// The bound on the energy error that follows from the duality gap, over
@@ -32,6 +38,8 @@ namespace Viscoplastic
     {
       iterations += earlier.iterations;
       linear_iterations += earlier.linear_iterations;
+      bound_iterations += earlier.bound_iterations;
+      contraction = std::max(contraction, earlier.contraction);
       seconds += earlier.seconds;
       plain_seconds += earlier.plain_seconds;
     }
@@ -43,20 +51,23 @@ namespace Viscoplastic
    *
    *     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev),
    *
+   * where s_c <= d_c at obstacles (unilateral contact, Signorini's conditions),
    * by a primal-dual active set iteration that cannot cycle: (1) nonlinear
    * Gauss-Seidel over the face nodes, which minimizes J node by node, decides
    * who sticks and in which direction who slips; (2) a linear solve on the
    * truncated space with the tangent stiffness of turning slip is a semismooth
-   * Newton step; (3) increments that would reverse a slip stop at stick, and a
-   * line search minimizes J along the rest. Where that is no descent, the
-   * reversing points are brought to rest first, or the correction is taken as
-   * it is, which always descends. J never increases, so no set comes twice
-   * (compare Kornhuber's monotone multigrid and TNNMG by Graeser and Sander,
-   * where (1) covers all unknowns; here the linear solve covers the bulk).
+   * Newton step; (3) increments that would reverse a slip stop at stick, those
+   * that would enter an obstacle stop there, and a line search minimizes J
+   * along the rest. Where that is no descent, the reversing points are brought
+   * to rest first, or the correction is taken as it is, which always descends.
+   * J never increases, so no set comes twice (compare Kornhuber's monotone
+   * multigrid and TNNMG by Graeser and Sander, where (1) covers all unknowns;
+   * here the linear solve covers the bulk).
    *
    * The iteration stops when the duality gap bounds the error: with
-   * multipliers in their balls, the remaining residual R and the defect
-   * eps = sum rho |s| - lambda . s of complementarity, gap = 1/2 |R|^2 + eps in
+   * multipliers in their balls, pressures p >= 0, the remaining residual R and
+   * the defect eps = sum rho |s| - lambda . s + sum p (d - s) of
+   * complementarity, gap = 1/2 |R|^2 + eps in
    * the dual energy norm and |error| <= (|R| + sqrt(|R|^2 + 4 eps))/2. The
    * multipliers satisfy the friction law exactly (eps = 0), except at points
    * that have hardly begun to slip.

@@ -54,9 +54,8 @@ namespace Viscoplastic
   };
 
 
-  /// Fill the diagonal of a node's block behind its entries, the leading n x n:
-  /// by 1, unless units of huge or tiny stresses make that too large or too
-  /// small a stiffness.
+  /// Fill the diagonal of a node's block behind its entries, the leading n x n,
+  /// by a stiffness of their size, so that it is as regular in all units.
   void
   pad_block(Tensor<2, 3> &block, const unsigned int n);
 

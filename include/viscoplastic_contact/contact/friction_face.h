@@ -4,6 +4,8 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/lac/vector.h>
 
+#include <viscoplastic_contact/contact/normal_compliance.h>
+
 #include <array>
 #include <utility>
 #include <vector>
@@ -13,12 +15,15 @@ namespace Viscoplastic
   using namespace dealii;
 
   /**
-   * The friction points of Gamma_3 without finite elements: which unknowns of
-   * the face they see, and how. Each rank has the nodes that it owns, so that
-   * the part of a rank is small where there are many of them.
+   * The contact points of Gamma_3 without finite elements: which unknowns of
+   * the face they see, and how. Points of friction resist slip; an obstacle is
+   * what keeps a node out of the foundation in unilateral contact, at once or,
+   * with normal compliance, by a force that grows with penetration. Each rank
+   * has the nodes that it owns, so that the part of a rank is small where there
+   * are many of them.
    *
    * A face vector holds, node by node, the displacement components that some
-   * friction point at the node sees (1 to 3). Blocks of a node are padded to
+   * point at the node sees (1 to 3). Blocks of a node are padded to
    * size 3.
    */
   struct FrictionFace
@@ -26,17 +31,31 @@ namespace Viscoplastic
     struct Point
     {
       unsigned int node;
-      /// Independent slip directions, 1 or 2.
+      /// Independent slip directions, 1 or 2; of an obstacle 1.
       unsigned int n_tangents;
-      /// slip_i = map[i] . x over the face components of the node.
+      /// slip_i = map[i] . x over the face components of the node. Of an
+      /// obstacle: how far the node moves along the foundation's normal.
       std::array<Tensor<1, 3>, 2> map;
+      /// Whether this is u_n <= g, not friction.
+      bool is_obstacle = false;
+      /// Of an obstacle: whether and how it gives way.
+      NormalCompliance compliance;
+
+      bool
+      gives_way() const
+      {
+        return is_obstacle && !compliance.is_rigid();
+      }
     };
 
     /// Position of each node's first component in face vectors, and the end.
     std::vector<unsigned int> first_dof{0};
-    /// The points node by node, and each node's first one, and the end.
+    /// The points node by node, those of friction before obstacles, and each
+    /// node's first one, and the end.
     std::vector<Point>        points;
     std::vector<unsigned int> first_point{0};
+    /// Whether there are obstacles on any rank.
+    bool has_obstacles = false;
     /// The ranks that share the face.
     MPI_Comm communicator = MPI_COMM_SELF;
 
@@ -63,6 +82,21 @@ namespace Viscoplastic
     {
       return first_point[node + 1] - first_point[node];
     }
+
+    /// The first obstacle of a node, or the end of its points.
+    unsigned int
+    first_obstacle(const unsigned int node) const
+    {
+      unsigned int p = first_point[node];
+      while (p < first_point[node + 1] && !points[p].is_obstacle)
+        ++p;
+      return p;
+    }
+
+    /// Whether friction at a node is that of a single point, which obstacles
+    /// there do not act on: everywhere but where pieces meet.
+    bool
+    has_plain_friction(const unsigned int node) const;
 
     /// The entries of a node, padded by zeros.
     Tensor<1, 3>
@@ -113,20 +147,25 @@ namespace Viscoplastic
 
 
   /**
-   * What friction does in a step, point by point. It satisfies
+   * What contact does in a step, point by point. Friction satisfies
    *
-   *     |lambda_c| <= rho_c,   lambda_c = rho_c s_c/|s_c| where s_c != 0.
+   *     |lambda_c| <= rho_c,   lambda_c = rho_c s_c/|s_c| where s_c != 0,
+   *
+   * and an obstacle s_c <= d_c, lambda_c >= 0, lambda_c (d_c - s_c) = 0, or,
+   * where it gives way, lambda_c = p(s_c - d_c).
    */
   struct FrictionState
   {
-    /// The bound rho_c >= 0; infinite for glued points.
+    /// The bound rho_c >= 0; infinite for glued points. Of an obstacle the
+    /// distance d_c that is left at the beginning of the step.
     std::vector<double> bound;
     /// The slip s_c: the tangential increment of the displacement relative to
-    /// the foundation.
+    /// the foundation; of an obstacle the normal one.
     std::vector<Tensor<1, 2>> slip;
-    /// The multiplier lambda_c: minus the tangential force on the body.
+    /// The multiplier lambda_c: minus the tangential force on the body, or the
+    /// force of the body on the obstacle.
     std::vector<Tensor<1, 2>> multiplier;
-    /// The active set: whether the point sticks.
+    /// The active set: whether the point sticks, or touches the obstacle.
     std::vector<bool> sticks;
 
     /// All points stick and nothing pulls at them.
@@ -142,13 +181,21 @@ namespace Viscoplastic
     {
       return bound.size();
     }
+
+    /// s_c - d_c of an obstacle.
+    double
+    penetration(const unsigned int p) const
+    {
+      return slip[p][0] - bound[p];
+    }
   };
 
 
   /**
    * How the truncated system treats the face: at each node the projector onto
    * the directions that no sticking point blocks, and the stiffness against
-   * turning the slip direction of slipping points (zero for one tangent).
+   * turning the slip direction of slipping points (zero for one tangent) and
+   * against going on into obstacles that give way.
    */
   struct FaceTruncation
   {

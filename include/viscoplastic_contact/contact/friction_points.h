@@ -28,11 +28,12 @@ namespace Viscoplastic
                        const double        bound);
 
   /**
-   * Multipliers inside their balls that fit @p residual = l - A u on the face
-   * best and obey the friction law exactly: rho s/|s| where slipping, the
-   * residual clipped where sticking. Where pieces meet, the fit may leave a
-   * choice: the one of least norm is taken. Gives the face vector of their
-   * forces, too.
+   * Admissible multipliers that fit @p residual = l - A u on the face best and
+   * obey the laws exactly: rho s/|s| where slipping, zero off an obstacle, that
+   * of its compliance where it gives way, the residual clipped where sticking
+   * and touching. Where pieces meet, the fit
+   * may leave a choice: the one of least norm is taken. Gives the face vector
+   * of their forces, too.
    */
   void
   fit_multipliers(const FrictionFace   &face,
@@ -43,8 +44,9 @@ namespace Viscoplastic
 
   /**
    * The nonlinear Gauss-Seidel step at one node: minimize J over the node's
-   * components. By duality, block by block over the node's points; exact at
-   * once for a single point, i.e. away from corners.
+   * components, within its obstacles. By duality, block by block over the
+   * node's points; exact at once for one obstacle and a single point of
+   * friction, i.e. away from corners.
    */
   Tensor<1, 3>
   relax_node(const FrictionFace &face,
@@ -70,7 +72,9 @@ namespace Viscoplastic
    * than its slip is worth. There the clipped residual is the better
    * multiplier, at the price of a small defect of complementarity. A miss of
    * more than 1e-5 of the bound is not rounding, unless the slip is as small as
-   * @p rounding, an error in the energy norm, makes it. Collective.
+   * @p rounding, an error in the energy norm, makes it. An obstacle that gives
+   * way gets a multiplier between its force and the residual, the nearer to
+   * the latter the stiffer it is. Collective.
    */
   Certificate
   certify(const FrictionFace              &face,
@@ -83,7 +87,8 @@ namespace Viscoplastic
 
   /**
    * How the linear system of a Newton step treats the face: sticking points
-   * are held, slipping ones resist turning. @p inverse_diagonal: of the blocks
+   * are held, slipping ones resist turning, obstacles that give way are
+   * springs. @p inverse_diagonal: of the blocks
    * of the face matrix, beyond which a spring is as good as stick.
    */
   FaceTruncation

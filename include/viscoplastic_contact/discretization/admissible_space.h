@@ -40,7 +40,8 @@ namespace Viscoplastic
   public:
     /**
      * Collective. Throws ExcMessage when the conditions leave a rigid motion
-     * free, naming it.
+     * free, naming it, unless there is unilateral contact, which may prevent
+     * it.
      */
     AdmissibleSpace(const DoFHandler<dim> &dof_handler,
                     const Scene<dim>      &scene);
@@ -53,6 +54,14 @@ namespace Viscoplastic
     /// The owned cells, in the order of owned_cells(): that of all data that
     /// have values in cells.
     const std::vector<typename DoFHandler<dim>::active_cell_iterator> cells;
+
+    /// Whether there is a rigid motion that only contact can prevent. The same
+    /// on all ranks.
+    bool
+    is_held_by_contact() const
+    {
+      return held_by_contact;
+    }
 
     /// Degrees of freedom on the mesh that this one is refined from; 0 where it
     /// is not refined. The same on all ranks.
@@ -176,8 +185,9 @@ namespace Viscoplastic
     void
     make_hanging_nodes_in_frames();
     void
-    check_rigid_motions() const;
+    check_rigid_motions();
 
+    bool                      held_by_contact = false;
     AffineConstraints<double> hanging_cartesian, hanging_in_frames;
     /// Whether any rank has hanging nodes.
     bool any_hanging;

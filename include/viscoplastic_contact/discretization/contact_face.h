@@ -14,9 +14,10 @@
 namespace Viscoplastic
 {
   /**
-   * Gamma_3 on the mesh: makes the friction points of a FrictionFace from the
-   * nodes with friction, and their bounds rho_c(t) = int rho(x,t) phi_c, with
-   * phi_c the basis functions that hanging nodes leave. Each rank has the
+   * Gamma_3 on the mesh: makes the points of a FrictionFace from the nodes with
+   * friction or unilateral contact, the bounds rho_c(t) = int rho(x,t) phi_c,
+   * and the gaps g_c = g(x_c), with phi_c the basis functions
+   * that hanging nodes leave. Each rank has the
    * points of the nodes that it owns, in the order of their positions.
    */
   template <int dim>
@@ -44,13 +45,82 @@ namespace Viscoplastic
     std::set<types::boundary_id>
     held_boundaries() const;
 
-    /// The number of points on all ranks.
+    /// The number of points of friction, or of obstacles, on all ranks.
+    /// Collective.
     types::global_dof_index
-    n_global_points() const;
+    n_global_points(const bool of_obstacles = false) const;
 
-    /// rho_c of each point. Throws ExcMessage for negative bounds. Collective.
+    /**
+     * How fast each point slips with a velocity (Cartesian, with ghosts) that
+     * is the mean between two times; empty where no bound depends on it.
+     * Collective.
+     */
     std::vector<double>
-    bounds(const double t) const;
+    slip_rates(const DistributedVector &velocity,
+               const double             t_old,
+               const double             t) const;
+
+    /// rho_c of each point at slip rates (empty: zero), of obstacles g_c. Where
+    /// the pressure comes out, rho_c is zero. Throws ExcMessage for negative
+    /// bounds. Collective.
+    std::vector<double>
+    bounds(const double t, const std::vector<double> &slip_rates = {}) const;
+
+    /**
+     * The bounds of a step to time t, of obstacles what is left of g_c at @p u,
+     * the displacement at the beginning of the step (in frames) with the
+     * prescribed values of its end. Collective.
+     */
+    std::vector<double>
+    step_bounds(const double               t,
+                const DistributedVector   &u,
+                const Vector<double>      &foundation_step,
+                const std::vector<double> &slip_rates = {}) const;
+
+    /// Add rho_c = mu_c p_c of Coulomb's law with the pressures p of @p state.
+    /// Collective.
+    void
+    add_computed_bounds(const double               t,
+                        const FrictionState       &state,
+                        std::vector<double>       &bounds,
+                        const std::vector<double> &slip_rates = {}) const;
+
+    /// Whether there are such bounds on any rank.
+    bool
+    has_computed_pressure() const
+    {
+      return any_computed_pressure;
+    }
+
+    /// Whether there are obstacles on any rank.
+    bool
+    has_obstacles() const
+    {
+      return any_obstacles;
+    }
+
+    /// Whether some of them give way on any rank.
+    bool
+    gives_way() const
+    {
+      return any_gives_way;
+    }
+
+    /**
+     * Let a state at rest see the obstacles as they are at @p u (in frames) at
+     * time t: their distance, and the force of those that give way. Collective.
+     */
+    void
+    set_obstacles(const double             t,
+                  const DistributedVector &u,
+                  FrictionState           &state) const;
+
+    /// Whether bounds() depends on time.
+    bool
+    bounds_depend_on_time() const
+    {
+      return bounds_vary;
+    }
 
     /// int phi_c over the pieces of each point: the area it stands for.
     const std::vector<double> &
@@ -75,9 +145,10 @@ namespace Viscoplastic
     Tensor<1, dim>
     cartesian(const unsigned int point, const Tensor<1, 2> &multiplier) const;
 
-    /// sum_c lambda_c. Collective.
+    /// sum_c lambda_c of friction, or of obstacles. Collective.
     Tensor<1, dim>
-    resultant(const FrictionState &state) const;
+    resultant(const FrictionState &state,
+              const bool           of_obstacles = false) const;
 
     /**
      * How far the foundation slides between two times, as a face vector. At a
@@ -100,10 +171,12 @@ namespace Viscoplastic
 
     /**
      * The multiplier as a nodal density lambda_c/m_c, Cartesian and with
-     * ghosts; zero off Gamma_3. Collective.
+     * ghosts; zero off Gamma_3. That of obstacles is part of it, unless @p
+     * of_friction_alone. Collective.
      */
     DistributedVector
-    density(const FrictionState &state) const;
+    density(const FrictionState &state,
+            const bool           of_friction_alone = false) const;
 
     /// The inverse where a node has one point, for a face on a new mesh; at
     /// corners, where the density is that of all points, zero.
@@ -112,9 +185,11 @@ namespace Viscoplastic
     multipliers(const DistributedVector &ghosted_density) const;
 
     /// A value a point as a nodal field, with ghosts: at the first component of
-    /// each node, the mean over its points. Collective.
+    /// each node, the mean over its points of friction, or over its obstacles.
+    /// Collective.
     DistributedVector
-    nodal_field(const std::vector<double> &values) const;
+    nodal_field(const std::vector<double> &values,
+                const bool                 of_obstacles = false) const;
 
   private:
     struct Node
@@ -132,11 +207,13 @@ namespace Viscoplastic
       const BoundaryCondition<dim> *condition;
     };
 
-    /// value is added to the point for each unit of rho at the sample. Points
-    /// of other ranks come behind those of this one, see `numbers`.
+    /// value is added to the point for each unit of rho, or of area for an
+    /// obstacle, at the sample.
+    /// Points of other ranks come behind those of this one, see `numbers`.
     struct Share
     {
       unsigned int sample, point;
+      bool         of_obstacle;
       double       value;
     };
 
@@ -144,11 +221,17 @@ namespace Viscoplastic
     make_nodes();
     void
     make_shares();
+    void
+    make_compliance();
 
-    /// Sums of the shares of each point, each times factor(sample). Collective.
+    /// Sums of the shares of each point of friction, each times factor(sample)
+    /// and what its slip rate does (null: nothing; empty: zero), or of
+    /// each obstacle. Collective.
     template <typename Factor>
     std::vector<double>
-    sum_shares(const Factor &factor) const;
+    sum_shares(const Factor                    &factor,
+               const bool                       of_obstacles = false,
+               const std::vector<double> *const slip_rates   = nullptr) const;
 
     /// The bounds at time t by point and boundary id, in the order of
     /// boundary_ids. Collective.
@@ -166,8 +249,9 @@ namespace Viscoplastic
     /// no rank has points.
     std::shared_ptr<const Utilities::MPI::Partitioner> numbers;
     std::vector<double>                                point_weights;
-    bool                                               bounds_vary;
-    mutable std::optional<std::vector<double>>         constant_bounds,
+    bool bounds_vary, any_obstacles = false, any_gives_way = false,
+                      any_computed_pressure = false, any_rate = false;
+    mutable std::optional<std::vector<double>> constant_bounds,
       constant_bounds_by_id;
   };
 } // namespace Viscoplastic

@@ -37,15 +37,15 @@ namespace Viscoplastic
       return space.scene;
     }
 
-    /// The face for solvers: null if there is nothing that could slip, also
-    /// where other conditions hold all nodes of the frictional pieces.
+    /// The face for solvers: null if there is nothing that could slip or open,
+    /// also where other conditions hold all nodes of these pieces.
     const ContactFace<dim> *
     slipping_face() const
     {
       return face_restriction().n_global_dofs() > 0 ? face.get() : nullptr;
     }
 
-    /// The restriction to the friction points; to none without friction.
+    /// The restriction to the contact points; to none where there are none.
     const FaceRestriction &
     face_restriction() const
     {
@@ -66,7 +66,7 @@ namespace Viscoplastic
     Loads<dim>       loads;
     /// Where bilateral contact pulls; null without bilateral contact.
     std::unique_ptr<ContactTension<dim>> tension;
-    /// The friction points; null without friction.
+    /// The contact points; null without friction and unilateral contact.
     std::unique_ptr<ContactFace<dim>> face;
     /// How many steps there will be on this mesh at least.
     unsigned int n_steps;

@@ -32,7 +32,8 @@ namespace Viscoplastic
       return is_uniform ? moduli[0] : moduli[cell];
     }
 
-    /// Largest Poisson's ratio of the body, the same on all ranks.
+    /// Largest Poisson's ratio of the body, also of materials that are absent
+    /// in the present stage; the same on all ranks.
     double
     max_poissons_ratio() const
     {

@@ -38,6 +38,24 @@ namespace Viscoplastic
                    const State<dim>    &old_state,
                    const State<dim>    &state);
 
+  /// What a cell stores and has dissipated in the step that led to a state.
+  struct CellEnergies
+  {
+    /// The mean of the strain and the stress.
+    SymmetricTensor<2, 3> mean_strain, mean_stress;
+    /// Integrals, see StressSummary.
+    double irreversible_energy = 0., viscous_dissipation = 0.;
+  };
+
+  /// @p now is laws.at(state.t).
+  template <int dim>
+  CellEnergies
+  energies_of_cell(const FlowLaws<dim>                  &laws,
+                   const typename FlowLaws<dim>::AtTime &now,
+                   const State<dim>                     &old_state,
+                   const State<dim>                     &state,
+                   const std::size_t                     cell);
+
   /**
    * norm(sigma - P0 sigma)/norm(sigma) with sigma = E eps(u) + z: how much of
    * the stress the cell means do not see. Collective.

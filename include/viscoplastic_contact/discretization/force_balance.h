@@ -71,6 +71,31 @@ namespace Viscoplastic
     double foundation_work = 0.;
   };
 
+  /// What contact that opens and closes does.
+  template <int dim>
+  struct NormalContact
+  {
+    /// sum_c p_c n_c: the force of the body on the foundation.
+    Tensor<1, dim> force;
+    /// The area of the points that touch, and of all.
+    double contact_area = 0., area = 0.;
+    /// The largest p_c over its area, distance, and penetration of foundations
+    /// that give way.
+    double max_pressure = 0., max_gap = 0., max_penetration = 0.;
+    /// Work of a foundation that moves along its normal: - sum_c p_c n_c . du_c
+    /// with the mean of the multipliers before and after, which is that on the
+    /// body, and what the foundation stores in the step.
+    double foundation_work = 0.;
+  };
+
+  /// @p change of the displacement in the step, in frames. Collective.
+  template <int dim>
+  NormalContact<dim>
+  summarize_contact(const ContactFace<dim>  &face,
+                    const FrictionState     &old_state,
+                    const FrictionState     &state,
+                    const DistributedVector &change);
+
   /// @p change of the displacement in the step, in frames, and what the
   /// foundation moved meanwhile (empty: nothing). Collective.
   template <int dim>

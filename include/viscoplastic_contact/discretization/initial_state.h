@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/discretization/state.h>
 
 #include <set>
+#include <vector>
 
 namespace Viscoplastic
 {
@@ -23,6 +24,25 @@ namespace Viscoplastic
                      const bool              equilibrate);
 
   /**
+   * The displacement as it is reported: that of @p state, or if the scene asks
+   * for `Reset displacement' what has been added to u_0, written to
+   * @p difference. Cartesian, with ghosts.
+   */
+  template <int dim>
+  const DistributedVector &
+  reported_displacement(const Scene<dim>  &scene,
+                        const State<dim>  &state,
+                        DistributedVector &difference);
+
+  /// sigma0 at x in a cell of material @p id; zero where that is absent, or has
+  /// come later.
+  template <int dim>
+  SymmetricTensor<2, 3>
+  initial_stress(const Scene<dim>        &scene,
+                 const Point<dim>        &x,
+                 const types::material_id id);
+
+  /**
    * z_0 = sigma0^h - E eps(u0^h) at the samples; @p u0 is Cartesian, with
    * ghosts, or of size 0 if it is zero.
    */
@@ -33,7 +53,8 @@ namespace Viscoplastic
 
   /**
    * |u0 - u0^h| in the energy norm plus |sigma0 - sigma0^h| in that of
-   * stresses, (int E^-1 s : s)^{1/2}, by quadrature; @p state as
+   * stresses, (int E^-1 s : s)^{1/2}, by quadrature, where sigma0^h is the
+   * polynomial through the samples of a cell; @p state as
    * make_initial_state() gives it. Zero and free without initial data. @p
    * squared_by_cell gets the squares that active cells contribute, zero on
    * cells of other ranks, unless it is null. Collective.
@@ -43,6 +64,18 @@ namespace Viscoplastic
   initial_data_error(const StressSpace<dim> &stress_space,
                      const State<dim>       &state,
                      Vector<double>         *squared_by_cell = nullptr);
+
+  /**
+   * Let the present stage of construction begin with a state of the one before:
+   * cells that have gone have no stress, and those that have come have none in
+   * the place that the body has moved to, z = -E eps(u). @p was_present: by
+   * owned cell, in the stage before.
+   */
+  template <int dim>
+  void
+  enter_stage(const StressSpace<dim>  &stress_space,
+              const std::vector<bool> &was_present,
+              State<dim>              &state);
 
   /// By how much initial data and loads are not in equilibrium.
   template <int dim>
@@ -71,5 +104,6 @@ namespace Viscoplastic
   compatibility_violation(const AdmissibleSpace<dim> &space,
                           const Load<dim>            &load,
                           const ContactFace<dim>     *face,
+                          const DistributedVector    &u,
                           FrictionState              &friction);
 } // namespace Viscoplastic

@@ -30,6 +30,23 @@ namespace Viscoplastic
 
 
   /**
+   * A plane of the foundation that keeps a node on its side: what of the normal
+   * displacement the other conditions at the node leave free, and what they
+   * prescribe of it.
+   */
+  template <int dim>
+  struct Obstacle
+  {
+    /// u_n = map u + fixed u: rows over the frame components of the node, of
+    /// which the first sees those that are free.
+    Tensor<1, dim> map, fixed;
+    /// Boundary ids with this normal; all of them give way, or none.
+    std::vector<types::boundary_id> boundary_ids;
+    bool                            gives_way = false;
+  };
+
+
+  /**
    * The orthonormal frame of displacement components at a node, chosen so that
    * what is prescribed there are single components.
    */
@@ -53,6 +70,8 @@ namespace Viscoplastic
     std::array<unsigned int, dim>       condition_component;
     /// Friction points at the node.
     std::vector<FrictionPlane<dim>> planes;
+    /// Obstacles of unilateral contact there.
+    std::vector<Obstacle<dim>> obstacles;
   };
 
 

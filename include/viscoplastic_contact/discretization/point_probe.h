@@ -13,7 +13,8 @@ namespace Viscoplastic
   class PointProbe
   {
   public:
-    /// Collective. Throws ExcMessage if @p x is not in the body.
+    /// Collective. If @p x is not in the body, it is the nearest place there,
+    /// as where finer meshes follow a curved boundary better.
     PointProbe(const AdmissibleSpace<dim> &space, const Point<dim> &x);
 
     /// Collective.

@@ -36,7 +36,10 @@ namespace Viscoplastic
    * Between nodes the density exceeds a bound that jumps, which counts.
    *
    * The estimate bounds the error of one step for given z; the error that has
-   * accumulated in z is not part of it.
+   * accumulated in z is not part of it. An initial stress, which may vary in
+   * cells and balance the loads there, is taken as it is, and not as the cell
+   * means that z holds of it. Cells of absent materials count for
+   * nothing, and faces towards them as free ones of Gamma_2.
    *
    * What depends on the mesh alone is kept from step to step: gradients at
    * faces and second derivatives for each shape of cell (cells that differ by a
@@ -130,6 +133,8 @@ namespace Viscoplastic
       types::global_cell_index             global_active_index;
       std::array<unsigned int, n_vertices> nodes;
       Stiffness                            stiffness;
+      /// Whether it is part of the body in the present stage.
+      bool is_present;
     };
 
     /// A part of a cell's face that hanging nodes bound.
@@ -177,6 +182,8 @@ namespace Viscoplastic
     make_faces();
     void
     make_face_values();
+    void
+    make_initial_stress();
 
     /// Face @p f of a cell with this number.
     void
@@ -269,19 +276,25 @@ namespace Viscoplastic
     /// Whether b is the same in the whole body.
     bool uniform_body_force;
 
-    std::vector<Shape>        shapes;
-    std::vector<FaceShape>    subface_shapes;
-    std::vector<LocalCell>    cells;
-    std::vector<Point<dim>>   origins; // vertex 0 of owned cells
-    std::vector<SubfaceSide>  subface_sides;
-    std::vector<InteriorFace> interior_faces;
-    std::vector<BoundaryFace> boundary_faces;
+    std::vector<Shape>              shapes;
+    std::vector<FaceShape>          subface_shapes;
+    std::vector<LocalCell>          cells;
+    std::vector<Point<dim>>         origins;      // vertex 0 of each cell
+    std::vector<types::material_id> material_ids; // of each cell
+    std::vector<SubfaceSide>        subface_sides;
+    std::vector<InteriorFace>       interior_faces;
+    std::vector<BoundaryFace>       boundary_faces;
     /// Shape functions at the points of each face.
     std::array<std::array<std::array<double, n_vertices>, n_face_points>,
                n_faces>
       face_values;
     /// b at the points of owned cells if it does not depend on time.
     std::vector<Tensor<1, dim>> body_force;
+
+    /// What sigma0 nu at all faces has beyond that of its cell means, which z_h
+    /// holds, and div sigma0 at the points of owned cells; empty without an
+    /// initial stress.
+    std::vector<Tensor<1, dim>> initial_tractions, initial_divergence;
 
     /// sigma nu at all faces: kept, since a new array for each step costs as
     /// much as to fill it.

@@ -16,7 +16,7 @@ namespace Viscoplastic
    * mesh.
    *
    * It is built for the stick set of the first solve: its matrix has the rows
-   * and columns of prescribed and sticking components cut off. While the set
+   * and columns of prescribed and blocked components cut off. While the set
    * moves on, it is kept and filtered by the present truncation, which costs
    * iterations; it is rebuilt when the iterations lost since the last set-up
    * would have paid for a new one. The count, not the clock, decides, so runs

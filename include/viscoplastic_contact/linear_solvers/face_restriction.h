@@ -33,6 +33,15 @@ namespace Viscoplastic
       return friction_face;
     }
 
+    /// Add a piece to how an obstacle gives way.
+    void
+    add_compliance(const unsigned int point,
+                   const double       stiffness,
+                   const double       exponent)
+    {
+      friction_face.points[point].compliance.add(stiffness, exponent);
+    }
+
     /// The entries of face vectors on all ranks.
     types::global_dof_index
     n_global_dofs() const

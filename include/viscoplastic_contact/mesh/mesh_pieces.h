@@ -27,4 +27,12 @@ namespace Viscoplastic
   PieceNormal<dim>
   piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,
                const types::boundary_id                         id);
+
+  /// Whether any face with this @p id looks, by its outward normal, into a @p
+  /// direction. Collective.
+  template <int dim>
+  bool
+  faces_towards(const parallel::distributed::Triangulation<dim> &triangulation,
+                const types::boundary_id                         id,
+                const Tensor<1, dim>                            &direction);
 } // namespace Viscoplastic

@@ -105,6 +105,19 @@ namespace Viscoplastic
     return "true|false|automatic";
   }
 
+  /// From where Coulomb's law takes the pressure of unilateral contact.
+  enum class CoulombPressure
+  {
+    lagged,
+    fixed_point
+  };
+
+  inline const char *
+  choices(CoulombPressure)
+  {
+    return "lagged|fixed point";
+  }
+
   enum class LinearSolver
   {
     automatic,
@@ -153,6 +166,72 @@ namespace Viscoplastic
   {
     return "total strain|irreversible strain|creep strain|creep rate|principal "
            "stresses|normal traction|friction work";
+  }
+
+
+
+  /// What can be recorded at points, along lines and as integrals: fields of
+  /// the body, and from `slip' on those of its boundary.
+  enum class RecordedField
+  {
+    displacement,
+    velocity,
+    stress,
+    von_mises_stress,
+    irreversible_stress,
+    total_strain,
+    irreversible_strain,
+    creep_strain,
+    creep_rate,
+    principal_stresses,
+    slip,
+    slip_rate,
+    traction,
+    bound,
+    utilization,
+    stick,
+    friction_work,
+    contact_pressure,
+    gap,
+    normal_traction,
+    stress_vector
+  };
+
+  inline const char *
+  choices(RecordedField)
+  {
+    return "displacement|velocity|stress|von Mises stress|irreversible stress|"
+           "total strain|irreversible strain|creep strain|creep rate|principal "
+           "stresses|slip|slip rate|traction|bound|utilisation|stick|friction "
+           "work|contact pressure|gap|normal traction|stress vector";
+  }
+
+  inline bool
+  is_of_boundary(const RecordedField field)
+  {
+    return field >= RecordedField::slip;
+  }
+
+  /// Whether the field is that of contact alone, of friction alone, and of
+  /// contact that opens and closes alone.
+  inline bool
+  is_of_contact(const RecordedField field)
+  {
+    return is_of_boundary(field) && field <= RecordedField::gap;
+  }
+
+  inline bool
+  is_of_friction(const RecordedField field)
+  {
+    return field >= RecordedField::traction &&
+           field <= RecordedField::friction_work;
+  }
+
+  inline bool
+  is_of_unilateral_contact(const RecordedField field)
+  {
+    return field == RecordedField::contact_pressure ||
+           field == RecordedField::gap;
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 #include <viscoplastic_contact/parameters/parameters.h>
 
@@ -8,6 +9,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Viscoplastic
@@ -17,7 +19,8 @@ namespace Viscoplastic
   /**
    * One or several parameter files, read and checked as far as that is possible
    * without a mesh. Expressions stay texts here: their number of components
-   * depends on the dimension, so Scene<dim> parses them.
+   * depends on the dimension, so Scene<dim> parses them. Numbers that have a
+   * unit in the files are numbers in the units of the scene here.
    */
   class Parameters
   {
@@ -47,7 +50,10 @@ namespace Viscoplastic
     std::vector<std::string>    shared_libraries;
     std::vector<LawDescription> laws;
     unsigned int                dimension = 2;
-    GeometryParameters          geometry;
+    UnitParameters              unit_names;
+    /// In which all numbers are; not declared unless the scene does.
+    Units              units;
+    GeometryParameters geometry;
     /// Of all cells, or of none where there are numbered materials.
     MaterialParameters material;
     StressParameters   stress;
@@ -70,12 +76,27 @@ namespace Viscoplastic
     std::map<std::string, std::string>
     values() const;
 
+    /// A parameter file with every entry, numbers with the units that they have
+    /// in the files: the record of a run.
+    void
+    print(std::ostream &out) const;
+
+    /// Everything that is declared, as declared_entries() returns it, with
+    /// values as they are in the files.
+    boost::property_tree::ptree
+    entries_as_written() const;
+
+    /// The entries whose numbers have units in the files, by their paths, with
+    /// these numbers in the units of the scene.
+    std::map<std::string, std::string>
+    entries_with_units() const;
+
     /// Where an entry, given by its path, has been set last, as messages name
     /// it: file and line, or the assignment. Empty if it has its default.
     std::string
     origin_of(const std::string &path) const;
 
-    /// The same with every entry, for law parameters and for the record.
+    /// The same with every entry, for law parameters.
     mutable ParameterHandler handler;
 
   private:
@@ -105,6 +126,8 @@ namespace Viscoplastic
 
     /// By path, see origin_of().
     std::map<std::string, std::string> origins;
+    /// The values of the files that have units in them, by path.
+    std::map<std::string, std::string> as_written;
   };
 
 
@@ -121,7 +144,9 @@ namespace Viscoplastic
   bool
   is_entry(const boost::property_tree::ptree &node);
 
-  /// What a pattern of ParameterHandler allows, in words: "one of a, b".
-  std::string
-  allowed_values(const std::string &pattern_description);
+  /// Paths `Section/Entry' and values of the entries below a node of it, in the
+  /// order of declaration; @p path: that of the node, and a slash.
+  std::vector<std::pair<std::string, std::string>>
+  values_of(const boost::property_tree::ptree &node,
+            const std::string                 &path = "");
 } // namespace Viscoplastic

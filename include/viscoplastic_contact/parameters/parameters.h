@@ -17,6 +17,15 @@ namespace Viscoplastic
   // One struct for each subsection of the parameter file: defaults, the help
   // text of every entry (in declare()), and the checks that need no mesh.
 
+  /// Names of units; all empty where a scene declares none.
+  struct UnitParameters
+  {
+    std::string length, time, stress, force;
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
   struct GeometryParameters
   {
     std::string  generator = "subdivided_hyper_rectangle";
@@ -42,6 +51,9 @@ namespace Viscoplastic
     std::string poissons_ratio = "0.3";
     std::string voigt_matrix;
     std::string law = "elastic";
+    /// Times; empty for a material that is there from the beginning, or to the
+    /// end.
+    std::string added_at, removed_at;
 
     void
     declare(ParameterHandler &prm, const std::vector<LawDescription> &laws);
@@ -70,6 +82,7 @@ namespace Viscoplastic
   {
     std::string displacement, stress;
     bool        equilibrate             = false;
+    bool        reset_displacement      = false;
     double      compatibility_tolerance = 1e-6;
 
     void
@@ -91,9 +104,15 @@ namespace Viscoplastic
   {
     std::string role = "not given";
     std::string displacement, traction, pressure;
-    std::string friction_law = "not given";
+    std::string contact_law = "not given";
+    std::string gap;
+    std::string foundation_normal;
+    std::string compliance;
+    double      compliance_exponent = 1.;
+    std::string friction_law        = "not given";
     std::string friction_bound;
     std::string friction_coefficient;
+    std::string slip_rate_factor = "1";
     std::string normal_stress;
     std::string foundation_displacement = "0";
     std::string foundation_motion;
@@ -137,9 +156,11 @@ namespace Viscoplastic
   {
     LinearSolver linear_solver = LinearSolver::automatic;
     /// 0: coupled to the estimated discretization error.
-    double       contact_tolerance  = 0.;
-    unsigned int maximal_iterations = 200;
-    bool         reuse_unchanged    = true;
+    double          contact_tolerance  = 0.;
+    unsigned int    maximal_iterations = 200;
+    CoulombPressure coulomb_pressure   = CoulombPressure::lagged;
+    double          coulomb_tolerance  = 1e-6;
+    bool            reuse_unchanged    = true;
 
     /// Where there is no estimate to be coupled to.
     double
@@ -226,7 +247,9 @@ namespace Viscoplastic
     unsigned int              fields_every     = 1;
     bool                      reference_fields = false;
     double                    fields_interval  = 0.;
-    std::string               points;
+    std::string               points, lines, integrals;
+    bool                      lines_every_step = false;
+    std::set<RecordedField>   point_fields, line_fields;
     std::set<AdditionalField> additional_fields;
 
     bool

@@ -43,7 +43,8 @@ namespace Viscoplastic
     exchange(Archive &archive)
     {
       std::vector<types::boundary_id> ids(loads.begin(), loads.end());
-      archive &ids &mesh_has_changed &has_bound &foundation_has_moved;
+      archive &ids &mesh_has_changed &has_bound &foundation_has_moved
+        &has_touched &has_opened;
       loads = {ids.begin(), ids.end()};
     }
 
@@ -52,7 +53,9 @@ namespace Viscoplastic
     std::set<types::boundary_id> loads;
     bool                         mesh_has_changed = false;
     /// Whether a friction bound has been above zero somewhere.
-    bool has_bound            = false;
+    bool has_bound = false;
+    /// Whether an obstacle has been touched, and left or not reached.
+    bool has_touched = false, has_opened = false;
     bool foundation_has_moved = false;
   };
 } // namespace Viscoplastic

@@ -1,31 +1,72 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/vector.h>
+#include <deal.II/base/geometry_info.h>
 
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/state.h>
 
+#include <array>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace Viscoplastic
 {
-  /// A field of the body with one value a cell, by active cell index; zero on
-  /// cells of other ranks.
-  struct CellField
-  {
-    std::string    name;
-    Vector<double> values;
-  };
+  /// A number for each vertex of a cell.
+  template <int dim>
+  using VertexWeights =
+    std::array<double, GeometryInfo<dim>::vertices_per_cell>;
 
 
   /**
-   * The fields of `Output/Additional fields' that the body has, of cell means,
-   * in the order of that entry's choices. Nothing is computed for what is not
-   * asked for. Collective, and the same names on all ranks.
+   * Fields of the body in a state: what the outputs, points, lines and
+   * integrals have of it comes from here. Displacement and velocity have values
+   * at vertices, all others are means of cells. Values come in the order of the
+   * enumeration, one for each component. Nothing is computed for what is not
+   * asked for.
    */
   template <int dim>
-  std::vector<CellField>
-  additional_fields(const FlowLaws<dim> &laws, const State<dim> &state);
+  class BodyFields
+  {
+  public:
+    /// Of @p fields those of the body; with the other arguments in use as long
+    /// as this object. Collective.
+    BodyFields(const FlowLaws<dim>           &laws,
+               const State<dim>              &state,
+               const std::set<RecordedField> &fields);
+
+    BodyFields(const BodyFields &) = delete;
+    BodyFields &
+    operator=(const BodyFields &) = delete;
+
+    /// What the values are called: displacement_x, ..., creep_rate, ...
+    static std::vector<std::string>
+    names(const std::set<RecordedField> &fields);
+
+    /// Add to each of @p values the sum over the vertices of an owned cell of
+    /// weight times value: an interpolation, or an integral.
+    void
+    add(const std::size_t         cell,
+        const VertexWeights<dim> &weights,
+        double                   *values) const;
+
+    /// The means of a cell alone.
+    std::vector<double>
+    means(const std::size_t cell) const;
+
+  private:
+    const StressSpace<dim> &stress_space;
+    const State<dim>       &state;
+    /// The displacement as it is reported.
+    DistributedVector        difference;
+    const DistributedVector &u;
+    /// Those that are means, and the others.
+    std::set<RecordedField>                cell_fields;
+    std::vector<const DistributedVector *> nodal_fields;
+    /// G at the samples, where it is needed, and the irreversible strain of the
+    /// initial data, where there is some.
+    IrreversibleStress                 rate;
+    std::vector<SymmetricTensor<2, 3>> initial_strain;
+  };
 } // namespace Viscoplastic

@@ -67,10 +67,17 @@ namespace Viscoplastic
     void
     add_mesh_change(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
     {
-      const double of_loads = after.of_loads - before.of_loads;
-      work += of_loads;
-      largest_work = std::max(largest_work, std::abs(work));
-      adaptation += after.stored - before.stored - of_loads;
+      adaptation += add_change(before, after);
+    }
+
+    /// Add the beginning of a stage of construction. What it does to the stored
+    /// energy beyond the work of the loads goes with the materials: that of
+    /// what is removed, and what the surroundings lose when they give way at
+    /// once.
+    void
+    add_stage(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
+    {
+      construction += add_change(before, after);
     }
 
     double
@@ -103,11 +110,19 @@ namespace Viscoplastic
       return adaptation;
     }
 
+    /// What stages of construction have added to the stored energy.
+    double
+    construction_energy() const
+    {
+      return construction;
+    }
+
     /// What is missing in the balance.
     double
     defect() const
     {
-      return work - (energy - initial_energy - adaptation) - viscous - friction;
+      return work - (energy - initial_energy - adaptation - construction) -
+             viscous - friction;
     }
 
     /// What there was to balance, also where loads give back what they took.
@@ -123,11 +138,22 @@ namespace Viscoplastic
     exchange(Archive &archive)
     {
       archive &initial_energy &energy &work &largest_work &viscous &friction
-        &adaptation;
+        &adaptation &construction;
     }
 
   private:
+    /// Add the work of the loads in a change between two steps, and return what
+    /// it adds to the stored energy beyond that.
+    double
+    add_change(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
+    {
+      const double of_loads = after.of_loads - before.of_loads;
+      work += of_loads;
+      largest_work = std::max(largest_work, std::abs(work));
+      return after.stored - before.stored - of_loads;
+    }
+
     double initial_energy = 0., energy = 0., work = 0., largest_work = 0.,
-           viscous = 0., friction = 0., adaptation = 0.;
+           viscous = 0., friction = 0., adaptation = 0., construction = 0.;
   };
 } // namespace Viscoplastic

@@ -4,7 +4,7 @@
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/state.h>
-#include <viscoplastic_contact/results/run_summary.h>
+#include <viscoplastic_contact/results/run_record.h>
 
 #include <optional>
 #include <set>
@@ -14,16 +14,6 @@
 
 namespace Viscoplastic
 {
-  /// `Output/Directory', or what it is by default; ends with a slash.
-  std::string
-  results_directory(const Parameters &parameters);
-
-  /// Make it. Throws ExcMessage.
-  void
-  make_results_directory(const std::string &path);
-
-
-
   /**
    * Results in one directory: fields of the body (solution.pvd) and of Gamma_3
    * (contact.pvd) as VTU series, and what is needed to reproduce the run
@@ -78,6 +68,10 @@ namespace Viscoplastic
                  const Vector<double>   *squared_estimate);
 
   private:
+    /// Write the faces of the boundary with their ids, once, as they are at
+    /// the first output: pictures draw supports and loads there.
+    void
+    write_boundary(const AdmissibleSpace<dim> &space);
     // What these return: see write_fields().
     std::string
     write_body(const FlowLaws<dim>  &laws,

@@ -11,6 +11,8 @@
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/results/acting_effects.h>
 #include <viscoplastic_contact/results/energy_balance.h>
+#include <viscoplastic_contact/results/field_integrals.h>
+#include <viscoplastic_contact/results/field_probes.h>
 #include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/results/statistics.h>
 #include <viscoplastic_contact/results/step_quantities.h>
@@ -68,6 +70,13 @@ namespace Viscoplastic
                        const EnergiesOnMesh &after)
     {
       balance.add_mesh_change(before, after);
+    }
+
+    /// Record the beginning of a stage of construction.
+    void
+    record_stage(const EnergiesOnMesh &before, const EnergiesOnMesh &after)
+    {
+      balance.add_stage(before, after);
     }
 
     /// Go on from a state that an earlier part of the run has reached in
@@ -146,6 +155,10 @@ namespace Viscoplastic
               const StepQuantities<dim> &quantities,
               const SolutionErrors      &errors);
 
+    /// What the scene asks for at points and as integrals.
+    void
+    write_asked_for(const StepQuantities<dim> &quantities);
+
     /// Seconds of this step by phase.
     void
     write_seconds();
@@ -180,6 +193,11 @@ namespace Viscoplastic
 
     const Discretization<dim>   *discretization = nullptr; // the present one
     std::vector<PointProbe<dim>> probes;
+    /// Null where nothing is asked for.
+    std::unique_ptr<FieldProbes<dim>>    point_fields;
+    std::unique_ptr<FieldIntegrals<dim>> integrals;
+    /// Since t = 0, in the place of each integral that sums up over the steps.
+    std::vector<double> dissipated;
 
     EnergyBalance balance;
     /// The largest load, reaction or friction force so far: the scale of
@@ -216,6 +234,8 @@ namespace Viscoplastic
     archive &largest_force &contact_iterations &linear_iterations
       &newton_iterations &implicit_steps;
     archive              &run.unchanged_steps;
+    if (!scene.output_integrals.empty())
+      archive &dissipated;
     effects.exchange(archive);
     for (Largest *largest : {&run.displacement,
                              &run.strain,

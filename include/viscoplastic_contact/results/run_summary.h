@@ -5,10 +5,12 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
+#include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/error/error_estimate.h>
 #include <viscoplastic_contact/error/solution_norms.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <ostream>
@@ -48,12 +50,12 @@ namespace Viscoplastic
   {
     // Of the last step.
     double                                       t = 0.;
-    std::optional<Tensor<1, dim>>                friction_force;
+    std::optional<Tensor<1, dim>>                friction_force, contact_force;
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
     double stored_energy = 0., external_work = 0., energy_balance_defect = 0.;
     std::optional<double> viscous_dissipation, friction_dissipation,
-      adaptation_energy;
-    std::optional<double>       slipping_area;
+      adaptation_energy, construction_energy;
+    std::optional<double>       slipping_area, contact_area;
     std::vector<Tensor<1, dim>> point_displacements;
     double                      max_displacement = 0.;
     /// The estimate by which an adaptive scene without error estimate refines.
@@ -95,9 +97,11 @@ namespace Viscoplastic
 
     /// @p coarser: of a run with twice the mesh width and twice the time steps,
     /// or null. The difference is the uncertainty of each quantity, by first
-    /// order convergence.
+    /// order convergence. Numbers have their units if @p units are declared.
     void
-    print(std::ostream &out, const RunSummary *coarser = nullptr) const;
+    print(std::ostream     &out,
+          const Units      &units,
+          const RunSummary *coarser = nullptr) const;
 
     /// The quantities at the end, by the names that statistics.csv has.
     std::vector<std::pair<std::string, double>>
@@ -106,13 +110,16 @@ namespace Viscoplastic
 
 
 
-  /// A table `quantity,value,uncertainty'. Throws ExcMessage if it cannot be
-  /// written.
+  /// A table `quantity,value,uncertainty'; @p label is what stands behind the
+  /// name of a quantity, as Statistics::Label. Throws ExcMessage if it cannot
+  /// be written.
   template <int dim>
   void
-  write_uncertainties(const std::string     &file,
-                      const RunSummary<dim> &summary,
-                      const RunSummary<dim> &coarser);
+  write_uncertainties(
+    const std::string                                     &file,
+    const RunSummary<dim>                                 &summary,
+    const RunSummary<dim>                                 &coarser,
+    const std::function<std::string(const std::string &)> &label);
 
 
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fstream>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,13 +12,17 @@ namespace Viscoplastic
   /**
    * A table written row by row as comma separated values: the first row fixes
    * the columns. Each row is flushed, so a run that is killed leaves what it
-   * has computed.
+   * has computed. The first line has the names of the columns, with labels of
+   * units such as ` [MPa]' behind them where the scene declares units.
    */
   class Statistics
   {
   public:
+    /// What stands behind the name of a column in the first line.
+    using Label = std::function<std::string(const std::string &column)>;
+
     /// Throws ExcMessage if @p file cannot be written.
-    explicit Statistics(const std::string &file);
+    Statistics(const std::string &file, const Label &label);
 
     /**
      * Go on after the row of step @p last_step of a file, whose first column
@@ -52,6 +57,7 @@ namespace Viscoplastic
 
   private:
     std::string                                 name;
+    Label                                       label;
     std::ofstream                               file;
     std::vector<std::string>                    columns;
     std::vector<std::pair<std::string, double>> row;

@@ -24,6 +24,8 @@ namespace Viscoplastic
     /// friction.
     FrictionIdentities friction;
     Tensor<1, dim>     friction_force;
+    /// What contact that opens and closes does; zero without.
+    NormalContact<dim> contact;
     /// The reaction on each boundary with prescribed displacements.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
     /// Loads, reactions and friction on the body, which add up to zero, and the
@@ -40,12 +42,14 @@ namespace Viscoplastic
     double refinement_estimate = 0.;
     /// The displacements of the points of `Output/Points'.
     std::vector<Tensor<1, dim>> point_displacements;
+    /// The values of `Output/Point fields' and `Output/Integrals'.
+    std::vector<double> point_fields, integrals;
   };
 
 
 
-  /// Measure a step that leads from @p old, but for the displacements of
-  /// points. Collective.
+  /// Measure a step that leads from @p old, but for points and integrals.
+  /// Collective.
   template <int dim>
   StepQuantities<dim>
   measure_step(const Discretization<dim> &discretization,

@@ -30,6 +30,14 @@ namespace Viscoplastic
     void
     announce(const KinksOfScene &found);
 
+    /// What equilibrium at t = 0 has done to the displacement @p u0.
+    void
+    announce_equilibrium(const Scene<dim> &scene, const double largest_u0);
+
+    /// The stage of construction that begins.
+    void
+    announce_stage(const Scene<dim> &scene);
+
     /// The size of the first mesh.
     void
     announce(const Discretization<dim> &discretization);

@@ -27,6 +27,8 @@ namespace Viscoplastic
     /// `Section/Entry=value', in their order.
     std::vector<std::string> overrides;
     bool                     quiet = false;
+    /// Whether each step gets a line, also those like the one before.
+    bool verbose = false;
     /// Whether to go on from a checkpoint: not at all, from one that must be
     /// there, or from one if there is any.
     enum class Restart

@@ -10,6 +10,7 @@
 #include <viscoplastic_contact/base/signals.h>
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/error/known_solution.h>
+#include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/run/announcer.h>
@@ -142,6 +143,8 @@ namespace Viscoplastic
     void
     check_compatibility(const Load<dim> &load);
 
+    // Changes of the mesh: source/run/adaptation.cc.
+
     /// Those of the scene, with the number of cells that its bound on memory
     /// allows. Collective.
     RefinementParameters
@@ -174,6 +177,18 @@ namespace Viscoplastic
     std::function<void()>
     keep_memory();
 
+    /// Refuse stages of construction that do not fit the scene, before anything
+    /// is solved. Collective. Source: source/run/stages.cc.
+    void
+    check_stages();
+
+    /// Begin the next stage of construction at the end of a step: materials
+    /// come and go, and the body finds its equilibrium while friction holds;
+    /// the next step lets it slip.
+    /// Source: source/run/stages.cc.
+    void
+    enter_next_stage();
+
     /// Change the mesh as its cells are marked, and bring the accepted state to
     /// it.
     void
@@ -198,8 +213,10 @@ namespace Viscoplastic
     void
     exchange(Archive &archive);
 
+    /// Write the fields of the accepted state if they are due, and what is
+    /// recorded along lines.
     void
-    write_fields();
+    write_results(const bool fields_are_due);
 
     /// The closing words.
     void
@@ -229,7 +246,8 @@ namespace Viscoplastic
     unsigned int               n_refinements = 0;
     ContactReport              initial_report;
     std::optional<Output<dim>> output; // absent without files
-    TimerOutput                timer;  // wall time by phase
+    LineOutput<dim>            lines;
+    TimerOutput                timer; // wall time by phase
     KnownSolution<dim>         known_solution;
     Recorder<dim>              recorder;
     /// When the last checkpoint was written and the last step ended, as the

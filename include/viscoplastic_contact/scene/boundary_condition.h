@@ -25,11 +25,21 @@ namespace Viscoplastic
     contact
   };
 
+  /// What acts along the normal of a contact piece.
+  enum class ContactLaw
+  {
+    none,
+    bilateral,    // u_nu = d
+    given_stress, // sigma_nu = S
+    unilateral,   // u_n <= g + d, sigma_n <= 0, and one of them with equality
+    compliance    // sigma_n = -c (u_n - g - d)_+^m
+  };
+
   enum class FrictionLaw
   {
     none,
-    tresca,  // bilateral, (5.22)
-    coulomb, // given normal stress, (5.6)
+    tresca,  // rho = g, (5.22)
+    coulomb, // rho = mu |S|, (5.6), or mu p of contact that opens
     glued    // no slip whatever the force: rho = infinity
   };
 
@@ -53,6 +63,7 @@ namespace Viscoplastic
 
     types::boundary_id id;
     BoundaryRole       role;
+    ContactLaw         contact_law  = ContactLaw::none;
     FrictionLaw        friction_law = FrictionLaw::none;
 
     /// Role displacement: the given components; empty ones are free.
@@ -62,7 +73,13 @@ namespace Viscoplastic
     /// where identically zero.
     std::optional<VectorExpression<dim>> traction;
     std::optional<Expression<dim>>       pressure;
-    /// d of bilateral contact; absent where identically zero.
+    /// g of contact that opens; absent where identically zero.
+    std::optional<Expression<dim>> given_gap;
+    /// c and m of normal compliance.
+    std::optional<Expression<dim>> given_compliance;
+    double                         compliance_exponent = 1.;
+    /// d of bilateral contact and contact that opens; absent where identically
+    /// zero.
     std::optional<Expression<dim>> foundation_displacement;
     /// w, whose tangential part slip is relative to; absent at rest.
     std::optional<VectorExpression<dim>> foundation_motion;
@@ -70,18 +87,66 @@ namespace Viscoplastic
     std::optional<Expression<dim>> friction_bound;
     /// mu and S of the law coulomb.
     std::optional<Expression<dim>> friction_coefficient, normal_stress;
+    /// By which bounds are multiplied, as a function of the slip rate; absent
+    /// where identically one.
+    std::optional<Expression<1>> slip_rate_factor;
     /// What makes the data, or null.
     const ExactSolution<dim> *solution;
-    /// Outward unit normal of a symmetry or contact piece, which is flat.
+    /// Outward unit normal of a symmetry or contact piece, which is flat; in
+    /// contact that opens that of the foundation, into which it points.
     Tensor<1, dim> normal;
+    /// Whether that is given, so that the piece may be curved.
+    bool normal_is_given = false;
 
     /// Whether u_nu is prescribed here.
     bool
     is_bilateral() const
     {
       return role == BoundaryRole::symmetry ||
-             (role == BoundaryRole::contact &&
-              friction_law != FrictionLaw::coulomb);
+             contact_law == ContactLaw::bilateral;
+    }
+
+    /// Whether contact opens and closes here.
+    bool
+    is_unilateral() const
+    {
+      return contact_law == ContactLaw::unilateral || gives_way();
+    }
+
+    /// Whether the foundation gives way.
+    bool
+    gives_way() const
+    {
+      return contact_law == ContactLaw::compliance;
+    }
+
+    /// c of normal compliance. Throws ExcMessage where it is negative.
+    double
+    compliance(const Point<dim> &x) const;
+
+    /// Whether the friction bound is that of the pressure which comes out.
+    bool
+    has_computed_pressure() const
+    {
+      return is_unilateral() && friction_law == FrictionLaw::coulomb;
+    }
+
+    /// Whether bound() is the friction bound, whatever the solution.
+    bool
+    has_given_bound() const
+    {
+      return has_friction() && !has_computed_pressure() && !slip_rate_factor;
+    }
+
+    /// g + d of contact that opens.
+    double
+    gap(const Point<dim> &x, const double t) const;
+
+    /// Whether nodes have contact points here: friction or obstacles.
+    bool
+    has_contact_points() const
+    {
+      return has_friction() || is_unilateral();
     }
 
     bool
@@ -152,13 +217,18 @@ namespace Viscoplastic
     unused_entries(const BoundaryParameters &parameters) const;
 
     /**
-     * The friction bound rho(x,t): g, or mu |S|. Throws ExcMessage where it is
-     * negative.
+     * The friction bound rho(x,t): g, or mu |S|, or of a computed pressure mu.
+     * Throws ExcMessage where it is negative.
      */
     double
     bound(const Point<dim> &x, const double t) const;
 
-    /// Whether bound() depends on time.
+    /// f(v), by which the bound is multiplied at the slip rate v >= 0. Throws
+    /// ExcMessage where it is negative.
+    double
+    bound_factor(const double slip_rate) const;
+
+    /// Whether bound() or gap() depend on time.
     bool
     bound_depends_on_time() const;
 

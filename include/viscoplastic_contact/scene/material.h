@@ -14,6 +14,11 @@ namespace Viscoplastic
   /**
    * What one part of the body consists of: its elastic tensor E as a function
    * of position, and its law G.
+   *
+   * A material may be absent in some stages of construction. Its cells stay in
+   * the mesh then, without loads, flow or stress, and with a stiffness that is
+   * absent_stiffness times that of the material: what is left of the body does
+   * not feel them, and they follow it.
    */
   template <int dim>
   class Material
@@ -27,7 +32,8 @@ namespace Viscoplastic
     Material(const std::string                 &section,
              const MaterialParameters          &parameters,
              ParameterHandler                  &handler,
-             const std::vector<LawDescription> &laws = built_in_laws());
+             const std::vector<LawDescription> &laws      = built_in_laws(),
+             const bool                         is_absent = false);
 
     /// E at x. Throws ExcMessage naming section, place and what is wrong.
     Stiffness
@@ -43,11 +49,22 @@ namespace Viscoplastic
     bool
     is_uniform() const;
 
+    static constexpr double absent_stiffness = 1e-6;
+
     const std::string section, law_name;
+    /// Whether this stands for the material where it is absent.
+    const bool is_absent;
+    /// When the material comes and goes; -infinity and infinity for one that is
+    /// always there.
+    double added_at, removed_at;
     /// The law of flow; null for an elastic material.
     std::unique_ptr<const ViscoplasticLaw> law;
 
   private:
+    /// From Young's modulus and Poisson's ratio at x.
+    Stiffness
+    isotropic(const Point<dim> &x) const;
+
     std::optional<Expression<dim>> youngs_modulus, poissons_ratio; // isotropic
     std::optional<Stiffness>       anisotropic;
   };

@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/scene/boundary_condition.h>
 #include <viscoplastic_contact/scene/exact_solution.h>
 #include <viscoplastic_contact/scene/material.h>
+#include <viscoplastic_contact/scene/output_places.h>
 #include <viscoplastic_contact/scene/quantity_of_interest.h>
 
 #include <map>
@@ -51,6 +52,55 @@ namespace Viscoplastic
     {
       return *material_of_id.at(id);
     }
+
+    /// Whether cells of this material are part of the body in the present
+    /// stage. Known after inspect().
+    bool
+    is_present(const types::material_id id) const
+    {
+      return !material(id).is_absent;
+    }
+
+    /// The material of cells with this id, be it absent in the present stage.
+    const Material<dim> &
+    lasting_material(const types::material_id id) const
+    {
+      return *entries.at(id).material;
+    }
+
+    /// Whether materials come or go, be it after the end of the run.
+    bool
+    has_stages() const
+    {
+      return has_changing_materials;
+    }
+
+    /// The present stage of construction, from 0 on.
+    unsigned int
+    stage() const
+    {
+      return present_stage;
+    }
+
+    /// Whether another stage begins after a step that ends at time t.
+    bool
+    stage_is_over(const double t) const
+    {
+      return present_stage < stage_ends.size() &&
+             t >= stage_ends[present_stage];
+    }
+
+    /// The stage to which a step belongs that ends at time t.
+    unsigned int
+    stage_of_step_to(const double t) const;
+
+    /// Sections of the materials that the present stage does not have.
+    std::vector<std::string>
+    absent_materials() const;
+
+    /// Let materials come and go, so that those of stage @p n are present.
+    void
+    enter_stage(const unsigned int n);
 
     /// Whether errors are measured against a known solution.
     bool
@@ -96,11 +146,22 @@ namespace Viscoplastic
     bool
     has_irreversible_stress() const
     {
-      return has_viscosity() || initial_displacement || initial_stress;
+      return has_viscosity() || initial_displacement || initial_stress ||
+             has_stages();
     }
 
     bool
     has_friction() const;
+
+    bool
+    has_unilateral_contact() const;
+
+    /// Whether nodes have contact points: friction or obstacles.
+    bool
+    has_contact_points() const
+    {
+      return has_friction() || has_unilateral_contact();
+    }
 
     /// Whether the error of time steps is estimated: of z, and of slip that may
     /// turn.
@@ -113,8 +174,16 @@ namespace Viscoplastic
     bool
     has_contact() const;
 
+    /// Those with the role contact.
+    std::set<types::boundary_id>
+    contact_boundaries() const;
+
     bool
     has_moving_foundation() const;
+
+    /// Whether any output asks for what friction has done per area.
+    bool
+    keeps_friction_work() const;
 
     /// Whether neither loads nor friction bounds depend on time.
     bool
@@ -131,17 +200,21 @@ namespace Viscoplastic
     /// The exact solution; null if none is known.
     std::unique_ptr<ExactSolution<dim>>                  exact_solution;
     std::map<types::boundary_id, BoundaryCondition<dim>> boundary;
-    /// The materials that some cell has.
+    /// The materials that some cell has in some stage.
     std::vector<std::unique_ptr<const Material<dim>>> materials;
     /// b, u0, sigma0; absent where identically zero.
     std::optional<VectorExpression<dim>> body_force;
     std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
-    /// Points whose displacement is recorded.
-    std::vector<Point<dim>> output_points;
+    /// What is recorded beside the fields, and where.
+    std::vector<Point<dim>>      output_points;
+    std::vector<OutputLine<dim>> output_lines;
+    std::vector<OutputIntegral>  output_integrals;
     /// That of `Error control/Quantity'; absent if there is none.
     std::optional<QuantityOfInterest> quantity;
     /// What is allowed but should be known, a sentence each.
     std::vector<std::string> warnings;
+    /// The times at which materials come or go, in ascending order.
+    std::vector<double> stage_ends;
 
   private:
     void
@@ -163,11 +236,27 @@ namespace Viscoplastic
     void
     make_materials(const std::set<types::material_id> &ids);
 
+    /// Find the stages of construction; refuse some that cannot be.
+    void
+    find_stages(const parallel::distributed::Triangulation<dim> &triangulation);
+
     /// What follows from an exact solution, and refuse it from elsewhere.
     void
     derive_data();
 
+    struct Entry
+    {
+      const Material<dim> *material;
+      /// What stands for it where it is absent; null if it never is.
+      const Material<dim> *absent = nullptr;
+      /// The first stage that has it, and the first after these.
+      unsigned int begin = 0, end = numbers::invalid_unsigned_int;
+    };
+
+    std::map<types::material_id, Entry>                 entries;
     std::map<types::material_id, const Material<dim> *> material_of_id;
+    unsigned int                                        present_stage = 0;
+    bool has_changing_materials                                       = false;
   };
 
 

@@ -53,12 +53,15 @@ namespace Viscoplastic
    * then the choices of the discretization, and what only watches.
    *
    * @p typical_stress: a von Mises stress at which a power law and a linear one
-   * are to flow at the same rate. Collective, for the @p means.
+   * are to flow at the same rate. @p contact_force: the size of the force of
+   * unilateral contact, as an expression of t; empty where it is not known.
+   * Collective, for the @p means.
    */
   std::vector<EffectVariant>
-  effect_variants(const Parameters &scene,
-                  const SceneData  &means,
-                  const double      typical_stress);
+  effect_variants(const Parameters  &scene,
+                  const SceneData   &means,
+                  const double       typical_stress,
+                  const std::string &contact_force = "");
 
   /// The isotropic tensor that is nearest to a stiffness in the Frobenius norm
   /// of fourth-order tensors, which does not depend on the axes.

@@ -11,8 +11,11 @@
 
 namespace Viscoplastic
 {
-  /// What is known of the errors and costs of a scene, as functions of the mesh
-  /// width h and the longest time step k.
+  /**
+   * What is known of the errors and costs of a scene, as functions of the mesh
+   * width h and the longest time step k. Where step control chooses the steps,
+   * k is its tolerance instead, which the time part of the error is a power of.
+   */
   struct WorkPrecisionModel
   {
     TwoPowers    error; // of h and k
@@ -21,20 +24,34 @@ namespace Viscoplastic
     /// Of the scene as it is: mesh level 0 and its own steps.
     double                  h = 1., k = 1., dofs = 1.;
     std::vector<StepsUntil> phases;
+    /// With step control: how many steps there are, as a function of 1/k, and
+    /// the order of the scheme: steps half as long take k/2^order.
+    std::optional<TwoPowers> chosen_steps;
+    unsigned int             order = 1;
     /// How many levels the mesh may be coarsened.
     int coarsest_level = 0;
     /// The longest step that was measured, or the limit of stability.
     double largest_k = std::numeric_limits<double>::infinity();
-    /// How often a run of so many steps is set up, once for each of its meshes.
-    std::function<double(double)> n_set_ups = [](double) { return 1.; };
+    /// How often a run of so many steps is set up, once for each of its meshes,
+    /// where so many are those of its phases.
+    std::function<double(double, unsigned int)> n_set_ups =
+      [](double, unsigned int) { return 1.; };
     /// The smallest h and k that have been measured, to tell extrapolations.
     double smallest_h = 0., smallest_k = 0.;
 
     double
     dofs_at(const double h) const;
 
+    /// How many times as many steps as those of the scene k stands for.
     double
-    seconds(const double h, const double steps) const;
+    refinement_of_steps(const double k) const;
+
+    /// About how many steps there are, before whole numbers for each phase.
+    double
+    steps_at(const double k) const;
+
+    double
+    seconds(const double h, const double k) const;
   };
 
 
@@ -43,16 +60,18 @@ namespace Viscoplastic
   {
     int                     mesh_level = 0;
     std::vector<StepsUntil> phases;
-    double                  h = 0., k = 0.;
-    unsigned int            steps = 0;
-    double                  dofs = 0., error = 0., seconds = 0., memory = 0.;
-    BulkSolverKind          solver = BulkSolverKind::direct;
+    /// As in WorkPrecisionModel.
+    double         h = 0., k = 0.;
+    unsigned int   steps = 0;
+    double         dofs = 0., error = 0., seconds = 0., memory = 0.;
+    BulkSolverKind solver = BulkSolverKind::direct;
     /// Whether h or k is below half of the smallest one that was measured.
     bool is_far = false;
   };
 
 
-  /// The run on mesh level @p mesh_level with steps of at most @p k.
+  /// The run on mesh level @p mesh_level with steps of at most @p k, or to
+  /// that tolerance of them.
   PredictedRun
   predict(const WorkPrecisionModel &model,
           const int                 mesh_level,

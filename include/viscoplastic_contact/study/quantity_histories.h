@@ -24,7 +24,8 @@ namespace Viscoplastic
    * area is none of them: it jumps from point to point, in time, too.
    * They are relative to the largest value of the first, or to a thousandth of
    * what others of the same kind reach, if that is larger; energies are to the
-   * largest of them. What a run has no column for is zero.
+   * largest of them. What a run has no column for is zero, but for the force of
+   * unilateral contact, which then is not compared.
    */
   std::vector<QuantityChange>
   changes_between(const Table &run, const Table &other);

@@ -41,6 +41,10 @@ namespace Viscoplastic
     virtual std::optional<std::string>
     over_time(const std::string &components) const = 0;
 
+    /// The area of a boundary, in the plane its length. Collective.
+    virtual double
+    area(const unsigned int id) const = 0;
+
     /// `Material/Volumetric integration', or what `automatic' stands for.
     /// Collective.
     virtual VolumetricIntegration

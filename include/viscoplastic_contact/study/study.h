@@ -54,7 +54,8 @@ namespace Viscoplastic
    * down to that of the scene. A scene without an exact solution gets a
    * reference run one level finer in both (with runs to a tolerance: to half of
    * the scene's), which comes before those that are compared with it; a few
-   * coarse runs tell whether it fits into the budget.
+   * coarse runs tell whether it fits into the budget. If it does not, the study
+   * has fewer levels, but three at least.
    */
   class Study
   {
@@ -80,6 +81,10 @@ namespace Viscoplastic
     /// That of the run that others are compared with.
     const MeshStrategy reference_strategy;
 
+    /// Of each ladder: `Study/Levels', or fewer where the budget would not
+    /// reach the reference run of so many.
+    unsigned int n_levels;
+
     /// All runs, the cheapest first.
     std::vector<PlannedRun> plan;
 
@@ -97,13 +102,22 @@ namespace Viscoplastic
     Records
     timed(const MethodVariant &variant) const;
 
+    /// Why the ladders have fewer levels than `Study/Levels'; empty if they do
+    /// not.
+    std::string
+    levels_in_words() const;
+
     /// The method variants of which there are finished runs, in the order of
     /// the plan.
     std::vector<MethodVariant>
     variants() const;
 
   private:
-    /// Decide which runs there are. Throws ExcMessage.
+    /// Without an exact solution: fewer do not show whether the finest run can
+    /// serve as a reference.
+    static constexpr unsigned int fewest_levels = 3;
+
+    /// Decide which runs there are, with n_levels. Throws ExcMessage.
     void
     make_plan();
 
@@ -124,10 +138,28 @@ namespace Viscoplastic
     std::string
     interruption_in(const std::string &run, const std::string &sentence) const;
 
-    /// Make the reference run, if there is time for it. Returns the sentence of
-    /// a signal.
+    bool
+    can_take_fewer_levels() const;
+
+    /// Whether there is a finished reference run, also of an earlier call that
+    /// had to take fewer levels; the plan has its levels then.
+    bool
+    find_reference();
+
+    /// Make the reference run, if there is time for it, of fewer levels if need
+    /// be. Returns the sentence of a signal.
     std::string
     make_reference();
+
+    /// Make the coarse runs without a reference that tell how long the
+    /// reference run takes. Returns the sentence of a signal.
+    std::string
+    make_first_runs();
+
+    /// What the runs that are missing will take; not a number if that of some
+    /// cannot be known yet.
+    double
+    seconds_left() const;
 
     /// Look for records of finished runs.
     void

@@ -53,6 +53,19 @@ namespace Viscoplastic
               const std::string &measure,
               const RunRecord   *reference);
 
+  /// How many steps step control takes to the tolerance TOL, of the records
+  /// of one method variant: c TOL^-q + c_0, with q = 1/p for a scheme of order
+  /// p where they do not tell.
+  TwoPowers
+  fit_chosen_steps(const Records &records);
+
+  /// How many steps a run has: those of its phases, or what its tolerance
+  /// takes by the records.
+  double
+  expected_steps(const StudyRuns &runs,
+                 const Records   &records,
+                 const RunKey    &key);
+
   /// The fit of seconds and memory.
   CostModel
   cost_of(const Records &records);

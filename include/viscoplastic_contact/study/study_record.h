@@ -41,6 +41,10 @@ namespace Viscoplastic
     /// Values of `Time/Scheme' and `Material/Stress history'.
     std::string scheme, history;
 
+    /// The order of the scheme in k.
+    unsigned int
+    order() const;
+
     /// All three as text.
     std::string
     name() const
@@ -62,7 +66,8 @@ namespace Viscoplastic
   {
     MethodVariant variant;
     /// Halvings of h and k from those of the scene, or both those of its
-    /// tolerance; negative: doublings.
+    /// tolerance; negative: doublings. Where step control chooses the steps,
+    /// its tolerance halves k.
     int mesh_level = 0, time_level = 0;
     /// Whether it only tells what it costs, and is compared with nothing.
     bool is_timing = false;
@@ -125,6 +130,11 @@ namespace Viscoplastic
     /// The number of this name; not a number if there is none.
     double
     number(const std::string &column) const;
+
+    /// What the time part of the error is a power of: the longest step, or,
+    /// where step control chooses them, the tolerance of the steps.
+    double
+    step_measure() const;
 
     /// The quantity of interest of this name; not a number if there is none.
     double

@@ -54,17 +54,12 @@ namespace Viscoplastic
     /// with another one, or none, do not count as finished.
     std::optional<RunKey> reference;
 
-    /// Whether runs choose their steps where the scene does: by step control,
-    /// whose tolerance goes with the time level, or by dividing those beyond
-    /// the stability limit. Otherwise they have the given steps, or fail.
-    bool may_choose_steps = false;
+    /// Whether runs divide given steps beyond the stability limit where the
+    /// scene does. Otherwise they have the given steps, or fail.
+    bool may_subdivide = false;
 
     /// Whether runs write fields and checkpoints as the scene does.
     bool has_outputs = false;
-
-    /// Throws ExcMessage if the steps of the scene are chosen by their error.
-    void
-    require_given_steps() const;
 
     /// Make the directory of the study, and take its lock, so that no two
     /// studies make the same runs at once.
@@ -81,9 +76,24 @@ namespace Viscoplastic
     steps_per_mesh(const MeshStrategy strategy,
                    const unsigned int n_steps) const;
 
-    /// How often a run of so many steps is set up, once for each of its meshes.
+    /// How often a run of so many steps is set up, once for each of its meshes,
+    /// where its phases have @p n_planned steps: by step control these are
+    /// others.
     double
-    n_set_ups(const MeshStrategy strategy, const double n_steps) const;
+    n_set_ups(const MeshStrategy strategy,
+              const double       n_steps,
+              const unsigned int n_planned) const;
+
+    /// The phases of time of a run: those of the scene with twice the steps for
+    /// each time level.
+    std::vector<StepsUntil>
+    phases_of(const RunKey &key) const;
+
+    /// The tolerance of a run's steps where step control chooses them, so that
+    /// they are half as long for each time level: half of the scene's, or a
+    /// quarter with a scheme of second order. 0 where steps are given.
+    double
+    step_tolerance(const RunKey &key) const;
 
     /// The tolerance of a run that chooses meshes and steps itself: that of the
     /// scene, halved level by level. 0 of other runs.
@@ -109,10 +119,11 @@ namespace Viscoplastic
     overrides_of(const RunKey &key) const;
 
     /// Those of the overrides that choose mesh, steps and method, for steps of
-    /// any number.
+    /// any number, or to any tolerance of the steps where the scene has one.
     std::vector<std::string>
     discretization(const RunKey                  &key,
-                   const std::vector<StepsUntil> &steps) const;
+                   const std::vector<StepsUntil> &steps,
+                   const double                   step_tolerance) const;
 
     /// The record of a run that is finished. One that is damaged or belongs
     /// to something else does not count.

@@ -32,6 +32,10 @@ namespace Viscoplastic
                    const double     seconds,
                    Console         &console);
 
+  /// In MB, half of the memory of this machine.
+  double
+  affordable_memory();
+
   /// The seconds for make_timing_runs(): as many as the runs have taken that
   /// there are, or a tenth of those of the run that is to be priced, but one at
   /// least.

@@ -22,9 +22,11 @@ namespace Viscoplastic
    * The price of the error @p eps of the scene with given meshes and steps, by
    * its own strategy for meshes, from pilot runs: on coarser meshes with longer
    * steps, or, where the scene is small already, on finer ones; four of them, h
-   * and k each halved alone and both. Finished ones are used again. Where the
-   * run is worth @p seconds, timing runs take no longer than a share of them,
-   * see seconds_for_timing().
+   * and k (or the tolerance of the steps) each halved alone and both. A mesh
+   * that cannot be made coarser is the only one of two, beside a third run on
+   * the next finer mesh where there is time for it. Finished ones are used
+   * again. Where the run is worth @p seconds, this one and timing runs take no
+   * longer than a share of them, see seconds_for_timing().
    *
    * Prints what it makes and finds. The price keeps a reference to @p runs.
    * Collective.

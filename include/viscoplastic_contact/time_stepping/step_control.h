@@ -151,10 +151,16 @@ namespace Viscoplastic
     bool
     retries(const TimeStep &step, const bool for_stability);
 
-    /// About how many steps the run will have, after n steps, the last of size
-    /// k to t.
+    /// About how many steps the run will have, after n steps to t, the last
+    /// ones of size k. Steps by their error grow from k to what the error of
+    /// the last one would have allowed, at most to @p limit, 2/r of an explicit
+    /// scheme, or, if there is none, on as that has grown lately, as in a
+    /// relaxation. In later phases they begin with that of the phase.
     double
-    expected_steps(const unsigned int n, const double t, const double k) const;
+    expected_steps(const unsigned int n,
+                   const double       t,
+                   const double       k,
+                   const double       limit) const;
 
     /// Whether events of a step from time t count: after a kink of the data
     /// slip may end at once, which says nothing.
@@ -202,6 +208,11 @@ namespace Viscoplastic
       double event_before = 0.;
       /// Of the contributions of all steps to the time error.
       double unsigned_sum = 0.;
+      /// The step size that the error of the last accepted step would have
+      /// allowed, and the logarithm of its growth from step to step: a mean
+      /// with weights that halve in about seven steps, and their sum. Not
+      /// archived, a run that goes on learns them anew.
+      double allowed = 0., growth = 0., growth_weight = 0.;
     };
 
     double

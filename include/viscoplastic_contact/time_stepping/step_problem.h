@@ -26,7 +26,8 @@ namespace Viscoplastic
     TimeStep time_step;
     /// L(t_n, .).
     Load<dim> load;
-    /// rho_c(t_n) of each friction point, which make j_n.
+    /// rho_c(t_n) of each friction point, which make j_n, and the distance d_c
+    /// to each obstacle.
     std::vector<double> bounds;
     /// What the foundation moves in the step, as a face vector; empty at rest.
     Vector<double> foundation_step;
@@ -43,6 +44,13 @@ namespace Viscoplastic
     /// multiplier, and the tolerance allows their error. The same on all
     /// ranks.
     bool data_are_unchanged = false;
+
+    /// Whether some bounds are those of the pressure of this step, and the part
+    /// of all of them that does not depend on it.
+    bool                bounds_follow_pressure = false;
+    std::vector<double> given_bounds           = {};
+    /// At t_{n-1}, at which bounds depend on them; empty where none does.
+    std::vector<double> slip_rates = {};
 
     /// u_{n-1} in frames.
     const DistributedVector &
@@ -97,6 +105,8 @@ namespace Viscoplastic
     /// The body stays where it is: the state becomes the old one, at rest, but
     /// for z.
     void
-    stay(const StepProblem<dim> &problem, const AdmissibleSpace<dim> &space);
+    stay(const StepProblem<dim>     &problem,
+         const AdmissibleSpace<dim> &space,
+         const ContactFace<dim>     *face);
   };
 } // namespace Viscoplastic

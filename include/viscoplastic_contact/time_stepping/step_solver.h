@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/time_stepping/proximal_springs.h>
 #include <viscoplastic_contact/time_stepping/step_problem.h>
 
 #include <memory>
@@ -65,7 +66,9 @@ namespace Viscoplastic
     /**
      * Solve from @p u and @p friction, which take the solution up.
      * @p right_side is the load of the problem less what does not depend on u;
-     * @p tolerance is relative. Throws ExcMessage. Collective.
+     * @p tolerance is relative. Where Coulomb's law takes the pressure of the
+     * step itself, the fixed point p of p -> p(rho = mu p) is found by solving
+     * again. Throws ExcMessage. Collective.
      */
     ContactReport
     solve(const StepProblem<dim>  &problem,
@@ -76,7 +79,8 @@ namespace Viscoplastic
 
     /**
      * Move @p u, in frames, into equilibrium with @p right_side while all
-     * points with friction stay where they are. One linear solve to the
+     * points with friction, and those that touch an obstacle, stay where they
+     * are. One linear solve to the
      * relative error @p tolerance. Throws ExcMessage. Collective.
      */
     void
@@ -98,6 +102,35 @@ namespace Viscoplastic
       const DistributedVector &old_u, &load, &right_side;
       const Vector<double>    &foundation_step;
     };
+
+    /// solve() with the bounds of @p friction.
+    ContactReport
+    solve_with_given_bounds(const StepProblem<dim>  &problem,
+                            const DistributedVector &right_side,
+                            const double             tolerance,
+                            DistributedVector       &u,
+                            FrictionState           &friction);
+
+    /// The same with the matrix of the linear solver.
+    ContactReport
+    solve_regular(const StepProblem<dim>  &problem,
+                  const DistributedVector &right_side,
+                  const double             tolerance,
+                  DistributedVector       &u,
+                  FrictionState           &friction);
+
+    /// How far a motion can be repeated from @p u without entering an obstacle.
+    /// Collective.
+    double
+    way_to_obstacles(const StepProblem<dim>  &problem,
+                     const FrictionState     &friction,
+                     const DistributedVector &u,
+                     const DistributedVector &motion) const;
+
+    /// The norm of a displacement in the springs of the proximal point method.
+    /// Collective.
+    double
+    norm_in_springs(const DistributedVector &u) const;
 
     /// solve() in a unit of forces and displacements in which squares of them
     /// are ordinary numbers.
@@ -122,5 +155,7 @@ namespace Viscoplastic
     const ContactSolver         contact_solver;
     std::unique_ptr<BulkSolver> bulk_solver;
     DistributedVector           diagonal; // of the matrix
+    /// Where only contact prevents a rigid motion; otherwise null.
+    std::unique_ptr<ProximalSprings<dim>> springs;
   };
 } // namespace Viscoplastic

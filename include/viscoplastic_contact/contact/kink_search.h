@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/contact/friction_face.h>
+
+namespace Viscoplastic
+{
+  // The energy J of a step has kinks: where slip changes sides, and where a
+  // node meets an obstacle. What follows searches along corrections w of the
+  // face with them in view. All calls are collective.
+
+  /// A step along a correction, and what it does to J.
+  struct SearchResult
+  {
+    double step, energy_change;
+  };
+
+
+  /**
+   * The step that minimizes J along the correction @p w, of at most 2 and of
+   * what no obstacle ends; 1 if that is as good up to inexact linear solves, 0
+   * if there is no descent.
+   */
+  SearchResult
+  search_along(BulkSolver           &bulk,
+               const FrictionFace   &face,
+               const FrictionState  &state,
+               const Vector<double> &w);
+
+
+  /// Shorten a correction @p w where it meets kinks of J: slip that would
+  /// change sides comes to rest, a way into an obstacle ends at it. At corners,
+  /// where points share a node, the line search alone decides. @p x: the
+  /// increment. Returns whether there is such a node.
+  bool
+  stop_at_kinks(const FrictionFace   &face,
+                const FrictionState  &state,
+                const Vector<double> &x,
+                Vector<double>       &w);
+
+
+  /// Bring the nodes that the correction @p w would take beyond a kink of J
+  /// there: the increment @p x and the sets of @p state change, @p change is
+  /// set to that of the face. Returns the change of j.
+  double
+  bring_to_kinks(const FrictionFace   &face,
+                 const Vector<double> &w,
+                 Vector<double>       &x,
+                 FrictionState        &state,
+                 Vector<double>       &change);
+} // namespace Viscoplastic

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * How a foundation gives way at a node: the force p(w), the sum of k w_+^m
+   * over the pieces that meet there, at the penetration w = u_n - g.
+   */
+  class NormalCompliance
+  {
+  public:
+    /// Add a piece: k = int c phi >= 0 in force per length^m, and m >= 1.
+    void
+    add(const double stiffness, const double exponent);
+
+    /// Whether there is no piece that gives way.
+    bool
+    is_rigid() const
+    {
+      return pieces.empty();
+    }
+
+    double
+    force(const double w) const;
+
+    /// p'(w).
+    double
+    slope(const double w) const;
+
+    /// int_0^w p.
+    double
+    energy(const double w) const;
+
+    /// The penetration at a force p > 0.
+    double
+    penetration(const double p) const;
+
+    /// The penetration at which a node stays that moves by @p flexibility per
+    /// unit of force, and without one to @p free_w > 0.
+    double
+    penetration(const double flexibility, const double free_w) const;
+
+    /**
+     * A bound on energy(w) + its conjugate at @p p - p w >= 0, which is zero
+     * for p = force(w): what it costs to take another force p >= 0 for the one
+     * at w > 0. (The integral of p(x) - p from where p is the force to w.)
+     */
+    double
+    defect(const double w, const double p) const;
+
+  private:
+    struct Piece
+    {
+      double stiffness, exponent;
+    };
+    std::vector<Piece> pieces;
+  };
+} // namespace Viscoplastic

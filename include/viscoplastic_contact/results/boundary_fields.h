@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/results/body_fields.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Fields of the boundary in a state, as BodyFields are of the body: those of
+   * contact and friction, which have values at the nodes of Gamma_3, and
+   * tractions, which are those of the mean stress of the cell behind a face.
+   */
+  template <int dim>
+  class BoundaryFields
+  {
+  public:
+    /// Of @p fields those of the boundary. @p face is null without friction.
+    /// Collective.
+    BoundaryFields(const StressSpace<dim>        &stress_space,
+                   const State<dim>              &state,
+                   const ContactFace<dim>        *face,
+                   const std::set<RecordedField> &fields);
+
+    /// What a field is called in the outputs, and whether it is a vector.
+    static std::string
+    name(const RecordedField field);
+    static bool
+    is_vector(const RecordedField field);
+
+    /// What the values are called; vectors have one a component.
+    static std::vector<std::string>
+    names(const std::set<RecordedField> &fields);
+
+    /// The values at a vertex of an owned cell, on a face with an outward unit
+    /// normal. Fields of contact need a face of Gamma_3.
+    std::vector<double>
+    values(const std::size_t     cell,
+           const unsigned int    face,
+           const unsigned int    vertex,
+           const Tensor<1, dim> &normal) const;
+
+    /// Add to each of @p values the sum over the vertices of the face of weight
+    /// times value.
+    void
+    add(const std::size_t         cell,
+        const unsigned int        face,
+        const VertexWeights<dim> &weights,
+        const Tensor<1, dim>     &normal,
+        double                   *values) const;
+
+  private:
+    bool
+    has(const RecordedField field) const
+    {
+      return fields.count(field) > 0;
+    }
+
+    const StressSpace<dim> &stress_space;
+    const State<dim>       &state;
+    std::set<RecordedField> fields;
+    /// Of friction points, at the nodes: where a frictional piece has none,
+    /// other conditions prescribe the node. Absent where not needed.
+    DistributedVector density, bound, utilization, slipping, pressure, gap;
+  };
+} // namespace Viscoplastic

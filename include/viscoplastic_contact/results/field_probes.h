@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/mesh/point_location.h>
+#include <viscoplastic_contact/results/boundary_fields.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Fields at some points of the body, on one mesh, as the outputs have them: a
+   * field that is constant in cells is that of the cell that locate_points()
+   * gives. Fields of the boundary are known at points on Gamma_3.
+   */
+  template <int dim>
+  class FieldProbes
+  {
+  public:
+    /// @p discretization stays in use. Collective.
+    FieldProbes(const Discretization<dim>     &discretization,
+                const std::vector<Point<dim>> &points,
+                const std::set<RecordedField> &fields);
+
+    /// What the values are called; those from n_of_body() on are of the
+    /// boundary.
+    const std::vector<std::string> &
+    names() const
+    {
+      return all_names;
+    }
+
+    std::size_t
+    n_of_body() const
+    {
+      return n_body;
+    }
+
+    /// Whether a point is on Gamma_3; false if no field of the boundary is
+    /// asked for.
+    bool
+    is_on_contact(const std::size_t point) const
+    {
+      return is_on_face[point];
+    }
+
+    /// The values at one point after the other, on all ranks; nan for fields of
+    /// the boundary at points that are not on Gamma_3, and for those of the
+    /// body at points in an absent material. Collective.
+    std::vector<double>
+    values(const State<dim> &state) const;
+
+  private:
+    const Discretization<dim>    &discretization;
+    const std::set<RecordedField> fields;
+    std::vector<std::string>      all_names;
+    std::size_t                   n_body;
+    /// In the body and on Gamma_3.
+    std::vector<CellPoint<dim>> in_body, on_face;
+    std::vector<bool>           is_on_face;
+    /// Those that only cells of absent materials hold.
+    std::vector<std::size_t> absent_points;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/results/run_summary.h>
+#include <viscoplastic_contact/scene/scene.h>
+
+#include <string>
+
+namespace Viscoplastic
+{
+  /// `Output/Directory', or what it is by default; ends with a slash.
+  std::string
+  results_directory(const Parameters &parameters);
+
+  /// Make it. Throws ExcMessage.
+  void
+  make_results_directory(const std::string &path);
+
+  /// Throws ExcMessage if the results in directory @p path, with @p n_lines
+  /// files of lines, would overwrite what somebody else keeps under their
+  /// names.
+  void
+  refuse_foreign_files(const std::string &path, const std::size_t n_lines);
+
+  /// Write what is needed to reproduce a run: parameters.prm and run.json, with
+  /// the errors of @p summary unless that is null. On one rank.
+  template <int dim>
+  void
+  write_record(const Scene<dim>      &scene,
+               const std::string     &path,
+               const unsigned int     n_ranks,
+               const RunSummary<dim> *summary);
+} // namespace Viscoplastic

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/point.h>
+#include <deal.II/distributed/tria.h>
+
+#include <viscoplastic_contact/parameters/choices.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  template <int dim>
+  class Scene;
+
+  /// A line of `Output/Lines': points at equal distances, the ends among them.
+  template <int dim>
+  struct OutputLine
+  {
+    Point<dim>   begin, end;
+    unsigned int n_points;
+
+    double
+    distance(const unsigned int i) const
+    {
+      return begin.distance(end) * i / (n_points - 1);
+    }
+
+    std::vector<Point<dim>>
+    points() const;
+  };
+
+
+  /// What `Output/Integrals' asks for of a boundary, a material or the body.
+  struct OutputIntegral
+  {
+    enum class Domain
+    {
+      boundary,
+      material,
+      body
+    };
+
+    Domain                  domain = Domain::body;
+    unsigned int            id     = 0; // of a boundary or material
+    std::set<RecordedField> fields;
+    /// Whether energies are asked for: of materials and the body.
+    bool energies = false;
+
+    /// As in names of columns: `boundary_3', `material_2', `body'.
+    std::string
+    name() const;
+  };
+
+
+  /// The points of `Output/Points'. Throws ExcMessage, as the others do.
+  template <int dim>
+  std::vector<Point<dim>>
+  read_output_points(const std::string &text);
+
+  /// The lines of `Output/Lines'.
+  template <int dim>
+  std::vector<OutputLine<dim>>
+  read_output_lines(const std::string &text);
+
+  /// The integrals of `Output/Integrals'.
+  std::vector<OutputIntegral>
+  read_output_integrals(const std::string &text);
+
+
+  /**
+   * Hold what a scene records against its mesh: points and lines have to be in
+   * the body, boundaries, materials and fields to exist. Returns what is
+   * allowed but means nothing, a sentence each. Collective. Throws ExcMessage.
+   */
+  template <int dim>
+  std::vector<std::string>
+  check_output_places(
+    const Scene<dim>                                &scene,
+    const parallel::distributed::Triangulation<dim> &triangulation);
+} // namespace Viscoplastic

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/units.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr Dimension length_dimension{1., 0., 0.},
+      time_dimension{0., 1., 0.}, stress_dimension{0., 0., 1.},
+      force_dimension{2., 0., 1.};
+
+    // Also of a calendar's year, in the mean.
+    constexpr double day = 86400., year = 365.25 * day;
+
+    // What expressions use otherwise (t is no tonne) is not here.
+    const std::vector<Unit> &
+    known_units()
+    {
+      static const std::vector<Unit> units{
+        {"nm", length_dimension, 1e-9}, {"um", length_dimension, 1e-6},
+        {"mm", length_dimension, 1e-3}, {"cm", length_dimension, 1e-2},
+        {"m", length_dimension, 1.},    {"km", length_dimension, 1e3},
+        {"ms", time_dimension, 1e-3},   {"s", time_dimension, 1.},
+        {"min", time_dimension, 60.},   {"h", time_dimension, 3600.},
+        {"day", time_dimension, day},   {"days", time_dimension, day},
+        {"year", time_dimension, year}, {"years", time_dimension, year},
+        {"Pa", stress_dimension, 1.},   {"kPa", stress_dimension, 1e3},
+        {"MPa", stress_dimension, 1e6}, {"GPa", stress_dimension, 1e9},
+        {"bar", stress_dimension, 1e5}, {"N", force_dimension, 1.},
+        {"kN", force_dimension, 1e3},   {"MN", force_dimension, 1e6},
+        {"J", {3., 0., 1.}, 1.},        {"kg", {1., 2., 1.}, 1.}};
+      return units;
+    }
+
+
+
+    const Unit *
+    find_unit(const std::string &name)
+    {
+      const auto found =
+        std::find_if(known_units().begin(),
+                     known_units().end(),
+                     [&name](const Unit &unit) { return unit.name == name; });
+      return found == known_units().end() ? nullptr : &*found;
+    }
+
+
+
+    bool
+    is_digit(const char c)
+    {
+      return std::isdigit(static_cast<unsigned char>(c)) != 0;
+    }
+
+
+
+    /// Reads a text from left to right.
+    struct Cursor
+    {
+      const std::string &text;
+      std::size_t        at;
+
+      char
+      next() const
+      {
+        return at < text.size() ? text[at] : '\0';
+      }
+
+      void
+      skip_blanks()
+      {
+        at = std::min(text.find_first_not_of(' ', at), text.size());
+      }
+
+      /// Letters, digits and underscores that begin with a letter.
+      std::string
+      word()
+      {
+        const std::size_t begin = at;
+        if (std::isalpha(static_cast<unsigned char>(next())) != 0)
+          while (std::isalnum(static_cast<unsigned char>(next())) != 0 ||
+                 next() == '_')
+            ++at;
+        return text.substr(begin, at - begin);
+      }
+
+      /// Whether a parenthesis makes a function of the word before.
+      bool
+      is_call() const
+      {
+        const std::size_t i = text.find_first_not_of(' ', at);
+        return i != std::string::npos && text[i] == '(';
+      }
+
+      /// The exponent of a unit, `^-5' or `^(-5)'; 1 where there is none.
+      double
+      exponent()
+      {
+        const std::size_t begin = at;
+        if (next() != '^')
+          return 1.;
+        ++at;
+        const bool has_parentheses = next() == '(';
+        at += has_parentheses ? 1 : 0;
+        const std::size_t first = at;
+        if (next() == '-' || next() == '+')
+          ++at;
+        while (is_digit(next()) || next() == '.')
+          ++at;
+        const std::string digits = text.substr(first, at - first);
+        const bool        closes = !has_parentheses || next() == ')';
+        if (std::none_of(digits.begin(), digits.end(), is_digit) || !closes)
+          {
+            at = begin; // the expression will say what is wrong
+            return 1.;
+          }
+        at += has_parentheses ? 1 : 0;
+        return std::stod(digits);
+      }
+    };
+
+
+
+    /// The prefix with which a unit of the SI has this size, or nothing.
+    std::optional<std::string>
+    prefix(const double size)
+    {
+      static const std::map<int, std::string> prefixes{{-9, "n"},
+                                                       {-6, "u"},
+                                                       {-3, "m"},
+                                                       {0, ""},
+                                                       {3, "k"},
+                                                       {6, "M"},
+                                                       {9, "G"},
+                                                       {12, "T"},
+                                                       {15, "P"}};
+      const double                            power = std::log10(size);
+      const auto found = prefixes.find(static_cast<int>(std::lround(power)));
+      if (found == prefixes.end() || std::abs(power - found->first) > 1e-9)
+        return {};
+      return found->second;
+    }
+
+
+
+    /// The whole text as a unit of the dimension that the entry wants.
+    Unit
+    declared_unit(const std::string &entry,
+                  const std::string &text,
+                  const Dimension   &wanted)
+    {
+      const std::string where =
+        "'Units/" + entry + "' is '" + excerpt(text) + "'";
+      const auto        found = read_unit(' ' + text, 0);
+      const std::string allowed =
+        in_words(wanted) + ": " + enumeration(names_of_units(wanted)) +
+        (entry == "Stress" ? ", or a product such as N/mm^2" : "");
+      const std::string unknown = found ? found->unknown_name : text;
+      if (!unknown.empty())
+        {
+          const std::string near =
+            nearest_name(unknown, names_of_units(wanted));
+          AssertThrow(false,
+                      ExcMessage(where + (near.empty() ?
+                                            "; it must be " + allowed + "." :
+                                            "; did you mean '" + near + "'?")));
+        }
+      AssertThrow(found->end == text.size() + 1,
+                  ExcMessage(where + ", which is no unit behind '" +
+                             excerpt(text.substr(0, found->end - 1)) +
+                             "'; it must be " + allowed + "."));
+      AssertThrow(found->unit.dimension == wanted,
+                  ExcMessage(where + ", " + in_words(found->unit.dimension) +
+                             "; it must be " + allowed + "."));
+      return found->unit;
+    }
+  } // namespace
+
+
+
+  bool
+  Dimension::operator==(const Dimension &other) const
+  {
+    const auto equal = [](const double a, const double b) {
+      return std::abs(a - b) < 1e-9;
+    };
+    return equal(length, other.length) && equal(time, other.time) &&
+           equal(stress, other.stress);
+  }
+
+
+
+  Dimension
+  Dimension::operator*(const Dimension &other) const
+  {
+    return {length + other.length, time + other.time, stress + other.stress};
+  }
+
+
+
+  Dimension
+  Dimension::power(const double exponent) const
+  {
+    return {exponent * length, exponent * time, exponent * stress};
+  }
+
+
+
+  std::string
+  in_words(const Dimension &dimension)
+  {
+    static const std::vector<std::pair<Dimension, std::string>> words{
+      {{0., 0., 0.}, "a pure number"},
+      {{1., 0., 0.}, "a length"},
+      {{2., 0., 0.}, "an area"},
+      {{3., 0., 0.}, "a volume"},
+      {{0., 1., 0.}, "a time"},
+      {{0., -1., 0.}, "a rate, 1/time"},
+      {{1., -1., 0.}, "a velocity"},
+      {{0., 0., 1.}, "a stress"},
+      {{2., 0., 1.}, "a force"},
+      {{1., 0., 1.}, "a force per length"},
+      {{-1., 0., 1.}, "a force per volume"},
+      {{3., 0., 1.}, "an energy"},
+      {{0., 1., 1.}, "a viscosity, stress times time"}};
+    for (const auto &[known, word] : words)
+      if (known == dimension)
+        return word;
+    std::ostringstream text;
+    for (const auto &[name, exponent] :
+         {std::make_pair("length", dimension.length),
+          std::make_pair("time", dimension.time),
+          std::make_pair("stress", dimension.stress)})
+      if (std::abs(exponent) > 1e-9)
+        {
+          text << (text.str().empty() ? "" : " ") << name;
+          if (exponent != 1.)
+            text << '^' << exponent;
+        }
+    return text.str();
+  }
+
+
+
+  std::vector<std::string>
+  names_of_units(const std::optional<Dimension> &dimension)
+  {
+    std::vector<std::string> names;
+    for (const Unit &unit : known_units())
+      if (!dimension || unit.dimension == *dimension)
+        names.push_back(unit.name);
+    return names;
+  }
+
+
+
+  std::optional<UnitInText>
+  read_unit(const std::string &text, const std::size_t begin)
+  {
+    Cursor cursor{text, begin};
+    cursor.skip_blanks();
+    const bool has_blank = cursor.at > begin;
+    double     sign      = 1.;
+    if (cursor.next() == '/')
+      {
+        ++cursor.at;
+        cursor.skip_blanks();
+        sign = -1.;
+      }
+    else if (!has_blank)
+      return {};
+
+    UnitInText result{{"", {}, 1.}, begin, ""};
+    bool       is_first = true;
+    while (true)
+      {
+        const std::string name = cursor.word();
+        if (name.empty() || (cursor.is_call() && !is_first))
+          break;
+        const Unit *unit = find_unit(name);
+        if (unit == nullptr)
+          {
+            // Behind a number, or behind a unit, a blank leads to nothing else.
+            if (sign > 0. && !cursor.is_call())
+              result.unknown_name = name;
+            break;
+          }
+        if (cursor.is_call())
+          break;
+        const double exponent = sign * cursor.exponent();
+        result.unit.dimension =
+          result.unit.dimension * unit->dimension.power(exponent);
+        result.unit.si *= std::pow(unit->si, exponent);
+        result.end = cursor.at;
+        is_first   = false;
+
+        cursor.skip_blanks();
+        const char sign_of_next = cursor.next();
+        if (sign_of_next == '/' || sign_of_next == '*')
+          {
+            ++cursor.at;
+            cursor.skip_blanks();
+            // What is no unit may be anything else, unless it looks like one.
+            Cursor            ahead = cursor;
+            const std::string word  = ahead.word();
+            if (find_unit(word) == nullptr)
+              {
+                if (word.size() > 1 && !ahead.is_call() &&
+                    !nearest_name(word, names_of_units()).empty())
+                  result.unknown_name = word;
+                break;
+              }
+            sign = sign_of_next == '/' ? -1. : 1.;
+          }
+        else if (cursor.at > result.end)
+          sign = 1.;
+        else
+          break;
+      }
+    if (is_first && result.unknown_name.empty())
+      return {};
+    const std::size_t first = text.find_first_not_of(' ', begin);
+    result.unit.name        = text.substr(first, result.end - first);
+    return result;
+  }
+
+
+
+  Units::Units(const std::string &length_name,
+               const std::string &time_name,
+               const std::string &stress_name,
+               const std::string &force_name)
+  {
+    if (length_name.empty() && time_name.empty() && stress_name.empty() &&
+        force_name.empty())
+      return;
+    std::vector<std::string> missing;
+    if (length_name.empty())
+      missing.emplace_back("Length");
+    if (time_name.empty())
+      missing.emplace_back("Time");
+    if (stress_name.empty() && force_name.empty())
+      missing.emplace_back("Stress");
+    AssertThrow(missing.empty(),
+                ExcMessage("'Units' has no " + enumeration(missing) +
+                           "; give `Length', `Time' and `Stress' (or `Force'), "
+                           "or none of them."));
+    AssertThrow(stress_name.empty() || force_name.empty(),
+                ExcMessage("'Units' has both `Stress' and `Force'; give one of "
+                           "them, the other one follows."));
+    length = declared_unit("Length", length_name, length_dimension);
+    time   = declared_unit("Time", time_name, time_dimension);
+    if (!stress_name.empty())
+      {
+        stress = declared_unit("Stress", stress_name, stress_dimension);
+        return;
+      }
+    const Unit force     = declared_unit("Force", force_name, force_dimension);
+    stress.si            = force.si / (length.si * length.si);
+    const auto of_pascal = prefix(stress.si);
+    stress.name = of_pascal && find_unit(*of_pascal + "Pa") != nullptr ?
+                    *of_pascal + "Pa" :
+                    force.name + '/' + length.name + "^2";
+  }
+
+
+
+  double
+  Units::si(const Dimension &dimension) const
+  {
+    return std::pow(length.si, dimension.length) *
+           std::pow(time.si, dimension.time) *
+           std::pow(stress.si, dimension.stress);
+  }
+
+
+
+  std::string
+  Units::name(const Quantity quantity, const unsigned int dim) const
+  {
+    if (!are_declared())
+      return "";
+    const auto power_of_length = [this](const double n) {
+      std::ostringstream text;
+      text << length.name;
+      if (n != 1.)
+        text << '^' << n;
+      return text.str();
+    };
+    // With a name of its own in three dimensions, and by length in two.
+    const auto derived = [&](const char *unit, const unsigned int n) {
+      const auto found = prefix(si({double(n), 0., 1.}));
+      return found ?
+               *found + unit + (dim == 2 ? '/' + length.name : std::string()) :
+               stress.name + '*' + power_of_length(dim == 2 ? n - 1 : n);
+    };
+    const std::string energy = derived("J", 3);
+    switch (quantity)
+      {
+        case Quantity::pure_number:
+          return "";
+        case Quantity::length:
+          return length.name;
+        case Quantity::area:
+          return power_of_length(dim - 1);
+        case Quantity::volume:
+          return power_of_length(dim);
+        case Quantity::time:
+          return time.name;
+        case Quantity::rate:
+          return "1/" + time.name;
+        case Quantity::velocity:
+          return length.name + '/' + time.name;
+        case Quantity::stress:
+          return stress.name;
+        case Quantity::force:
+          return derived("N", 2);
+        case Quantity::energy:
+          return energy;
+        case Quantity::work_per_area:
+          return stress.name + '*' + length.name;
+        case Quantity::energy_norm:
+          return '(' + energy + ")^0.5";
+        case Quantity::rate_norm:
+          return '(' + energy + '/' + time.name + ")^0.5";
+        case Quantity::stress_norm:
+          return stress.name + '*' + power_of_length(0.5 * dim);
+        case Quantity::wall_time:
+          return "s";
+      }
+    return "";
+  }
+
+
+
+  std::string
+  Units::label(const Quantity quantity, const unsigned int dim) const
+  {
+    const std::string unit = name(quantity, dim);
+    return unit.empty() ? "" : " [" + unit + ']';
+  }
+
+
+
+  std::string
+  Units::suffix(const Quantity quantity, const unsigned int dim) const
+  {
+    const std::string unit = name(quantity, dim);
+    return unit.empty() ? "" : ' ' + unit;
+  }
+
+
+
+  std::string
+  without_label(const std::string &name)
+  {
+    const std::size_t begin = name.rfind(" [");
+    return begin != std::string::npos && name.back() == ']' ?
+             name.substr(0, begin) :
+             name;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/contact/kink_search.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The functional of friction j(v) = sum_c rho_c |v_c| and the energy of
+    /// obstacles that give way, along a line: their change and its derivative
+    /// to the right. Collective.
+    struct FaceAlongLine
+    {
+      struct Friction
+      {
+        double       bound;
+        Tensor<1, 2> slip, change;
+      };
+      struct Spring
+      {
+        const NormalCompliance &compliance;
+        double                  penetration, change;
+      };
+      const FrictionFace   &face;
+      std::vector<Friction> terms; // of this rank
+      std::vector<Spring>   springs;
+
+      double
+      value(const double step) const
+      {
+        double sum = 0.;
+        for (const Friction &term : terms)
+          sum += term.bound *
+                 ((term.slip + step * term.change).norm() - term.slip.norm());
+        for (const Spring &spring : springs)
+          sum += spring.compliance.energy(spring.penetration +
+                                          step * spring.change) -
+                 spring.compliance.energy(spring.penetration);
+        return face.sum(sum);
+      }
+
+      double
+      derivative(const double step) const
+      {
+        double sum = 0.;
+        for (const Spring &spring : springs)
+          sum +=
+            spring.compliance.force(spring.penetration + step * spring.change) *
+            spring.change;
+        for (const Friction &term : terms)
+          {
+            const Tensor<1, 2> s    = term.slip + step * term.change;
+            const double       size = s.norm();
+            sum += term.bound * (size > 1e-14 * term.change.norm() ?
+                                   (s * term.change) / size :
+                                   term.change.norm());
+          }
+        return face.sum(sum);
+      }
+    };
+
+
+
+    FaceAlongLine
+    face_along(const FrictionFace   &face,
+               const FrictionState  &state,
+               const Vector<double> &direction)
+    {
+      FaceAlongLine line{face, {}, {}};
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        {
+          const FrictionFace::Point &point  = face.points[p];
+          const auto                 change = [&] {
+            return slip(point, face.node_values(direction, point.node));
+          };
+          if (point.gives_way())
+            line.springs.push_back(
+              {point.compliance, state.penetration(p), change()[0]});
+          else if (!point.is_obstacle && !state.sticks[p] &&
+                   state.bound[p] > 0.)
+            line.terms.push_back({state.bound[p], state.slip[p], change()});
+        }
+      return line;
+    }
+
+
+
+    /// How far a motion of a node may go, and goes with @p w, towards an
+    /// obstacle that it does not touch yet; @p goes > @p may if it meets it.
+    struct Approach
+    {
+      double may, goes;
+    };
+
+    Approach
+    approach(const FrictionFace   &face,
+             const FrictionState  &state,
+             const Vector<double> &w,
+             const unsigned int    p)
+    {
+      const FrictionFace::Point &point = face.points[p];
+      return {std::max(0., state.bound[p] - state.slip[p][0]),
+              slip(point, face.node_values(w, point.node))[0]};
+    }
+
+
+
+    /// Whether a node meets the obstacle @p p with a correction. At corners,
+    /// where the way to it is along other points, the line search alone
+    /// decides.
+    bool
+    meets(const FrictionFace   &face,
+          const FrictionState  &state,
+          const Vector<double> &w,
+          const unsigned int    p)
+    {
+      const unsigned int node = face.points[p].node;
+      if (state.sticks[p] || face.points[p].gives_way() ||
+          face.first_point[node + 1] - face.first_obstacle(node) != 1 ||
+          !(face.first_point[node] == p || face.has_plain_friction(node)))
+        return false;
+      const Approach to = approach(face, state, w, p);
+      return to.goes > to.may;
+    }
+
+
+
+    /// The part of a correction that is possible without entering an obstacle,
+    /// beyond 1 if there is room. Collective.
+    double
+    largest_step(const FrictionFace   &face,
+                 const FrictionState  &state,
+                 const Vector<double> &w)
+    {
+      double result = 2.;
+      if (!face.has_obstacles)
+        return result;
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        if (face.points[p].is_obstacle && !face.points[p].gives_way() &&
+            !state.sticks[p])
+          {
+            const Approach to = approach(face, state, w, p);
+            if (to.goes > 0.)
+              result = std::min(result, to.may / to.goes);
+          }
+      return Utilities::MPI::min(result, face.communicator);
+    }
+
+
+
+    /// Whether a correction @p w makes the slip of a node change sides. At
+    /// corners, where points share a node, the line search alone decides.
+    bool
+    reverses(const FrictionFace   &face,
+             const FrictionState  &state,
+             const Vector<double> &w,
+             const unsigned int    node)
+    {
+      const unsigned int p = face.first_point[node];
+      if (!face.has_plain_friction(node) || state.sticks[p] ||
+          state.bound[p] == 0.)
+        return false;
+      const Tensor<1, 2> end =
+        state.slip[p] + slip(face.points[p], face.node_values(w, node));
+      return state.slip[p] * end < 0.;
+    }
+
+
+
+    /// Where a correction @p w takes a node beyond a kink of J, let the change
+    /// @p here of the node end there: slip that would change sides comes to
+    /// rest, and a way into an obstacle ends at it. Returns whether it does.
+    bool
+    stop_node_at_kinks(const FrictionFace   &face,
+                       const FrictionState  &state,
+                       const Vector<double> &x,
+                       const Vector<double> &w,
+                       const unsigned int    node,
+                       Tensor<1, 3>         &here)
+    {
+      const unsigned int p              = face.first_point[node],
+                         end            = face.first_point[node + 1],
+                         first_obstacle = face.first_obstacle(node);
+      bool stops                        = false;
+      if (reverses(face, state, w, node))
+        {
+          if (first_obstacle == end)
+            here = -1. * face.node_values(x, node);
+          else
+            here -= node_force(face.points[p],
+                               state.slip[p] + slip(face.points[p], here));
+          stops = true;
+        }
+      for (unsigned int o = first_obstacle; o < end; ++o)
+        if (meets(face, state, w, o))
+          {
+            const Tensor<1, 3> &normal = face.points[o].map[0];
+            here += (approach(face, state, w, o).may - normal * here) /
+                    normal.norm_square() * normal;
+            stops = true;
+          }
+      return stops;
+    }
+
+
+
+    /**
+     * The step up to @p largest that minimizes J along the correction; 1 if
+     * that is as good up to inexact linear solves, 0 if there is no descent.
+     */
+    SearchResult
+    line_search(const BulkSolver::SearchTerms &bulk,
+                const FaceAlongLine           &face,
+                const double                   largest)
+    {
+      const auto at = [&](const double step) {
+        return SearchResult{step,
+                            (0.5 * bulk.curvature * step - bulk.slope) * step +
+                              face.value(step)};
+      };
+      const auto derivative = [&](const double step) {
+        return bulk.curvature * step - bulk.slope + face.derivative(step);
+      };
+      const double initial = derivative(0.);
+      if (!(initial < 0.) || !(bulk.curvature > 0.))
+        return {0., 0.};
+      double left = 0., right = std::min(1., largest);
+      if (right == 1. && std::abs(derivative(1.)) <= 0.1 * std::abs(initial) &&
+          at(1.).energy_change <= 0.)
+        return at(1.);
+      if (derivative(right) < 0.)
+        {
+          left  = right;
+          right = largest;
+          if (derivative(right) < 0.)
+            return at(right);
+        }
+      for (unsigned int bisection = 0; bisection < 60; ++bisection)
+        {
+          const double middle                      = 0.5 * (left + right);
+          (derivative(middle) < 0. ? left : right) = middle;
+        }
+      return at(left);
+    }
+  } // namespace
+
+
+
+  SearchResult
+  search_along(BulkSolver           &bulk,
+               const FrictionFace   &face,
+               const FrictionState  &state,
+               const Vector<double> &w)
+  {
+    return line_search(bulk.search_terms(w),
+                       face_along(face, state, w),
+                       largest_step(face, state, w));
+  }
+
+
+
+  bool
+  stop_at_kinks(const FrictionFace   &face,
+                const FrictionState  &state,
+                const Vector<double> &x,
+                Vector<double>       &w)
+  {
+    bool any = false;
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        Tensor<1, 3> here = face.node_values(w, node);
+        if (!stop_node_at_kinks(face, state, x, w, node, here))
+          continue;
+        face.set_node_values(here, node, w);
+        any = true;
+      }
+    return face.any(any);
+  }
+
+
+
+  double
+  bring_to_kinks(const FrictionFace   &face,
+                 const Vector<double> &w,
+                 Vector<double>       &x,
+                 FrictionState        &state,
+                 Vector<double>       &change)
+  {
+    const FrictionState  old_state     = state;
+    const Vector<double> old_x         = x;
+    double               energy_change = 0.;
+    change.reinit(x.size());
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        Tensor<1, 3> step;
+        if (!stop_node_at_kinks(face, old_state, old_x, w, node, step))
+          continue;
+        const unsigned int p = face.first_point[node];
+        if (reverses(face, old_state, w, node))
+          {
+            energy_change -= state.bound[p] * state.slip[p].norm();
+            state.sticks[p] = true;
+            state.slip[p]   = Tensor<1, 2>();
+          }
+        for (unsigned int o = face.first_obstacle(node);
+             o < face.first_point[node + 1];
+             ++o)
+          if (meets(face, old_state, w, o))
+            {
+              state.sticks[o]  = true;
+              state.slip[o][0] = state.bound[o];
+            }
+        face.set_node_values(step, node, change);
+        face.set_node_values(face.node_values(x, node) + step, node, x);
+      }
+    return face.sum(energy_change);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/contact/normal_compliance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The root of a convex increasing function at or below @p start, to which
+    /// Newton's method descends. The last step mends the rounding of the long
+    /// ones.
+    template <typename Function, typename Derivative>
+    double
+    root_below(double            start,
+               const Function   &function,
+               const Derivative &derivative)
+    {
+      for (unsigned int iteration = 0; iteration < 200; ++iteration)
+        {
+          const double next = start - function(start) / derivative(start);
+          if (!(next > 0.))
+            break;
+          const bool descends = next < start;
+          start               = next;
+          if (!descends)
+            break;
+        }
+      return start;
+    }
+  } // namespace
+
+
+
+  void
+  NormalCompliance::add(const double stiffness, const double exponent)
+  {
+    pieces.push_back({stiffness, exponent});
+  }
+
+
+
+  double
+  NormalCompliance::force(const double w) const
+  {
+    double sum = 0.;
+    if (w > 0.)
+      for (const Piece &piece : pieces)
+        sum += piece.stiffness * std::pow(w, piece.exponent);
+    return sum;
+  }
+
+
+
+  double
+  NormalCompliance::slope(const double w) const
+  {
+    double sum = 0.;
+    if (w > 0.)
+      for (const Piece &piece : pieces)
+        sum +=
+          piece.exponent * piece.stiffness * std::pow(w, piece.exponent - 1.);
+    return sum;
+  }
+
+
+
+  double
+  NormalCompliance::energy(const double w) const
+  {
+    double sum = 0.;
+    if (w > 0.)
+      for (const Piece &piece : pieces)
+        sum += piece.stiffness * std::pow(w, piece.exponent + 1.) /
+               (piece.exponent + 1.);
+    return sum;
+  }
+
+
+
+  double
+  NormalCompliance::penetration(const double p) const
+  {
+    // No piece alone would be pressed less.
+    double most = std::numeric_limits<double>::max();
+    for (const Piece &piece : pieces)
+      most = std::min(most, std::pow(p / piece.stiffness, 1. / piece.exponent));
+    return pieces.size() == 1 ? most :
+                                root_below(
+                                  most,
+                                  [&](const double w) { return force(w) - p; },
+                                  [&](const double w) { return slope(w); });
+  }
+
+
+
+  double
+  NormalCompliance::penetration(const double flexibility,
+                                const double free_w) const
+  {
+    // Nor would all of it be pressed as deep without the way that is left.
+    return root_below(
+      std::min(free_w, penetration(free_w / flexibility)),
+      [&](const double w) { return w + flexibility * force(w) - free_w; },
+      [&](const double w) { return 1. + flexibility * slope(w); });
+  }
+
+
+
+  double
+  NormalCompliance::defect(const double w, const double p) const
+  {
+    const double there = p > 0. ? penetration(p) : 0.;
+    return 0.5 * std::max(slope(w), slope(there)) * (w - there) * (w - there);
+  }
+} // namespace Viscoplastic

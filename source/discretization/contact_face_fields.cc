@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/discretization/contact_face.h>
+
+// What displacements and multipliers are at the points of the face, and as
+// fields.
+
+namespace Viscoplastic
+{
+  template <int dim>
+  Tensor<1, dim>
+  ContactFace<dim>::cartesian(const unsigned int  point,
+                              const Tensor<1, 2> &multiplier) const
+  {
+    const FrictionFace &face  = layout();
+    const Node         &node  = nodes[face.points[point].node];
+    const Tensor<1, 3>  force = node_force(face.points[point], multiplier);
+    Tensor<1, dim>      in_frame;
+    for (unsigned int i = 0; i < face.n_node_dofs(face.points[point].node); ++i)
+      in_frame[node.components[i]] = force[i];
+    return node.directions * in_frame;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  ContactFace<dim>::resultant(const FrictionState &state,
+                              const bool           of_obstacles) const
+  {
+    const FrictionFace &face = layout();
+    Tensor<1, dim>      sum;
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      if (face.points[p].is_obstacle == of_obstacles)
+        sum += cartesian(p, state.multiplier[p]);
+    return Utilities::MPI::sum(sum, space.communicator);
+  }
+
+
+
+  template <int dim>
+  std::vector<Tensor<1, 2>>
+  ContactFace<dim>::slips(const Vector<double> &change) const
+  {
+    const FrictionFace       &face = layout();
+    std::vector<Tensor<1, 2>> result;
+    for (const auto &point : face.points)
+      result.push_back(slip(point, face.node_values(change, point.node)));
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<Tensor<1, 2>>
+  ContactFace<dim>::slips(const DistributedVector &change,
+                          const Vector<double>    &foundation_step) const
+  {
+    Vector<double> x = face_restriction.gather(change);
+    if (foundation_step.size() > 0)
+      x -= foundation_step;
+    return slips(x);
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  ContactFace<dim>::slip_rates(const DistributedVector &velocity,
+                               const double             t_old,
+                               const double             t) const
+  {
+    if (!any_rate)
+      return {};
+    DistributedVector in_frames = space.owned_vector();
+    space.to_frames(velocity, in_frames);
+    Vector<double> carried;
+    if (t > t_old)
+      carried = foundation_step(t_old, t);
+    if (carried.size() > 0)
+      carried /= t - t_old;
+    std::vector<double> result;
+    for (const Tensor<1, 2> &rate : slips(in_frames, carried))
+      result.push_back(stable_norm(rate));
+    return result;
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  ContactFace<dim>::density(const FrictionState &state,
+                            const bool           of_friction_alone) const
+  {
+    const FrictionFace &face   = layout();
+    DistributedVector   values = space.owned_vector(),
+                      ghosted  = space.ghosted_vector();
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      {
+        const auto dof = nodes[face.points[p].node].first_dof;
+        if (point_weights[p] == 0. ||
+            (of_friction_alone && face.points[p].is_obstacle))
+          continue;
+        // Obstacles along the same normal share their area.
+        double area = point_weights[p];
+        if (const auto &point = face.points[p]; point.is_obstacle)
+          for (unsigned int o = face.first_obstacle(point.node);
+               o < face.first_point[point.node + 1];
+               ++o)
+            if (o != p && (face.points[o].map[0] - point.map[0]).norm() < 1e-10)
+              area += point_weights[o];
+        const Tensor<1, dim> traction =
+          cartesian(p, state.multiplier[p]) / area;
+        for (unsigned int d = 0; d < dim; ++d)
+          values.begin()[space.owned.index_within_set(dof) + d] += traction[d];
+      }
+    space.distribute_hanging_nodes(values);
+    ghosted = values;
+    return ghosted;
+  }
+
+
+
+  template <int dim>
+  std::vector<Tensor<1, 2>>
+  ContactFace<dim>::multipliers(const DistributedVector &ghosted_density) const
+  {
+    const FrictionFace       &face = layout();
+    std::vector<Tensor<1, 2>> result(face.points.size());
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      {
+        const unsigned int n    = face.points[p].node;
+        const Node        &node = nodes[n];
+        if (face.n_node_points(n) > 1 &&
+            !(face.has_plain_friction(n) && face.n_node_points(n) == 2))
+          continue;
+        Tensor<1, dim> density;
+        for (unsigned int d = 0; d < dim; ++d)
+          density[d] =
+            ghosted_density
+              .begin()[space.relevant.index_within_set(node.first_dof) + d];
+        const Tensor<1, dim> in_frame = transpose(node.directions) * density;
+        Tensor<1, 3>         on_face;
+        for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+          on_face[i] = in_frame[node.components[i]];
+        result[p] = slip(face.points[p], on_face) * point_weights[p];
+        if (face.points[p].is_obstacle)
+          result[p] /= face.points[p].map[0].norm_square();
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  DistributedVector
+  ContactFace<dim>::nodal_field(const std::vector<double> &point_values,
+                                const bool                 of_obstacles) const
+  {
+    const FrictionFace &face   = layout();
+    DistributedVector   values = space.owned_vector(),
+                      ghosted  = space.ghosted_vector();
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      {
+        const unsigned int n = face.points[p].node;
+        if (face.points[p].is_obstacle != of_obstacles)
+          continue;
+        const unsigned int first_obstacle = face.first_obstacle(n);
+        values.begin()[space.owned.index_within_set(nodes[n].first_dof)] +=
+          point_values[p] / (of_obstacles ?
+                               face.first_point[n + 1] - first_obstacle :
+                               first_obstacle - face.first_point[n]);
+      }
+    space.distribute_hanging_nodes(values);
+    ghosted = values;
+    return ghosted;
+  }
+
+
+
+#define INSTANTIATE(dim)                                                      \
+  template Tensor<1, dim> ContactFace<dim>::cartesian(const unsigned int,     \
+                                                      const Tensor<1, 2> &)   \
+    const;                                                                    \
+  template Tensor<1, dim> ContactFace<dim>::resultant(const FrictionState &,  \
+                                                      const bool) const;      \
+  template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                 \
+    const Vector<double> &) const;                                            \
+  template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                 \
+    const DistributedVector &, const Vector<double> &) const;                 \
+  template std::vector<double> ContactFace<dim>::slip_rates(                  \
+    const DistributedVector &, const double, const double) const;             \
+  template DistributedVector ContactFace<dim>::density(const FrictionState &, \
+                                                       const bool) const;     \
+  template std::vector<Tensor<1, 2>> ContactFace<dim>::multipliers(           \
+    const DistributedVector &) const;                                         \
+  template DistributedVector ContactFace<dim>::nodal_field(                   \
+    const std::vector<double> &, const bool) const;
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+
+#undef INSTANTIATE
+} // namespace Viscoplastic

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/parameters/dimension_check.h>
+
+#include <cctype>
+#include <map>
+#include <set>
+#include <vector>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// A part of an expression.
+    struct Value
+    {
+      /// None where numbers without unit make it fit anything.
+      std::optional<Dimension> dimension;
+      /// Of a number, for exponents.
+      std::optional<double> number = {};
+    };
+
+    const Value pure_number{Dimension()}, anything{};
+
+    /// What has been said of a dimension, for the sentence.
+    struct Contradiction
+    {
+      std::string words;
+    };
+
+    /// The text is none that is known here.
+    struct Unreadable
+    {};
+
+    const std::map<std::string, Value> variables{{"x", {Dimension{1., 0., 0.}}},
+                                                 {"y", {Dimension{1., 0., 0.}}},
+                                                 {"z", {Dimension{1., 0., 0.}}},
+                                                 {"t", {Dimension{0., 1., 0.}}},
+                                                 {"sigma_eq",
+                                                  {Dimension{0., 0., 1.}}},
+                                                 {"p", {Dimension{0., 0., 1.}}},
+                                                 {"eps_eq", pure_number},
+                                                 {"id", pure_number},
+                                                 {"pi", pure_number},
+                                                 {"Pi", pure_number}};
+
+    const std::set<std::string> of_pure_numbers{
+      "sin",   "cos",   "tan",  "cot",  "csc",  "sec",   "asin",
+      "acos",  "atan",  "sinh", "cosh", "tanh", "asinh", "acosh",
+      "atanh", "log10", "log2", "log",  "ln",   "exp",   "erfc"};
+
+    const std::set<std::string> of_equals{"min",
+                                          "max",
+                                          "sum",
+                                          "avg",
+                                          "abs",
+                                          "int",
+                                          "rint",
+                                          "ceil",
+                                          "floor",
+                                          "fmod"};
+
+
+
+    /// Reads an expression as muParser does, for its dimensions.
+    class DimensionReader
+    {
+    public:
+      explicit DimensionReader(const std::string &text)
+        : text(text)
+      {}
+
+      Value
+      whole()
+      {
+        const Value value = choice();
+        if (next() != '\0')
+          throw Unreadable();
+        return value;
+      }
+
+    private:
+      char
+      next()
+      {
+        while (at < text.size() && text[at] == ' ')
+          ++at;
+        return at < text.size() ? text[at] : '\0';
+      }
+
+      /// Whether one of these comes next; then it is behind.
+      bool
+      takes(const std::vector<std::string> &operators)
+      {
+        next();
+        for (const std::string &one : operators)
+          if (text.compare(at, one.size(), one) == 0)
+            {
+              at += one.size();
+              return true;
+            }
+        return false;
+      }
+
+      /// Of two that have to be equal.
+      Value
+      common(const Value &a, const Value &b, const std::size_t begin) const
+      {
+        if (!a.dimension || !b.dimension)
+          return {a.dimension ? a.dimension : b.dimension};
+        if (!(*a.dimension == *b.dimension))
+          throw Contradiction{
+            "'" + excerpt(Utilities::trim(text.substr(begin, at - begin))) +
+            "' brings together " + in_words(*a.dimension) + " and " +
+            in_words(*b.dimension)};
+        return {a.dimension};
+      }
+
+      static Value
+      power(const Value &base, const Value &exponent)
+      {
+        if (exponent.dimension && !(*exponent.dimension == Dimension()))
+          throw Contradiction{"an exponent is " +
+                              in_words(*exponent.dimension) +
+                              "; put a number that a unit follows in the form "
+                              "of 1e6"};
+        if (!base.dimension || *base.dimension == Dimension())
+          return {base.dimension};
+        if (!exponent.number)
+          return anything;
+        return {base.dimension->power(*exponent.number)};
+      }
+
+      Value
+      choice()
+      {
+        const std::size_t begin = at;
+        const Value       value = condition();
+        if (!takes({"?"}))
+          return value;
+        const Value first = choice();
+        if (!takes({":"}))
+          throw Unreadable();
+        return common(first, choice(), begin);
+      }
+
+      Value
+      condition()
+      {
+        Value value = comparison();
+        while (takes({"&&", "||", "&", "|"}))
+          {
+            comparison();
+            value = anything;
+          }
+        return value;
+      }
+
+      Value
+      comparison()
+      {
+        const std::size_t begin = at;
+        Value             value = sum();
+        while (takes({"<=", ">=", "==", "!=", "<", ">"}))
+          {
+            common(value, sum(), begin);
+            value = anything;
+          }
+        return value;
+      }
+
+      Value
+      sum()
+      {
+        const std::size_t begin = at;
+        Value             value = product();
+        while (next() == '+' || next() == '-')
+          {
+            ++at;
+            value = common(value, product(), begin);
+          }
+        return value;
+      }
+
+      Value
+      product()
+      {
+        Value value = factor();
+        while (next() == '*' || next() == '/')
+          {
+            const double exponent = text[at] == '*' ? 1. : -1.;
+            ++at;
+            const Value other = factor();
+            value.number.reset();
+            if (value.dimension && other.dimension)
+              value.dimension =
+                *value.dimension * other.dimension->power(exponent);
+            else
+              value.dimension.reset();
+          }
+        return value;
+      }
+
+      Value
+      factor()
+      {
+        if (takes({"-"}))
+          {
+            Value value = factor();
+            if (value.number)
+              value.number = -*value.number;
+            return value;
+          }
+        if (takes({"+", "!"}))
+          return factor();
+        const Value base = atom();
+        return takes({"^"}) ? power(base, factor()) : base;
+      }
+
+      Value
+      atom()
+      {
+        if (takes({"("}))
+          {
+            const Value value = choice();
+            if (!takes({")"}))
+              throw Unreadable();
+            return value;
+          }
+        next();
+        if (const std::size_t end = end_of_number(text, at); end > at)
+          {
+            const double number = std::stod(text.substr(at, end - at));
+            at                  = end;
+            if (const auto found = read_unit(text, end))
+              {
+                at = found->end;
+                return {found->unit.dimension};
+              }
+            return {{}, number};
+          }
+        const std::size_t begin = at;
+        while (std::isalnum(static_cast<unsigned char>(
+                 at < text.size() ? text[at] : ' ')) != 0 ||
+               (at < text.size() && text[at] == '_'))
+          ++at;
+        const std::string name = text.substr(begin, at - begin);
+        if (name.empty())
+          throw Unreadable();
+        if (takes({"("}))
+          return call(name, begin);
+        const auto variable = variables.find(name);
+        return variable == variables.end() ? anything : variable->second;
+      }
+
+      Value
+      call(const std::string &name, const std::size_t begin)
+      {
+        std::vector<Value> arguments;
+        if (next() != ')')
+          do
+            arguments.push_back(choice());
+          while (takes({","}));
+        if (!takes({")"}))
+          throw Unreadable();
+        const std::size_t n = arguments.size();
+        if (n == 1 && of_pure_numbers.count(name) > 0)
+          {
+            if (arguments[0].dimension &&
+                !(*arguments[0].dimension == Dimension()))
+              throw Contradiction{
+                "'" + excerpt(text.substr(begin, at - begin)) +
+                "' is a function of " + in_words(*arguments[0].dimension) +
+                ", but '" + name + "' takes a pure number"};
+            return pure_number;
+          }
+        if (n > 0 && of_equals.count(name) > 0)
+          {
+            Value value = arguments[0];
+            for (const Value &argument : arguments)
+              value = common(value, argument, begin);
+            return value;
+          }
+        if (n == 3 && name == "if")
+          return common(arguments[1], arguments[2], begin);
+        if (n == 2 && name == "pow")
+          return power(arguments[0], arguments[1]);
+        if (n == 2 && name == "atan2")
+          {
+            common(arguments[0], arguments[1], begin);
+            return pure_number;
+          }
+        if (n == 1 && name == "sqrt")
+          return power(arguments[0], {{}, 0.5});
+        return anything; // sign, columns of tables, what muParser will refuse
+      }
+
+      const std::string &text;
+      std::size_t        at = 0;
+    };
+
+
+
+    /// The parts between separators outside of parentheses.
+    std::vector<std::string>
+    parts_of_list(const std::string &text)
+    {
+      const std::string separators =
+        text.find('?') == std::string::npos ? ";,:" : ";,";
+      std::vector<std::string> result(1);
+      int                      depth = 0;
+      for (const char c : text)
+        {
+          depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+          if (depth == 0 && separators.find(c) != std::string::npos)
+            result.emplace_back();
+          else
+            result.back() += c;
+        }
+      return result;
+    }
+  } // namespace
+
+
+
+  std::string
+  wrong_dimension(const std::string              &text,
+                  const std::optional<Dimension> &wanted)
+  {
+    for (const std::string &part : parts_of_list(text))
+      try
+        {
+          const auto dimension = DimensionReader(part).whole().dimension;
+          if (dimension && wanted && !(*dimension == *wanted))
+            return "'" + excerpt(Utilities::trim(part)) + "' is " +
+                   in_words(*dimension) + ", but it must be " +
+                   in_words(*wanted);
+        }
+      catch (const Contradiction &contradiction)
+        {
+          return contradiction.words;
+        }
+      catch (const Unreadable &)
+        {} // the sentence is that of the parser
+    return "";
+  }
+
+
+
+  std::size_t
+  end_of_number(const std::string &text, const std::size_t begin)
+  {
+    const auto digits_from = [&text](std::size_t i) {
+      while (i < text.size() &&
+             std::isdigit(static_cast<unsigned char>(text[i])) != 0)
+        ++i;
+      return i;
+    };
+    std::size_t       end     = digits_from(begin);
+    const std::size_t n_whole = end - begin;
+    std::size_t       n_after = 0;
+    if (end < text.size() && text[end] == '.')
+      {
+        n_after = digits_from(end + 1) - (end + 1);
+        end += 1 + n_after;
+      }
+    if (n_whole + n_after == 0)
+      return begin;
+    if (end < text.size() && (text[end] == 'e' || text[end] == 'E'))
+      {
+        std::size_t first = end + 1;
+        if (first < text.size() && (text[first] == '-' || text[first] == '+'))
+          ++first;
+        if (const std::size_t last = digits_from(first); last > first)
+          end = last;
+      }
+    return end;
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/parameters/dimension_check.h>
+#include <viscoplastic_contact/parameters/parameter_file.h>
+#include <viscoplastic_contact/parameters/quantities.h>
+
+#include <boost/property_tree/ptree.hpp>
+
+#include <cctype>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using Tree = boost::property_tree::ptree;
+
+    const std::string power_law  = "1/(stress^n time)",
+                      compliance = "stress/length^m";
+
+    /// What descriptions call the dimensions of entries.
+    const std::map<std::string, Dimension> dimension_of_words{
+      {"1", {0., 0., 0.}},
+      {"length", {1., 0., 0.}},
+      {"time", {0., 1., 0.}},
+      {"1/time", {0., -1., 0.}},
+      {"stress", {0., 0., 1.}},
+      {"stress times time", {0., 1., 1.}},
+      {"force per volume", {-1., 0., 1.}}};
+
+
+
+    bool
+    is_part_of_word(const char c)
+    {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    }
+
+
+
+    void
+    refuse_unless(const bool condition, const std::string &why)
+    {
+      AssertThrow(condition, ExcMessage(why));
+    }
+
+
+
+    /// The number with as few digits as tell it up to rounding.
+    std::string
+    shortest(const double number)
+    {
+      std::ostringstream text;
+      text << std::setprecision(15) << number;
+      if (std::abs(std::stod(text.str()) - number) >
+          std::numeric_limits<double>::epsilon() * std::abs(number))
+        {
+          text.str("");
+          text << std::setprecision(17) << number;
+        }
+      return text.str();
+    }
+
+
+
+    struct NumberWithUnit
+    {
+      std::size_t begin, end_of_number;
+      UnitInText  found;
+      /// As in `25MPa'.
+      bool lacks_blank;
+    };
+
+
+
+    std::vector<NumberWithUnit>
+    numbers_with_units(const std::string &text)
+    {
+      std::vector<NumberWithUnit> result;
+      std::size_t                 i = 0;
+      while (i < text.size())
+        {
+          const std::size_t begin = i;
+          i                       = end_of_number(text, begin);
+          if (i == begin)
+            {
+              ++i;
+              // Digits in a name begin no number.
+              if (is_part_of_word(text[begin]))
+                while (i < text.size() && is_part_of_word(text[i]))
+                  ++i;
+              continue;
+            }
+          if (i < text.size() && is_part_of_word(text[i]))
+            {
+              const auto found =
+                read_unit(text.substr(0, i) + ' ' + text.substr(i), i);
+              if (found && found->unknown_name.empty())
+                result.push_back({begin, i, *found, true});
+            }
+          else if (const auto found = read_unit(text, i))
+            {
+              result.push_back({begin, i, *found, false});
+              i = std::max(i, found->end);
+            }
+        }
+      return result;
+    }
+
+
+
+    std::optional<double>
+    as_number(const std::string &text)
+    {
+      if (text.empty() || end_of_number(text, 0) != text.size())
+        return {};
+      return std::stod(text);
+    }
+
+
+
+    /// The value of an entry in the end; its default if no line sets it.
+    std::string
+    last_value(const std::vector<ParameterLine> &lines,
+               const std::string                &path,
+               const std::string                &default_value)
+    {
+      std::string value = default_value;
+      for (const ParameterLine &line : lines)
+        if (!line.is_opening && line.section + line.name == path)
+          value = line.value;
+      return value;
+    }
+
+
+
+    /// The number that the exponent in the section of a line has.
+    std::optional<double>
+    exponent_beside(const ParameterLine              &line,
+                    const std::vector<ParameterLine> &lines,
+                    const Tree                       &declared)
+    {
+      for (const std::string name : {"Exponent", "Compliance exponent"})
+        {
+          const std::string path = line.section + name;
+          const auto        entry =
+            declared.get_child_optional(Tree::path_type(path, '/'));
+          if (entry && is_entry(*entry))
+            return as_number(last_value(
+              lines, path, entry->get<std::string>("default_value")));
+        }
+      return {};
+    }
+  } // namespace
+
+
+
+  std::optional<EntryUnit>
+  unit_of_entry(const std::string           &description,
+                const std::optional<double> &exponent)
+  {
+    const std::string introduction = "Unit: ";
+    const std::size_t begin        = description.rfind(introduction);
+    if (begin == std::string::npos)
+      return {};
+    std::string words = description.substr(begin + introduction.size());
+    words             = words.substr(0, words.find('.'));
+    if (words == "seconds")
+      return EntryUnit{Dimension{0., 1., 0.}, true};
+    if (words == power_law && exponent)
+      return EntryUnit{Dimension{0., -1., -*exponent}, false, exponent};
+    if (words == compliance && exponent)
+      return EntryUnit{Dimension{-*exponent, 0., 1.},
+                       false,
+                       exponent,
+                       "Compliance exponent"};
+    const auto known = dimension_of_words.find(words);
+    return known == dimension_of_words.end() ? EntryUnit() :
+                                               EntryUnit{known->second};
+  }
+
+
+
+  std::string
+  without_units(const std::string &text,
+                const EntryUnit   &entry,
+                const Units       &units)
+  {
+    std::string result;
+    std::size_t copied = 0;
+    for (const NumberWithUnit &number : numbers_with_units(text))
+      {
+        const auto &[unit, end, unknown_name] = number.found;
+        const std::string digits =
+          text.substr(number.begin, number.end_of_number - number.begin);
+        refuse_unless(!number.lacks_blank,
+                      "a blank must stand between '" + excerpt(digits) +
+                        "' and its unit");
+        if (!unknown_name.empty())
+          {
+            const std::string near =
+              nearest_name(unknown_name,
+                           names_of_units(entry.is_wall_time ? entry.dimension :
+                                                               std::nullopt));
+            refuse_unless(false,
+                          "there is no unit '" + excerpt(unknown_name) + "'" +
+                            (near.empty() ?
+                               "; units are " +
+                                 enumeration(names_of_units(), 40) :
+                               "; did you mean '" + near + "'?"));
+          }
+        refuse_unless(
+          entry.is_wall_time || units.are_declared(),
+          "'" + excerpt(text.substr(number.begin, end - number.begin)) +
+            "' has a unit, but the scene says none: declare `Length', "
+            "`Time' and `Stress' in `subsection Units'");
+        const double factor =
+          unit.si / (entry.is_wall_time ? 1. : units.si(unit.dimension));
+        result += text.substr(copied, number.begin - copied) +
+                  (std::abs(factor - 1.) < 1e-14 ?
+                     digits :
+                     shortest(std::stod(digits) * factor));
+        copied = end;
+      }
+    if (copied == 0)
+      return text;
+    std::string wrong = wrong_dimension(text, entry.dimension);
+    if (!wrong.empty() && entry.exponent)
+      wrong += " with '" + entry.entry_of_exponent +
+               "' = " + shortest(*entry.exponent);
+    refuse_unless(wrong.empty(), wrong);
+    return result + text.substr(copied);
+  }
+
+
+
+  Units
+  declared_units(const std::vector<ParameterLine> &lines)
+  {
+    const auto value = [&lines](const std::string &name) {
+      return last_value(lines, "Units/" + name, "");
+    };
+    return {value("Length"), value("Time"), value("Stress"), value("Force")};
+  }
+
+
+
+  std::map<std::string, std::string>
+  remove_units(std::vector<ParameterLine> &lines,
+               const Units                &units,
+               const ParameterHandler     &handler)
+  {
+    std::map<std::string, std::string>           as_written;
+    std::map<std::string, const ParameterLine *> last;
+    for (const ParameterLine &line : lines)
+      last[line.section + line.name] = &line;
+    std::optional<Tree> declared; // takes its time
+    for (ParameterLine &line : lines)
+      {
+        if (line.is_opening || line.name.empty())
+          continue;
+        const std::string path = line.section + line.name;
+        as_written.erase(path);
+        std::string why;
+        try
+          {
+            const auto numbers = numbers_with_units(line.value);
+            if (numbers.empty())
+              continue;
+            if (!declared)
+              declared = declared_entries(handler);
+            const auto entry =
+              declared->get_child_optional(Tree::path_type(path, '/'));
+            if (!entry || !is_entry(*entry)) // refused elsewhere
+              continue;
+            auto unit = unit_of_entry(entry->get<std::string>("documentation"),
+                                      exponent_beside(line, lines, *declared));
+            if (!unit)
+              continue;
+            // What another line overrides belongs to another exponent.
+            if (unit->exponent && last.at(path) != &line)
+              unit = EntryUnit();
+            if (path == "Time/Phases")
+              for (const auto &number : numbers)
+                {
+                  const std::size_t separator =
+                    line.value.find_last_of(":,", number.begin);
+                  refuse_unless(separator == std::string::npos ||
+                                  line.value[separator] == ',',
+                                "the number of steps has no unit");
+                }
+            const std::string value = without_units(line.value, *unit, units);
+            as_written[path]        = line.value;
+            line.value              = value;
+            line.text               = "set " + line.name + " = " + value;
+          }
+        catch (const std::exception &exception)
+          {
+            why = reason(exception);
+          }
+        refuse_unless(why.empty(),
+                      line.origin() + ": '" + excerpt(path) + "' is '" +
+                        excerpt(line.value) + "'; " + why +
+                        (why.back() == '?' || why.back() == '.' ? "" : "."));
+      }
+    return as_written;
+  }
+} // namespace Viscoplastic

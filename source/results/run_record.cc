@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/json_text.h>
+#include <viscoplastic_contact/base/table.h>
+#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/results/line_output.h>
+#include <viscoplastic_contact/results/run_record.h>
+
+#include <nlohmann/json.hpp>
+
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    nlohmann::ordered_json
+    record_of_errors(const ErrorSummary &errors,
+                     const std::string  &name_of_size)
+    {
+      return {{"t", errors.t},
+              {"space", errors.largest.space},
+              {"time", errors.largest.time},
+              {"friction", errors.largest.friction},
+              {"transfer", errors.largest.transfer},
+              {"algebraic", errors.largest.algebraic},
+              {"initial", errors.largest.initial},
+              {"total", errors.largest.total()},
+              {name_of_size, errors.size},
+              {"relative", errors.relative()}};
+    }
+  } // namespace
+
+
+
+  void
+  refuse_foreign_files(const std::string &path, const std::size_t n_lines)
+  {
+    std::vector<std::pair<std::string, std::string>> own{
+      {"parameters.prm", "# Listing of Parameters\n"},
+      {"run.json", "{\n  \"program\": \"viscoplastic_contact\""},
+      {"statistics.csv", "step,t,k,"}};
+    for (std::size_t i = 0; i < n_lines; ++i)
+      own.emplace_back(line_file_name(i), "step,t,s,x,y,");
+    for (const auto &[name, beginning] : own)
+      {
+        std::error_code none;
+        if (!std::filesystem::is_regular_file(path + name, none))
+          continue;
+        std::ifstream file(path + name, std::ios::binary);
+        std::string   text(200, ' ');
+        file.read(text.data(), static_cast<std::streamsize>(text.size()));
+        text.resize(file.gcount());
+        // Columns may have units.
+        static const std::regex label(" \\[[^\\]\n]*\\]?");
+        text = std::regex_replace(text, label, "").substr(0, beginning.size());
+        // It may be cut short.
+        AssertThrow(file.is_open() &&
+                      beginning.compare(0, text.size(), text) == 0,
+                    ExcMessage("The results would overwrite '" + path + name +
+                               "', which this program has not written; "
+                               "choose another 'Output/Directory'."));
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  write_record(const Scene<dim>      &scene,
+               const std::string     &path,
+               const unsigned int     n_ranks,
+               const RunSummary<dim> *summary)
+  {
+    std::ostringstream parameters;
+    scene.parameters.print(parameters);
+    replace_file(path + "parameters.prm", parameters.str());
+
+    const std::time_t now = std::time(nullptr);
+    char              date[32];
+    std::strftime(date, sizeof(date), "%FT%TZ", std::gmtime(&now));
+    nlohmann::ordered_json record{{"program", "viscoplastic_contact"},
+                                  {"version", VISCOPLASTIC_CONTACT_VERSION},
+                                  {"git_revision",
+                                   VISCOPLASTIC_CONTACT_GIT_REVISION},
+                                  {"dealii_version", DEAL_II_PACKAGE_VERSION},
+                                  {"n_mpi_ranks", n_ranks},
+                                  {"dimension", dim},
+                                  {"effects", scene.effects()}};
+    const Units           &units = scene.parameters.units;
+    if (units.are_declared())
+      record["units"] = {{"length", units.length.name},
+                         {"time", units.time.name},
+                         {"stress", units.stress.name}};
+    // parameters.prm has them as they were written.
+    if (const auto entries = scene.parameters.entries_with_units();
+        !entries.empty())
+      record["entries_with_units"] = entries;
+    const auto &libraries = scene.parameters.shared_libraries;
+    if (!libraries.empty())
+      record["shared_libraries"] = libraries;
+    for (const auto &table : tables_in_use())
+      record["tables"].push_back({{"section", table->section},
+                                  {"file", table->file},
+                                  {"crc32", table->checksum}});
+    if (summary != nullptr && summary->errors)
+      record["estimated_error"] =
+        record_of_errors(*summary->errors, "largest_energy_norm");
+    if (summary != nullptr && !summary->quantity.empty())
+      {
+        auto &errors = record["estimated_error_of_quantity"] =
+          record_of_errors(summary->quantity_errors, "largest_value");
+        errors["quantity"] = summary->quantity;
+      }
+    record["date"] = date;
+    replace_file(path + "run.json", json_text(record));
+  }
+
+
+
+  std::string
+  results_directory(const Parameters &parameters)
+  {
+    std::string path = parameters.output.directory;
+    if (path.empty())
+      path = "output/" + std::filesystem::path(parameters.file).stem().string();
+    return path.back() == '/' ? path : path + '/';
+  }
+
+
+
+  void
+  make_results_directory(const std::string &path)
+  {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    AssertThrow(!error,
+                ExcMessage("The results directory '" + path +
+                           "' cannot be written; change 'Output/Directory' or "
+                           "its permissions."));
+  }
+
+
+
+  template void
+  write_record<2>(const Scene<2> &,
+                  const std::string &,
+                  const unsigned int,
+                  const RunSummary<2> *);
+  template void
+  write_record<3>(const Scene<3> &,
+                  const std::string &,
+                  const unsigned int,
+                  const RunSummary<3> *);
+} // namespace Viscoplastic

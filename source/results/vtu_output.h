@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/numerics/data_out.h>
+
+#include <viscoplastic_contact/results/unit_labels.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+// What Output writes as VTU: the body by DataOut, and faces of its boundary.
+
+namespace Viscoplastic
+{
+  /**
+   * VTU files have single precision. What is beyond its range, and would be
+   * infinite there, becomes its largest number: ParaView cannot scale colors
+   * to infinite values. Returns the data sets where this was needed, by
+   * their indices, and the number of data sets for the coordinates.
+   */
+  template <int dim, int spacedim>
+  std::set<unsigned int>
+  cut_off_infinite(std::vector<DataOutBase::Patch<dim, spacedim>> &patches,
+                   const unsigned int                              n_data_sets)
+  {
+    constexpr float        largest = std::numeric_limits<float>::max();
+    std::set<unsigned int> result;
+    for (auto &patch : patches)
+      {
+        for (unsigned int i = 0; i < n_data_sets; ++i)
+          for (unsigned int j = 0; j < patch.data.n_cols(); ++j)
+            if (float &value = patch.data(i, j); std::isinf(value))
+              {
+                value = std::copysign(largest, value);
+                result.insert(i);
+              }
+        for (Point<spacedim> &x : patch.vertices)
+          for (unsigned int d = 0; d < spacedim; ++d)
+            if (std::abs(x[d]) > largest)
+              {
+                x[d] = std::copysign(largest, x[d]);
+                result.insert(n_data_sets);
+              }
+      }
+    return result;
+  }
+
+
+
+  /// A vector field: its first and last component, its name.
+  using VectorRange =
+    std::tuple<unsigned int,
+               unsigned int,
+               std::string,
+               DataComponentInterpretation::DataComponentInterpretation>;
+
+
+
+  /// The body with its fields.
+  template <int dim>
+  class BodyOutput : public DataOut<dim>
+  {
+  public:
+    explicit BodyOutput(const UnitLabels<dim> &labels)
+      : labels(labels)
+    {}
+
+    /// Bring the patches, one for each owned cell in the order of active
+    /// cells, into that of @p cells, which a restart does not change.
+    template <class Cell>
+    void
+    sort_by(const std::vector<Cell> &cells)
+    {
+      std::vector<std::pair<unsigned int, std::size_t>> order;
+      for (const Cell &cell : cells)
+        order.emplace_back(cell->active_cell_index(), order.size());
+      AssertDimension(this->patches.size(), order.size());
+      std::sort(order.begin(), order.end());
+      auto sorted = this->patches;
+      for (std::size_t p = 0; p < order.size(); ++p)
+        {
+          auto &patch       = sorted[order[p].second];
+          patch             = std::move(this->patches[p]);
+          patch.patch_index = order[p].second;
+          // Their numbers are no longer right, and nothing here asks for
+          // them.
+          std::fill(std::begin(patch.neighbors),
+                    std::end(patch.neighbors),
+                    numbers::invalid_unsigned_int);
+        }
+      this->patches = std::move(sorted);
+    }
+
+    std::set<unsigned int>
+    cut_off()
+    {
+      return cut_off_infinite(this->patches, names().size());
+    }
+
+    std::vector<std::string>
+    names() const
+    {
+      return get_dataset_names();
+    }
+
+  protected:
+    // The names of the files: deal.II allows no units in those of data.
+    std::vector<std::string>
+    get_dataset_names() const override
+    {
+      std::vector<std::string> names = DataOut<dim>::get_dataset_names();
+      for (std::string &name : names)
+        name += labels.of_field(name);
+      return names;
+    }
+
+    std::vector<VectorRange>
+    get_nonscalar_data_ranges() const override
+    {
+      auto ranges = DataOut<dim>::get_nonscalar_data_ranges();
+      for (VectorRange &range : ranges)
+        std::get<2>(range) += labels.of_field(std::get<2>(range));
+      return ranges;
+    }
+
+  private:
+    const UnitLabels<dim> labels;
+  };
+
+
+
+  /// Faces of the boundary with nodal data, in the form that DataOut writes.
+  template <int dim>
+  class FaceOutput : public DataOutInterface<dim - 1, dim>
+  {
+  public:
+    std::vector<DataOutBase::Patch<dim - 1, dim>> patches;
+    std::vector<std::string>                      names;
+    std::vector<VectorRange>                      vectors;
+
+  protected:
+    const std::vector<DataOutBase::Patch<dim - 1, dim>> &
+    get_patches() const override
+    {
+      return patches;
+    }
+
+    std::vector<std::string>
+    get_dataset_names() const override
+    {
+      return names;
+    }
+
+    std::vector<VectorRange>
+    get_nonscalar_data_ranges() const override
+    {
+      return vectors;
+    }
+  };
+
+
+
+  /// Stronger compression takes ten times as long and saves a tenth.
+  inline DataOutBase::VtkFlags
+  vtk_flags()
+  {
+    DataOutBase::VtkFlags flags;
+    flags.compression_level = DataOutBase::VtkFlags::best_speed;
+    return flags;
+  }
+} // namespace Viscoplastic

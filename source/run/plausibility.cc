@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <viscoplastic_contact/run/plausibility.h>
+#include <viscoplastic_contact/scene/sample_places.h>
+
+#include <boost/property_tree/ptree.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    std::string
+    number(const double value)
+    {
+      std::ostringstream text;
+      text << std::setprecision(5) << value;
+      return text.str();
+    }
+
+
+
+    /// The least and the largest value of something.
+    struct ValueRange
+    {
+      double least   = std::numeric_limits<double>::infinity(),
+             largest = -std::numeric_limits<double>::infinity();
+
+      void
+      add(const double value)
+      {
+        least   = std::min(least, value);
+        largest = std::max(largest, value);
+      }
+
+      /// Over all ranks. Collective.
+      void
+      join(const MPI_Comm communicator)
+      {
+        least   = Utilities::MPI::min(least, communicator);
+        largest = Utilities::MPI::max(largest, communicator);
+      }
+
+      std::string
+      text() const
+      {
+        return number(least) == number(largest) ?
+                 number(least) :
+                 number(least) + " to " + number(largest);
+      }
+    };
+
+
+
+    double
+    youngs_modulus(const Stiffness &stiffness)
+    {
+      return 2. * (1. + stiffness.poissons_ratio()) * stiffness.shear_modulus();
+    }
+
+
+
+    /// The diagonal of the box around the coarse mesh, which all ranks have.
+    template <int dim>
+    double
+    size_of_body(const Discretization<dim> &discretization)
+    {
+      const auto corners =
+        GridTools::compute_bounding_box(
+          discretization.space.dof_handler.get_triangulation())
+          .get_boundary_points();
+      return corners.first.distance(corners.second);
+    }
+
+
+
+    /// Moduli of the cells of one material, and the times |sigma|/|G| of the
+    /// cells in which its law flows at a stress.
+    template <int dim>
+    struct MaterialRanges
+    {
+      const Material<dim> *material;
+      ValueRange           youngs_modulus, poissons_ratio, time;
+    };
+
+
+
+    /// Collective.
+    template <int dim>
+    std::vector<MaterialRanges<dim>>
+    ranges_of_materials(const Discretization<dim> &discretization,
+                        const double               stress)
+    {
+      const Scene<dim>                &scene = discretization.scene();
+      std::vector<MaterialRanges<dim>> result;
+      for (const auto &material : scene.materials)
+        if (!material->is_absent)
+          result.push_back({material.get(), {}, {}, {}});
+      const auto            now = discretization.laws.at(0.);
+      SymmetricTensor<2, 3> uniaxial;
+      uniaxial[0][0]    = stress;
+      const auto &cells = discretization.space.cells;
+      for (std::size_t c = 0; c < cells.size(); ++c)
+        {
+          // Also of what has yet to be added.
+          const Material<dim> *material =
+            &scene.lasting_material(cells[c]->material_id());
+          auto &ranges =
+            *std::find_if(result.begin(), result.end(), [&](const auto &one) {
+              return one.material == material;
+            });
+          const Stiffness stiffness =
+            scene.has_stages() ? material->stiffness(cells[c]->center()) :
+                                 discretization.moduli(c);
+          ranges.youngs_modulus.add(youngs_modulus(stiffness));
+          ranges.poissons_ratio.add(stiffness.poissons_ratio());
+          if (const ViscoplasticLaw *law = now.law(c); law && stress > 0.)
+            {
+              const double rate = law
+                                    ->rate(uniaxial,
+                                           stiffness.strain(uniaxial),
+                                           stiffness,
+                                           now.point(c, 0))
+                                    .norm();
+              if (rate > 0.)
+                ranges.time.add(uniaxial.norm() / rate);
+            }
+        }
+      const MPI_Comm communicator =
+        discretization.space.dof_handler.get_communicator();
+      for (auto &ranges : result)
+        for (ValueRange *range :
+             {&ranges.youngs_modulus, &ranges.poissons_ratio, &ranges.time})
+          range->join(communicator);
+      return result;
+    }
+
+
+
+    /// Keeps the largest of what it is told.
+    class KeepLargest
+    {
+    public:
+      void
+      add(const double value, const std::string &origin, const bool is_load)
+      {
+        if (value > found.value)
+          found = {value, origin, is_load};
+      }
+
+      LargestStress found;
+    };
+
+
+
+    /// The largest of the values, or norms, of data at places and times.
+    template <int dim>
+    class DataSampler
+    {
+    public:
+      DataSampler(const std::vector<Point<dim>> &places,
+                  const Scene<dim>              &scene)
+        : places(places)
+      {
+        const unsigned int n      = scene.schedule.n_steps();
+        const unsigned int stride = (n + 19) / 20;
+        times.push_back(0.);
+        for (unsigned int i = stride; i < n + stride; i += stride)
+          times.push_back(scene.schedule.step(std::min(i, n)).t);
+      }
+
+      double
+      largest(const Expression<dim> &datum) const
+      {
+        double result = 0.;
+        for (const double t : times)
+          for (const double value : values_at(datum, places, t))
+            result = std::max(result, std::abs(value));
+        return result;
+      }
+
+      double
+      largest(const VectorExpression<dim> &datum,
+              const unsigned int           n_components) const
+      {
+        double result = 0.;
+        for (unsigned int c = 0; c < n_components; ++c)
+          result = std::max(result, largest(datum[c]));
+        return result;
+      }
+
+    private:
+      const std::vector<Point<dim>> places;
+      std::vector<double>           times;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  LargestStress
+  largest_given_stress(const Discretization<dim> &discretization)
+  {
+    const Scene<dim> &scene = discretization.scene();
+    const auto       &triangulation =
+      discretization.space.dof_handler.get_triangulation();
+    const double size = size_of_body(discretization);
+    ValueRange   modulus;
+    for (const auto &ranges : ranges_of_materials(discretization, 0.))
+      modulus.add(ranges.youngs_modulus.largest);
+
+    const DataSampler<dim> body(places_in_body(triangulation), scene);
+    KeepLargest            loads, bounds;
+    if (scene.initial_stress)
+      loads.add(body.largest(*scene.initial_stress,
+                             stress_components<dim>().size()),
+                "the initial stress",
+                true);
+    if (scene.body_force)
+      loads.add(body.largest(*scene.body_force, dim) * size,
+                "the body force times the size of the body",
+                true);
+    for (const auto &[id, condition] : scene.boundary)
+      {
+        const DataSampler<dim> here(places_on_boundary(triangulation, id),
+                                    scene);
+        const std::string      where = " of boundary " + std::to_string(id);
+        if (condition.traction)
+          loads.add(here.largest(*condition.traction, dim),
+                    "the traction" + where,
+                    true);
+        for (const auto &[datum, name, is_load] :
+             {std::make_tuple(&condition.pressure, "the pressure", true),
+              std::make_tuple(&condition.normal_stress,
+                              "the normal stress",
+                              true),
+              std::make_tuple(&condition.friction_bound,
+                              "the friction bound",
+                              false)})
+          if (*datum)
+            (is_load ? loads : bounds)
+              .add(here.largest(**datum), name + where, is_load);
+        double displacement =
+          condition.foundation_displacement ?
+            here.largest(*condition.foundation_displacement) :
+            0.;
+        for (const auto &component : condition.displacement)
+          if (component)
+            displacement = std::max(displacement, here.largest(*component));
+        loads.add(modulus.largest * displacement / size,
+                  "Young's modulus times the displacement" + where +
+                    " over the size of the body",
+                  true);
+      }
+    return loads.found.value > 0. ? loads.found : bounds.found;
+  }
+
+
+
+  template <int dim>
+  void
+  describe_materials(const Discretization<dim> &discretization,
+                     const LargestStress       &stress,
+                     std::ostream              &out)
+  {
+    const Parameters &parameters = discretization.scene().parameters;
+    const std::string stress_unit =
+                        parameters.units.suffix(Quantity::stress, dim),
+                      time_unit = parameters.units.suffix(Quantity::time, dim);
+    const auto entries          = parameters.entries_as_written();
+    for (const auto &[material, modulus, ratio, time] :
+         ranges_of_materials(discretization, stress.value))
+      {
+        out << material->section
+            << (material->is_anisotropic() ? ": anisotropic, in the mean E = " :
+                                             ": E = ")
+            << modulus.text() << stress_unit << ", nu = " << ratio.text()
+            << ", " << material->law_name;
+        if (!material->law)
+          {
+            out << '\n';
+            continue;
+          }
+        bool is_first = true;
+        for (const auto &[name, entry] :
+             entries.get_child(boost::property_tree::ptree::path_type(
+               material->section + '/' + material->law_name, '/')))
+          {
+            out << (is_first ? " with " : ", ") << name << " = "
+                << entry.template get<std::string>("value");
+            is_first = false;
+          }
+        if (stress.value > 0.)
+          {
+            out << "; at " << number(stress.value) << stress_unit << ", "
+                << stress.origin << ", it ";
+            if (time.largest > 0.)
+              out << "relaxes stress within |sigma|/|G| = " << time.text()
+                  << time_unit;
+            else
+              out << "does not flow";
+          }
+        out << '\n';
+      }
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  implausible_data(const Discretization<dim> &discretization,
+                   const LargestStress       &stress)
+  {
+    const Scene<dim>        &scene      = discretization.scene();
+    const Parameters        &parameters = scene.parameters;
+    const Units             &units      = parameters.units;
+    std::vector<std::string> result;
+    const auto               with_unit = [&units](const double value) {
+      return number(value) + units.suffix(Quantity::stress, dim);
+    };
+    const auto ranges = ranges_of_materials(discretization, 0.);
+    for (const auto &one : ranges)
+      if (const std::string path = one.material->section + "/Young's modulus";
+          stress.is_load && !one.material->is_anisotropic() &&
+          parameters.origin_of(path).empty())
+        result.push_back("'" + path + "' is not given, so that it is " +
+                         with_unit(one.youngs_modulus.largest) +
+                         ", its default, beside " + with_unit(stress.value) +
+                         ", " + stress.origin + ".");
+    if (!units.are_declared())
+      return result;
+
+    const auto in_si = [](const double value, const std::string &unit) {
+      return number(value) + ' ' + unit + " in the SI";
+    };
+    for (const auto &[material, modulus, ratio, time] : ranges)
+      {
+        // From soft gels to diamond, which has 1.2e12 Pa.
+        constexpr double least = 1e3, largest = 1.3e12;
+        const double     unit = units.stress.si;
+        if (modulus.least * unit < least || modulus.largest * unit > largest)
+          {
+            const double value =
+              modulus.least * unit < least ? modulus.least : modulus.largest;
+            result.push_back(
+              "Young's modulus of '" + material->section + "' is " +
+              with_unit(value) + " (" + in_si(value * unit, "Pa") +
+              "); known materials have 1e4 Pa (gels), 1e6 Pa (rubber), 1e10 Pa "
+              "(rock), 2e11 Pa (steel), up to 1.2e12 Pa (diamond).");
+          }
+        if (stress.is_load && stress.value > 0.1 * modulus.largest)
+          result.push_back(
+            "the data reach " + with_unit(stress.value) + " (" + stress.origin +
+            "), a strain of about " +
+            number(std::round(100. * stress.value / modulus.largest)) +
+            " % with Young's modulus of '" + material->section + "', " +
+            with_unit(modulus.largest) + "; small strains are assumed.");
+      }
+    const double size = size_of_body(discretization);
+    if (const double meters = size * units.length.si;
+        meters < 1e-9 || meters > 1e7)
+      result.push_back("the body has a size of " + number(size) +
+                       units.suffix(Quantity::length, dim) + " (" +
+                       in_si(meters, "m") +
+                       "); atoms have 1e-10 m, the earth 1e7 m.");
+    if (scene.body_force)
+      {
+        const double force =
+          DataSampler<dim>(places_in_body(discretization.space.dof_handler
+                                            .get_triangulation()),
+                           scene)
+            .largest(*scene.body_force, dim);
+        const double newtons = force * units.stress.si / units.length.si;
+        // A thousand times the weight of osmium.
+        if (newtons > 2.2e8)
+          result.push_back("the body force is " + number(force) + ' ' +
+                           units.stress.name + '/' + units.length.name + " (" +
+                           in_si(newtons, "N/m^3") +
+                           "); water weighs 1e4 N/m^3, rock 2.5e4, steel "
+                           "7.7e4, osmium 2.2e5.");
+      }
+    return result;
+  }
+
+
+
+#define INSTANTIATE(dim)                                                    \
+  template LargestStress largest_given_stress(const Discretization<dim> &); \
+  template void          describe_materials(const Discretization<dim> &,    \
+                                            const LargestStress &,          \
+                                            std::ostream &);                \
+  template std::vector<std::string> implausible_data(                       \
+    const Discretization<dim> &, const LargestStress &);
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
+} // namespace Viscoplastic

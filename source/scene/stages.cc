@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/scene/scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+// The stages of construction of a scene: materials that come and go.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The end of the phase at time @p t, up to rounding, or nothing if that is
+    /// not before the end of the run. Throws ExcMessage if no phase ends then.
+    std::optional<double>
+    end_of_phase(const TimeSchedule &schedule,
+                 const double        t,
+                 const std::string  &entry)
+    {
+      constexpr double rounding = 1e-9;
+      if (t >= schedule.end_time() * (1. - rounding))
+        return {};
+      const double       end = schedule.phase_at(t * (1. - rounding)).end;
+      std::ostringstream message;
+      message << "'" << entry << "' = " << t
+              << " is not the end of a phase. The body changes between two "
+                 "phases of 'Time/Phases': let one end then; the present one "
+                 "ends at t = "
+              << end << ".";
+      AssertThrow(std::abs(end - t) <= rounding * t, ExcMessage(message.str()));
+      return end;
+    }
+
+
+
+    /// Refuse contact of materials that come or go.
+    template <int dim>
+    void
+    inspect_contact_pieces(
+      const Scene<dim>                                &scene,
+      const std::set<types::material_id>              &changing,
+      const parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      if (changing.empty())
+        return;
+      // All ranks have the coarse mesh.
+      for (const auto &cell : triangulation.cell_iterators_on_level(0))
+        if (changing.count(cell->material_id()) == 1)
+          for (const unsigned int f : cell->face_indices())
+            if (cell->at_boundary(f))
+              {
+                const types::boundary_id id = cell->face(f)->boundary_id();
+                AssertThrow(scene.boundary.at(id).role != BoundaryRole::contact,
+                            ExcMessage(
+                              "Boundary " + std::to_string(id) +
+                              " has the role contact and a part in '" +
+                              scene.material(cell->material_id()).section +
+                              "', which is added or removed; the pieces in "
+                              "contact have to stay the same."));
+              }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::find_stages(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    std::set<types::material_id>                               changing;
+    std::map<const Material<dim> *, std::pair<double, double>> times;
+    stage_ends.clear();
+    for (const auto &[id, entry] : entries)
+      {
+        const Material<dim> &material = *entry.material;
+        const auto           read     = [&, id = id](const double       t,
+                                       const std::string &name) {
+          if (!std::isfinite(t))
+            return t;
+          const std::string path = material.section + "/" + name;
+          AssertThrow(!parameters.materials.empty(),
+                      ExcMessage("'" + path +
+                                 "' would be that of the whole body; give "
+                                               "numbers to the materials, of which one has "
+                                               "to stay."));
+          AssertThrow(!has_source(),
+                      ExcMessage("'" + path +
+                                 "' contradicts 'Exact solution/Data' = "
+                                               "solution, which is that of one body."));
+          changing.insert(id);
+          if (name == "Added at" &&
+              parameters.stress.stress_history == StressHistory::cell_means)
+            warnings.push_back(
+              "'" + path +
+              "' with 'Material/Stress history' = cell means: "
+                            "what is added has no stress in the mean of each "
+                            "cell, but some within coarse cells; with "
+                            "quadrature points it has none.");
+          const auto end = end_of_phase(schedule, t, path);
+          if (!end)
+            return std::numeric_limits<double>::infinity();
+          stage_ends.push_back(*end);
+          return *end;
+        };
+        times[&material] = {read(material.added_at, "Added at"),
+                            read(material.removed_at, "Removed at")};
+      }
+    has_changing_materials = !changing.empty();
+    std::sort(stage_ends.begin(), stage_ends.end());
+    stage_ends.erase(std::unique(stage_ends.begin(), stage_ends.end()),
+                     stage_ends.end());
+
+    for (const types::material_id id : changing)
+      {
+        Entry &entry = entries[id];
+        materials.push_back(
+          std::make_unique<const Material<dim>>(entry.material->section,
+                                                parameters.materials.at(id),
+                                                parameters.handler,
+                                                parameters.laws,
+                                                /* is_absent = */ true));
+        entry.absent                = materials.back().get();
+        const auto [added, removed] = times[entry.material];
+        // The first stage is that of steps to the first end.
+        entry.begin =
+          std::isfinite(added) || added > 0. ? 1 + stage_of_step_to(added) : 0;
+        entry.end = 1 + stage_of_step_to(removed);
+      }
+
+    for (unsigned int n = 0; n <= stage_ends.size(); ++n)
+      {
+        enter_stage(n);
+        std::ostringstream message;
+        message << "'Added at' and 'Removed at' leave no material "
+                << (n == 0 ? "at the beginning." : "from t = ");
+        if (n > 0)
+          message << stage_ends[n - 1] << " on.";
+        AssertThrow(std::any_of(material_of_id.begin(),
+                                material_of_id.end(),
+                                [](const auto &pair) {
+                                  return !pair.second->is_absent;
+                                }),
+                    ExcMessage(message.str()));
+      }
+    enter_stage(0);
+    inspect_contact_pieces(*this, changing, triangulation);
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Scene<dim>::stage_of_step_to(const double t) const
+  {
+    return std::lower_bound(stage_ends.begin(), stage_ends.end(), t) -
+           stage_ends.begin();
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::enter_stage(const unsigned int n)
+  {
+    present_stage = n;
+    for (const auto &[id, entry] : entries)
+      material_of_id[id] =
+        entry.begin <= n && n < entry.end ? entry.material : entry.absent;
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  Scene<dim>::absent_materials() const
+  {
+    std::vector<std::string> result;
+    for (const auto &[id, material] : material_of_id)
+      if (material->is_absent)
+        result.push_back(material->section);
+    return result;
+  }
+
+
+
+  template void
+  Scene<2>::find_stages(const parallel::distributed::Triangulation<2> &);
+  template void
+  Scene<3>::find_stages(const parallel::distributed::Triangulation<3> &);
+  template unsigned int
+  Scene<2>::stage_of_step_to(const double) const;
+  template unsigned int
+  Scene<3>::stage_of_step_to(const double) const;
+  template std::vector<std::string>
+  Scene<2>::absent_materials() const;
+  template std::vector<std::string>
+  Scene<3>::absent_materials() const;
+  template void
+  Scene<2>::enter_stage(const unsigned int);
+  template void
+  Scene<3>::enter_stage(const unsigned int);
+} // namespace Viscoplastic

@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A foundation that gives way: p = c (u_n - g)_+^m.
+
+Against closed forms; an independent solver has it in test_unilateral.py.
+"""
+
+import numpy as np
+
+from harness import TestCase, main, run
+
+# The stress of confined compression by 1 for E = 1 and nu = 0.3.
+CONFINED = (1 - 0.3) / ((1 + 0.3) * (1 - 2 * 0.3))
+ADAPTIVE = {"Mesh refinement/Strategy": "residual", "Mesh refinement/Maximal level": 3}
+DEPTH = 0.05  # by which the bar is pressed, less the gap
+
+
+def bar(dim, compliance, exponent, **more):
+    """A bar between walls, pressed onto ground of which a half has hanging nodes,
+    with an own boundary id of the same law."""
+    bottom, top = 2 * dim - 2, 2 * dim - 1
+    half = 2 * dim
+    entries = {
+        "Dimension": dim,
+        "Geometry/Generator": "subdivided_hyper_rectangle",
+        "Geometry/Arguments": {
+            2: "4, 2 : 0, 0 : 2, 1 : true",
+            3: "2, 2, 2 : 0, 0, 0 : 2, 1, 1 : true",
+        }[dim],
+        "Geometry/Boundary ids": f"if(id == {bottom} && x > 1, {half}, id)",
+        "Geometry/Boundary refinements": f"{half}: 1",
+        "Material/Young's modulus": 1,
+        "Material/Poisson's ratio": 0.3,
+        "Material/Law": "elastic",
+        f"Boundary {top}/Role": "displacement",
+        f"Boundary {top}/Displacement": "0; " * (dim - 1) + "-0.06*t",
+        "Time/Phases": "1: 4",
+        "Solver/Contact tolerance": 1e-11,
+    }
+    for side in range(bottom):
+        entries[f"Boundary {side}/Role"] = "symmetry"
+    for piece in bottom, half:
+        entries[f"Boundary {piece}/Role"] = "contact"
+        entries[f"Boundary {piece}/Contact law"] = "normal compliance"
+        entries[f"Boundary {piece}/Compliance"] = compliance
+        entries[f"Boundary {piece}/Compliance exponent"] = exponent
+        entries[f"Boundary {piece}/Gap"] = "0.02 - 0.01*t"
+        entries[f"Boundary {piece}/Friction law"] = "none"
+    return {**entries, **more}
+
+
+def penetration(compliance, exponent):
+    """w of c w^m = M (depth - w), by bisection."""
+    low, high = 0.0, DEPTH
+    for _ in range(100):
+        w = 0.5 * (low + high)
+        force = CONFINED * (DEPTH - w)
+        low, high = (w, high) if compliance * w**exponent < force else (low, w)
+    return w
+
+
+class ByHand(TestCase):
+    def test_bar(self):
+        """From ground as soft as the bar to some that might as well be rigid."""
+        for dim, compliance, exponent, ranks, solver in (
+            (2, 2, 1, 1, "direct"),
+            (2, 300, 2, 1, "direct"),
+            (2, 20, 1.5, 2, "multigrid"),
+            (2, 1e6, 1, 1, "multigrid"),
+            (2, 1e12, 1, 1, "direct"),
+            (3, 1e10, 3, 1, "direct"),
+            (3, 20, 1.5, 3, "multigrid"),
+        ):
+            with self.subTest(dim=dim, compliance=compliance, exponent=exponent):
+                scene = bar(dim, compliance, exponent)
+                scene["Solver/Linear solver"] = solver
+                result = run("bar", scene, ranks, text="")
+                w = penetration(compliance, exponent)
+                pressure = CONFINED * (DEPTH - w)
+                self.assertClose(result["max_pressure"][-1], pressure, relative=1e-8)
+                self.assertClose(
+                    result["max_penetration"][-1], w, relative=1e-8, absolute=1e-18
+                )
+                self.assertClose(
+                    -result[f"contact_force_{'xyz'[dim - 1]}"][-1],
+                    2 * pressure,
+                    relative=1e-8,
+                )
+                # its slope is known to the linear systems
+                self.assertLess(max(result["contact_iterations"]), 6)
+                energy = 2 * compliance * w ** (exponent + 1) / (exponent + 1)
+                self.assertClose(
+                    result["stored_energy"][-1] - result["strain_energy"][-1],
+                    energy,
+                    absolute=1e-8 * result["stored_energy"][-1],
+                )
+                self.assertClose(
+                    result["energy_balance_defect"][-1],
+                    0,
+                    absolute=1e-8 * result["stored_energy"][-1],
+                )
+
+    def test_block_that_floats(self):
+        """Held by nothing but its ground, at the depth of its weight; let go, it
+        comes back."""
+        for compliance, exponent, ranks in (4, 1, 1), (4, 2, 2), (0.01, 1, 1):
+            scene = bar(2, compliance, exponent)
+            scene.update(
+                {
+                    "Boundary 3/Role": "traction",
+                    "Boundary 3/Traction": "0; -0.01*min(2*t, 1)*(t < 1.5) - 1e-4",
+                    "Time/Phases": "1: 2, 2: 1",
+                    "Initial state/Equilibrate": "true",
+                }
+            )
+            scene.pop("Boundary 3/Displacement")
+            with self.subTest(compliance=compliance, exponent=exponent):
+                result = run("block", scene, ranks, text="")
+                for row, load in (1, 0.0101), (-1, 1e-4):
+                    self.assertClose(
+                        result["max_penetration"][row],
+                        (load / compliance) ** (1 / exponent),
+                        relative=1e-4,
+                    )
+
+
+class Limit(TestCase):
+    def test_rigid_foundation(self):
+        """The difference to a rigid foundation is of the order 1/c."""
+        plate = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
+            "Material/Young's modulus": 1,
+            "Material/Poisson's ratio": 0.3,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 2,
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Gap": "0.004*(x - 1)^2",
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": 0.3,
+            "Boundary 3/Role": "displacement",
+            "Boundary 3/Displacement": "0.02*sin(3*t); -0.02*sin(2*t)",
+            "Time/Phases": "1: 8",
+            "Solver/Contact tolerance": 1e-10,
+        }
+        rigid = run("plate", plate, text="")
+        differences = []
+        for compliance in 1e3, 1e4, 1e5:
+            soft = run(
+                "plate",
+                {
+                    **plate,
+                    "Boundary 2/Contact law": "normal compliance",
+                    "Boundary 2/Compliance": compliance,
+                },
+                text="",
+            )
+            self.check_identities(soft)
+            differences.append(
+                max(
+                    abs(soft[name] - rigid[name]).max() / abs(rigid[name]).max()
+                    for name in ("contact_force_y", "friction_force_x")
+                )
+            )
+        orders = np.log10(np.divide(differences[:-1], differences[1:]))
+        self.assertLess(differences[-1], 1e-3)
+        self.assertLess(abs(orders - 1).max(), 0.1, differences)
+
+
+    def test_new_meshes(self):
+        """Interpolation at new nodes over a curved gap makes penetrations, but
+        no energy."""
+        plate = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+            "Material/Law": "elastic",
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Gap": "0.02*(x - 1)^2",
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": 0.3,
+            "Boundary 3/Role": "displacement",
+            "Boundary 3/Displacement": "0.01*t; -0.02*t",
+            "Time/Phases": "1: 8",
+            **ADAPTIVE,
+        }
+        soft = {
+            "Boundary 2/Contact law": "normal compliance",
+            "Boundary 2/Compliance": 1e7,
+        }
+        rigid = run("plate", plate, text="")
+        result = run("plate", {**plate, **soft}, text="")
+        self.assertGreater(result["cells"][-1], 2 * result["cells"][0])
+        size = rigid["stored_energy"][-1]
+        for name in "adaptation_energy", "stored_energy", "energy_balance_defect":
+            self.assertLess(abs(result[name] - rigid[name]).max(), 1e-3 * size, name)
+
+
+class Seam(TestCase):
+    def test_beside_a_rigid_foundation(self):
+        """Where both meet, nodes have two obstacles and one bound of friction."""
+        for hard, soft in ("2", "4"), ("4", "2"):
+            contact = {"Friction law": "coulomb", "Friction coefficient": 0.3}
+            contact.update({"Role": "contact", "Foundation motion": "0.2*t; 0"})
+            scene = {
+                "Geometry/Generator": "subdivided_hyper_rectangle",
+                "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+                "Geometry/Boundary ids": "if(id == 2 && x > 1, 4, id)",
+                "Material/Law": "elastic",
+                "Boundary 0/Role": "free",
+                "Boundary 1/Role": "free",
+                "Boundary 3/Role": "displacement",
+                "Boundary 3/Displacement": "0; -0.01*min(1, 5*t)",
+                "Time/Phases": "1: 10",
+                f"Boundary {hard}/Contact law": "unilateral",
+                f"Boundary {soft}/Contact law": "normal compliance",
+                f"Boundary {soft}/Compliance": 3,
+            }
+            for piece in hard, soft:
+                for name, value in contact.items():
+                    scene[f"Boundary {piece}/{name}"] = value
+            with self.subTest(hard=hard):
+                result = run("plate", scene, text="")
+                self.assertEqual(result["slip_area"][-1], 2.0)
+                self.assertClose(
+                    result["friction_force_x"][-1],
+                    0.3 * result["contact_force_y"][-1],
+                    relative=1e-3,
+                )
+                # Neither do the residuals count the pressure twice.
+                scene[f"Boundary {soft}/Compliance"] = 1e9
+                seam = run("plate", scene, text="")
+                scene[f"Boundary {soft}/Contact law"] = "unilateral"
+                rigid = run("plate", scene, text="")
+                self.assertClose(
+                    seam["estimate_space"][1:],
+                    rigid["estimate_space"][1:],
+                    relative=1e-4,
+                )
+
+
+class EverySolution(TestCase):
+    """p = c (u_n - g)_+^m at each node, whatever else acts."""
+
+    def check(self, changes, ranks=1):
+        result = run("soft_ground_3d", changes, ranks)
+        face = result.fields("contact")
+        x, y, _ = face.points.T
+        gap, pressure = (face.point_data[n] for n in ("gap", "contact_pressure"))
+        inner = abs(x - 1) > 1e-9  # the nodes of both laws have their mean
+        depth = np.maximum(-gap, 0)
+        for piece, law in (x < 1, 5 * depth), (x > 1, 150 * depth**2):
+            here = inner & piece
+            size = pressure[here].max()
+            self.assertGreater(size, 0)
+            # as far as numbers in the files go
+            self.assertLess(abs(pressure - law)[here].max(), 1e-6 * size)
+        self.assertLess(max(result["force_balance_defect"]), 1e-8)
+        return result
+
+    def test_forward_euler(self):
+        self.check({}, 2)
+
+    def test_backward_euler(self):
+        """Also where tangents are not symmetric."""
+        law = {
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "1: 3",
+            "Mesh refinement/Strategy": "none",
+            "Boundary 5/Displacement": "0.02*t; 0.01*t^2; -0.03*t + 0.01*t*x",
+        }
+        self.check(law)
+        norton = {"Rate factor": 1e3, "Exponent": 3, "Stress cap": 1}
+        parsed = {"Strain rate": "0.5*sigma_eq*(1 - 2*p)"}
+        for name, entries in ("norton", norton), ("parsed", parsed):
+            material = {f"Material/{name}/{key}": v for key, v in entries.items()}
+            self.check({**law, "Material/Law": name, **material})
+
+
+class Refused(TestCase):
+    def refused(self, changes, *sentences):
+        process = run("bar", {**bar(2, 2, 1), **changes}, text="", check=False)
+        self.assertRefused(process, *sentences)
+
+    def test_sentences(self):
+        law, compliance = "Boundary 2/Contact law", "Boundary 2/Compliance"
+        self.refused({compliance: ""}, f"'{compliance}' is missing")
+        self.refused({compliance: "x - 1"}, "at x = (", "must not be negative")
+        self.refused({compliance: "1 + t"}, "depends on time")
+        self.refused({compliance + " exponent": 0.5}, "Compliance exponent")
+        self.refused({"Boundary 2/Friction law": "glued"}, "cannot open")
+        unused = run("bar", {**bar(2, 2, 1), law: "unilateral"}, text="")
+        self.assertIn(f"'{compliance}'", unused.stdout + unused.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,430 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contact that opens and closes, and friction of the pressure that comes out.
+
+Small scenes against an independent solver of the same discretisation
+(independent_contact.py), which shares no algorithm with the program.
+"""
+
+import unittest
+
+import numpy as np
+
+import independent_contact
+from harness import TestCase, main, run
+
+CONTACT_LAWS = {
+    "none": {"Friction law": "none"},
+    "tresca": {"Friction law": "tresca"},
+    "lagged": {"Friction law": "coulomb"},
+    "coupled": {"Friction law": "coulomb"},
+}
+
+
+def entries_of(scene):
+    entries = independent_contact.parameters(scene)
+    boundary = f"Boundary {2 * len(scene['cells']) - 2}"
+    law = scene["law"]
+    contact = {"Contact law": "unilateral", "Gap": scene["gap"], **CONTACT_LAWS[law]}
+    if "compliance" in scene:
+        contact["Contact law"] = "normal compliance"
+        contact["Compliance"], contact["Compliance exponent"] = scene["compliance"]
+    if law == "tresca":
+        contact["Friction bound"] = scene["bound"]
+    if law in ("lagged", "coupled"):
+        contact["Friction coefficient"] = scene["mu"]
+    if law == "coupled":
+        entries["Solver/Coulomb pressure"] = "fixed point"
+        entries["Solver/Coulomb tolerance"] = 1e-11
+    return {
+        **entries,
+        **{f"{boundary}/{name}": value for name, value in contact.items()},
+        "Material/Volumetric integration": "full",
+        "Solver/Contact tolerance": 1e-10,
+    }
+
+
+class Reference(TestCase):
+    def check(self, name, ranks=1, **more):
+        scene = independent_contact.SCENES[name]
+        entries = {**entries_of(scene), **more}
+        result = run(name.replace(" ", "_"), entries, ranks, text="")
+        steps = independent_contact.solve(scene)
+        self.assertEqual(len(steps), len(result["t"]) - 1)
+        dim = len(scene["cells"])
+        normal = "xyz"[dim - 1]
+        size = max(step.normal_force for step in steps)
+        energy = max(step.energy for step in steps)
+        tolerance = 1e-8 if ranks == 1 else 1e-6
+        for i, step in enumerate(steps, start=1):
+            with self.subTest(t=step.t):
+                force = -result[f"contact_force_{normal}"][i]
+                self.assertLess(abs(force - step.normal_force), tolerance * size)
+                for d in range(dim - 1):
+                    self.assertLess(
+                        abs(
+                            result[f"friction_force_{'xyz'[d]}"][i]
+                            - step.tangential_force[d]
+                        ),
+                        tolerance * size,
+                    )
+                self.assertAlmostEqual(result["contact_area"][i], step.contact_area)
+                self.assertLess(
+                    abs(result["strain_energy"][i] - step.energy), tolerance * energy
+                )
+                self.assertLess(result["force_balance_defect"][i], 1e-6)
+                pressure = step.p / step.area
+                self.assertLess(
+                    abs(result["max_pressure"][i] - pressure.max()),
+                    10 * tolerance * size / step.area.min(),
+                )
+                opening = step.gap - step.u[: len(step.p), -1] * -1
+                gap = max(opening.max(), 0)
+                self.assertLess(abs(result["max_gap"][i] - gap), 1e-8)
+                if step.compliance:
+                    depth = max(-opening.min(), 0)
+                    self.assertLess(abs(result["max_penetration"][i] - depth), 1e-8)
+        return result
+
+    def test_frictionless(self):
+        self.check("opening")
+        self.check("opening", ranks=2)
+
+    def test_tresca(self):
+        self.check("rough")
+
+    def test_tresca_in_space(self):
+        self.check("turning tresca")
+        self.check("turning tresca", ranks=3)
+
+    def test_lagged_pressure(self):
+        self.check("lagged")
+        self.check("steep")
+
+    def test_moving_foundation(self):
+        self.check("moving")
+
+    def test_fixed_point(self):
+        result = self.check("coupled")
+        self.assertLess(max(result["contraction"]), 0.6)
+        self.assertGreater(max(result["contraction"]), 0.05)
+
+    def test_compliance(self):
+        self.check("soft")
+        self.check("soft rough")
+
+    def test_compliance_in_space(self):
+        self.check("soft turning")
+        self.check("soft turning", ranks=3)
+
+    def test_fixed_point_in_space(self):
+        self.check("turning coulomb")
+        self.check("turning coulomb", ranks=2)
+
+
+class Held(TestCase):
+    """A block that nothing but its foundation holds: statics says the rest."""
+
+    BLOCK = {
+        "Geometry/Generator": "subdivided_hyper_rectangle",
+        "Geometry/Arguments": "16, 8 : 0, 0 : 2, 1 : true",
+        "Material/Law": "elastic",
+        "Boundary 0/Role": "traction",
+        "Boundary 0/Traction": "0.004*max(0, t - 0.3); 0",
+        "Boundary 1/Role": "free",
+        "Boundary 2/Role": "contact",
+        "Boundary 2/Contact law": "unilateral",
+        "Boundary 2/Gap": 0.1,
+        "Boundary 2/Friction law": "coulomb",
+        "Boundary 2/Friction coefficient": 0.3,
+        "Boundary 3/Role": "traction",
+        "Boundary 3/Traction": "0; -0.01*(x - 0.4)*min(1, 5*t)",
+        "Time/Phases": "1: 5",
+    }
+
+    def run_block(self, changes=None, ranks=1, check=True):
+        return run("block", {**self.BLOCK, **(changes or {})}, ranks, "", check)
+
+    def test_tilted_by_its_load(self):
+        """It falls onto the foundation and is lifted at one end. The pressure
+        has the resultant and the moment of the loads."""
+        for changes, ranks in (
+            ({}, 1),
+            ({"Solver/Linear solver": "multigrid"}, 2),
+            ({"Boundary 2/Gap": "5 + 0.3*x"}, 1),
+        ):
+            with self.subTest(changes=changes):
+                result = self.run_block(changes, ranks)
+                push = 0.004 * (1 - 0.3)
+                weight = 0.01 * ((2 - 0.4) ** 2 - 0.4**2) / 2
+                self.assertClose(result["contact_force_y"][-1], -weight, relative=1e-5)
+                self.assertClose(result["friction_force_x"][-1], push, relative=1e-5)
+                self.assertGreater(result["max_gap"][-1], 0.01)
+                face = result.fields("contact")
+                x, first = np.unique(face.points[:, 0], return_index=True)
+                pressure = face.point_data["contact_pressure"][first]
+                h = np.diff(x).max()
+                area = np.full(len(x), h)
+                area[[0, -1]] /= 2
+                moment = (area * pressure * x).sum()
+                # of the load about the origin, and of the push at half the height
+                load = 0.01 * (2**3 / 3 - 0.4 * 2**2 / 2) + push * 0.5
+                self.assertClose(moment, load, relative=1e-4)
+
+    def test_space(self):
+        """On two ranks with hanging nodes on the foundation."""
+        block = {
+            **{key: value for key, value in self.BLOCK.items()},
+            "Dimension": 3,
+            "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 2, 2, 1 : true",
+            "Boundary 0/Traction": "0.002*max(0, t - 0.3); 0; 0",
+            "Boundary 2/Role": "free",
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Traction": "0; -0.001*max(0, t - 0.3); 0",
+            "Boundary 4/Role": "contact",
+            "Boundary 4/Contact law": "unilateral",
+            "Boundary 4/Gap": "0.05*(x^2 + y^2)",
+            "Boundary 4/Friction law": "coulomb",
+            "Boundary 4/Friction coefficient": 0.5,
+            "Boundary 5/Role": "traction",
+            "Boundary 5/Traction": "0; 0; -0.01*min(1, 5*t)",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Maximal level": 2,
+        }
+        for name in ("Contact law", "Gap", "Friction law", "Friction coefficient"):
+            block.pop(f"Boundary 2/{name}")
+        result = run("block", block, 2, "")
+        area = 2 * 1
+        expected = [0.002 * 0.7 * area, -0.001 * 0.7 * area]
+        for name, value in zip("xy", expected):
+            self.assertClose(result[f"friction_force_{name}"][-1], value, relative=1e-5)
+        self.assertClose(result["contact_force_z"][-1], -0.01 * 4, relative=1e-5)
+
+    def test_refusals(self):
+        for changes, message in (
+            ({"Boundary 3/Traction": "0; 0.01*t"}, "No contact force balances"),
+            # beyond mu times the weight
+            (
+                {
+                    "Boundary 0/Traction": "0.01*max(0, t - 0.3); 0",
+                    "Boundary 3/Traction": "0; -0.01*min(1, 5*t)",
+                },
+                "Step 5 .*No contact force balances",
+            ),
+            # no friction in the first step
+            ({"Boundary 0/Traction": "0.001*t; 0"}, "= fixed point has"),
+            (
+                {"Boundary 2/Friction law": "none"},
+                "leave a rigid motion free: translation along x",
+            ),
+        ):
+            with self.subTest(message=message):
+                stderr = self.run_block(changes, check=False).stderr
+                self.assertRegex(" ".join(stderr.split()), message)
+        # which the fixed point has
+        found = self.run_block(
+            {
+                "Boundary 0/Traction": "0.001*t; 0",
+                "Solver/Coulomb pressure": "fixed point",
+            }
+        )
+        self.assertClose(found["friction_force_x"][-1], 0.001, relative=1e-5)
+
+    def test_no_load_at_all(self):
+        """Squeezed by a plate, and at rest in the end: balance without loads."""
+        result = self.run_block(
+            {
+                "Boundary 0/Role": "free",
+                "Boundary 2/Gap": 0,
+                "Boundary 3/Role": "displacement",
+                "Boundary 3/Displacement": "free; -0.01*min(2*t, 1)",
+                "Solver/Coulomb pressure": "fixed point",
+            }
+        )
+        self.assertLess(result["contact_force_y"][-1], -0.02)
+        self.assertClose(
+            result["contact_force_y"][-1], result["reaction_3_y"][-1], relative=1e-6
+        )
+
+
+class AtRest(TestCase):
+    """Where nothing happens, or nothing but what bilateral contact does."""
+
+    BLOCK = {
+        "Dimension": 3,
+        "Geometry/Generator": "subdivided_hyper_rectangle",
+        "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true",
+        **{f"Boundary {face}/Role": "free" for face in range(4)},
+        "Boundary 4/Role": "contact",
+        "Boundary 4/Contact law": "unilateral",
+        "Boundary 4/Friction law": "coulomb",
+        "Boundary 4/Friction coefficient": 0.3,
+        "Boundary 5/Role": "clamped",
+        "Time/Phases": "1: 4",
+    }
+
+    def run_block(self, changes, ranks=1):
+        return run("block", {**self.BLOCK, **changes}, ranks, text="")
+
+    def test_foundation_that_slides_below(self):
+        """It touches without load: pressures of rounding are no bounds."""
+        for pressure in "lagged", "fixed point":
+            result = self.run_block(
+                {
+                    "Boundary 4/Foundation motion": "t; 0.1*t^2; 0",
+                    "Solver/Coulomb pressure": pressure,
+                }
+            )
+            # of a foundation that moves by 1
+            self.assertLess(max(result["max_displacement"]), 1e-13)
+            self.assertEqual(max(result["contact_area"]), 0.0)
+
+    def test_foundation_that_is_not_reached(self):
+        """No bound is left of the stick that a fixed point begins with, also in
+        steps without change."""
+        for pressure in "lagged", "fixed point":
+            result = self.run_block(
+                {
+                    "Boundary 4/Gap": 0.1,
+                    "Boundary 0/Role": "traction",
+                    "Boundary 0/Traction": "0.01*min(2*t, 1); 0; 0",
+                    "Solver/Coulomb pressure": pressure,
+                },
+                ranks=2,
+            )
+            self.assertGreater(result["unchanged"][-1], 0)
+            self.assertEqual(max(result["stick_area"]), 0.0)
+            bound = result.fields("contact").point_data["bound"]
+            self.assertEqual(abs(bound).max(), 0.0)
+            self.assertIn("unilateral contact has never acted", result.stdout)
+
+    def test_foundation_that_is_always_touched(self):
+        result = self.run_block(
+            {
+                "Boundary 4/Friction law": "none",
+                "Boundary 5/Role": "displacement",
+                "Boundary 5/Displacement": "0; 0; -0.01*(1 + t)",
+                "Initial state/Equilibrate": "true",
+            }
+        )
+        self.assertEqual(min(result["contact_area"]), 1.0)
+        self.assertIn("unilateral contact has never opened", result.stdout)
+
+    def test_stages(self):
+        """A column whose upper half is taken away, pressed to its foundation by
+        its weight: as in bilateral contact."""
+        contact = {
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Friction law": "tresca",
+            "Boundary 2/Friction bound": 0.3,
+            "Material 1/Law": "maxwell",
+            "Material 1/maxwell/Viscosity": 100,
+            "Solver/Contact tolerance": 1e-11,
+        }
+        bilateral = run("excavated_column", contact)
+        result = run(
+            "excavated_column", {**contact, "Boundary 2/Contact law": "unilateral"}
+        )
+        for name in ("point0_x", "point0_y", "stored_energy", "friction_force_x"):
+            size = abs(bilateral[name]).max()
+            self.assertClose(
+                result[name], bilateral[name], absolute=1e-7 * size, what=name
+            )
+        self.assertClose(
+            result["contact_force_y"][1:],
+            -bilateral["reaction_2_y"][1:],
+            relative=1e-7,
+        )
+
+
+class Refused(TestCase):
+    """Sentences that say what is wrong, and what would be right."""
+
+    PLATE = {
+        "Geometry/Generator": "subdivided_hyper_rectangle",
+        "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
+        "Boundary 0/Role": "free",
+        "Boundary 1/Role": "free",
+        "Boundary 2/Role": "contact",
+        "Boundary 2/Contact law": "unilateral",
+        "Boundary 2/Friction law": "none",
+        "Boundary 3/Role": "displacement",
+        "Boundary 3/Displacement": "0; -0.01*t",
+        "Time/Phases": "1: 2",
+    }
+
+    def refused(self, changes, *sentences):
+        process = run("plate", {**self.PLATE, **changes}, text="", check=False)
+        self.assertRefused(process, *sentences)
+
+    def test_laws_that_do_not_go_together(self):
+        law, friction = "Boundary 2/Contact law", "Boundary 2/Friction law"
+        coefficient = "Boundary 2/Friction coefficient"
+        self.refused(
+            {law: "bilateral", friction: "coulomb", coefficient: 1},
+            "'Friction law' = coulomb needs a pressure",
+        )
+        self.refused({law: "given normal stress"}, "use the role traction")
+        self.refused({friction: "glued"}, "what is glued cannot open")
+        self.refused({friction: "coulomb"}, f"'{coefficient}' is missing")
+        self.refused({law: "unilatral"}, "Contact law", "unilateral")
+        self.refused(
+            {friction: "coulomb", coefficient: "-0.1"},
+            f"'{coefficient}' is -0.1",
+            "must not be negative",
+        )
+
+    def test_foundations(self):
+        normal = "Boundary 2/Foundation normal"
+        self.refused({normal: "0, 1"}, "points into the body")
+        self.refused({normal: "0, 0, -1"}, "needs 2 components", "has 3")
+        self.refused({normal: "0, 0"}, "is zero; give a direction")
+        self.refused(
+            {
+                "Geometry/Generator": "hyper_ball",
+                "Geometry/Arguments": "0, 0 : 1 : false",
+                "Geometry/Global refinements": 2,
+                "Geometry/Boundary ids": "if(y < -abs(x), 2, if(y > abs(x), 3, x > 0))",
+            },
+            "is not flat",
+            "or the foundation a 'Foundation normal'",
+        )
+        self.refused(
+            {"Boundary 2/Gap": "-0.01"},
+            "the body is inside of the foundation of unilateral contact, by 0.01",
+            "set 'Initial state/Equilibrate'",
+        )
+
+    def test_a_rim_all_around(self):
+        """Its normals cancel, but some of it faces the foundation."""
+        rim = {
+            **self.PLATE,
+            "Geometry/Generator": "hyper_shell",
+            "Geometry/Arguments": "0, 0 : 0.5 : 1 : 8 : true",
+            "Boundary 0/Role": "displacement",
+            "Boundary 0/Displacement": "0; -0.01*t",
+            "Boundary 1/Role": "contact",
+            "Boundary 1/Contact law": "unilateral",
+            "Boundary 1/Friction law": "none",
+            "Boundary 1/Gap": "y + 1",
+            "Boundary 1/Foundation normal": "0, -1",
+        }
+        for name in list(rim):
+            if name.startswith(("Boundary 2", "Boundary 3")):
+                del rim[name]
+        result = run("rim", rim, text="")
+        self.assertLess(result["contact_force_y"][-1], -1e-4)
+        self.assertLess(result["contact_area"][-1], 1.0)
+
+    def test_fields_without_unilateral_contact(self):
+        self.refused(
+            {
+                "Boundary 2/Contact law": "bilateral",
+                "Output/Points": "0, 0",
+                "Output/Point fields": "gap",
+            },
+            "there is no `gap' where no boundary has unilateral contact",
+        )
+
+
+if __name__ == "__main__":
+    main()

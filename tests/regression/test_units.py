@@ -1,0 +1,427 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Units of a scene: numbers with units give what the same numbers without give,
+and results say in which units they are."""
+
+import csv
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from harness import DEFECTS, EFFORT, SOURCE, TestCase, main, run, run_program
+
+sys.path.insert(0, str(SOURCE / "contrib" / "python"))
+
+from viscoplastic_contact.results import Results
+
+# Rock salt that creeps and slips, in metres, days and megapascals.
+SALT = """
+subsection Units
+  set Length = m
+  set Time   = day
+  set Stress = MPa
+end
+subsection Geometry
+  set Arguments    = 8, 4 : 0, 0 : 4 m, 200 cm : true
+  set Boundary ids = if(id == 2 && x > 3 m, 4, id)
+end
+subsection Material
+  set Young's modulus = 25 GPa*(1 + x/(40 m))
+  set Poisson's ratio = 0.25
+  set Law             = norton
+  subsection norton
+    set Rate factor = 3.65e-5 MPa^-3/year
+    set Exponent    = 3
+    set Stress cap  = 30 MPa
+  end
+end
+subsection Loads
+  set Body force = 0; -2200 kg/m^3*9.81 m/s^2
+end
+subsection Initial state
+  set Equilibrate = true
+end
+subsection Boundary 0
+  set Role     = traction
+  set Traction = 6 MPa*min(t, 10 days)/(10 day); 0
+end
+subsection Boundary 1
+  set Role     = traction
+  set Pressure = 22 kN/m^3*(2 m - y)
+end
+subsection Boundary 2
+  set Role           = contact
+  set Friction law   = tresca
+  set Friction bound = 700 kPa
+end
+subsection Boundary 3
+  set Role = clamped
+end
+subsection Boundary 4
+  set Role         = displacement
+  set Displacement = free; -2 mm/year*t
+end
+subsection Time
+  set Phases = 240 h: 3, 0.25 year: 5
+  set Scheme = backward Euler
+end
+subsection Solver
+  set Contact tolerance = 1e-11
+end
+subsection Output
+  set Points            = 0, 0; 100 cm, 50 cm
+  set Additional fields = creep rate, principal stresses, friction work, normal traction
+end
+"""
+
+DAY, YEAR = 86400, 365.25 * 86400
+
+# The same in the SI, without units.
+PLAIN = {
+    "Geometry/Arguments": "8, 4 : 0, 0 : 4, 2 : true",
+    "Geometry/Boundary ids": "if(id == 2 && x > 3, 4, id)",
+    "Material/Young's modulus": "25e9*(1 + x/40)",
+    "Material/Poisson's ratio": "0.25",
+    "Material/Law": "norton",
+    "Material/norton/Rate factor": repr(3.65e-5 * 1e-18 / YEAR),
+    "Material/norton/Exponent": 3,
+    "Material/norton/Stress cap": 30e6,
+    "Loads/Body force": "0; -2200*9.81",
+    "Initial state/Equilibrate": "true",
+    "Boundary 0/Role": "traction",
+    "Boundary 0/Traction": f"6e6*min(t, {10 * DAY})/{10 * DAY}; 0",
+    "Boundary 1/Role": "traction",
+    "Boundary 1/Pressure": "22e3*(2 - y)",
+    "Boundary 2/Role": "contact",
+    "Boundary 2/Friction law": "tresca",
+    "Boundary 2/Friction bound": 700e3,
+    "Boundary 3/Role": "clamped",
+    "Boundary 4/Role": "displacement",
+    "Boundary 4/Displacement": f"free; -2e-3/{YEAR}*t",
+    "Time/Phases": f"{10 * DAY}: 3, {YEAR / 4}: 5",
+    "Time/Scheme": "backward Euler",
+    "Solver/Contact tolerance": 1e-11,
+    "Output/Points": "0, 0; 1, 0.5",
+    "Output/Additional fields": "creep rate, principal stresses, friction work, "
+    "normal traction",
+}
+
+# What a unit of the scene has of the SI, in plane strain.
+SIZES = {
+    "day": DAY,
+    "m": 1.0,
+    "m^2": 1.0,
+    "MPa": 1e6,
+    "MPa*m": 1e6,
+    "MN/m": 1e6,
+    "MJ/m": 1e6,
+    "(MJ/m)^0.5": 1e3,
+    "(MJ/m/day)^0.5": (1e6 / DAY) ** 0.5,
+    "1/day": 1 / DAY,
+    "m/day": 1 / DAY,
+}
+
+# The units that doc/results.md has in words, in plane strain, and in three
+# dimensions in millimetres, seconds and megapascals.
+UNITS_OF_WORDS = {
+    "": "",
+    "1": "",
+    "s": "s",
+    "time": "day",
+    "length": "m",
+    "area": "m",
+    "volume": "m^2",
+    "force": "MN/m",
+    "energy": "MJ/m",
+    "energy^½": "(MJ/m)^0.5",
+    "(energy/time)^½": "(MJ/m/day)^0.5",
+    "stress": "MPa",
+    "stress × volume^½": "MPa*m",
+}
+
+UNITS_IN_SPACE = {
+    **UNITS_OF_WORDS,
+    "time": "s",
+    "length": "mm",
+    "area": "mm^2",
+    "volume": "mm^3",
+    "force": "N",
+    "energy": "mJ",
+    "energy^½": "(mJ)^0.5",
+    "(energy/time)^½": "(mJ/s)^0.5",
+    "stress × volume^½": "MPa*mm^1.5",
+}
+
+
+def header(result):
+    """{column: unit} of the first line of statistics.csv."""
+    with open(result.directory / "statistics.csv", newline="") as file:
+        names = next(csv.reader(file))
+    return dict(re.fullmatch(r"([^ ]+)(?: \[(.+)\])?", name).groups("") for name in names)
+
+
+def documented_units():
+    """{column: words} of the table in doc/results.md, components as `_x'."""
+    page = (SOURCE / "doc" / "results.md").read_text()
+    table = page[page.index("## statistics.csv") : page.index("\n## The bill")]
+    units = {}
+    for names, words in re.findall(r"^\| (`[^|]*) \| ([^|]*)\|", table, re.M):
+        for name in re.findall(r"`([a-z][^`]*)`", names):
+            units[name] = words.strip()
+    return units
+
+
+def documented_name(column):
+    name = re.sub(r"_[xyz]$", "_x", column)
+    return re.sub(r"^reaction_\d+", "reaction_<id>", re.sub(r"^point\d+", "point<i>", name))
+
+
+class Labels(TestCase):
+    def test_change_no_number(self):
+        """In three dimensions on adaptive meshes and two ranks."""
+        short = {"Time/Phases": "0.2: 2"}
+        units = {"Units/Length": "mm", "Units/Time": "s", "Units/Force": "N"}
+        bare = run("pad_adaptive", short, ranks=2)
+        labelled = run("pad_adaptive", {**short, **units}, ranks=2)
+        documented = documented_units()
+        for column, unit in header(labelled).items():
+            words = documented[documented_name(column)].removesuffix(" (`residual`)")
+            self.assertEqual(unit, UNITS_IN_SPACE[words], column)
+            if not column.startswith("wall_"):
+                self.assertTrue(np.array_equal(labelled[column], bare[column]), column)
+        self.assertIn("estimator", labelled.statistics)
+        for series in ("solution", "contact"):
+            mine, theirs = labelled.fields(series), bare.fields(series)
+            for name, values in theirs.point_data.items():
+                self.assertTrue(np.array_equal(mine.point_data[name], values), name)
+            for name, values in theirs.cell_data.items():
+                self.assertTrue(np.array_equal(mine.cell_data[name], values), name)
+        self.assertEqual(labelled.info["units"]["stress"], "MPa")
+
+
+class Same(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scene = run("salt", text=SALT)
+        cls.plain = run("salt", PLAIN, text="")
+
+    def compare(self, column, values, expected, size, what):
+        scale = abs(expected).max() if column not in DEFECTS else np.inf
+        self.assertClose(values * size, expected, absolute=1e-7 * scale, what=what)
+
+    def test_numbers(self):
+        """The scene flows, slips and sticks, so that all of its data count."""
+        units = header(self.scene)
+        self.assertEqual(set(self.plain.statistics), set(units))
+        for column, unit in units.items():
+            if column in EFFORT or column.startswith("wall_"):
+                continue
+            values, expected = self.scene[column], self.plain[column]
+            if column == "step_limit":
+                values, expected = values[1:], expected[1:]
+            self.compare(column, values, expected, SIZES[unit] if unit else 1, column)
+        slip = self.scene["slip_area"]
+        self.assertGreater(slip.max(), 0.5)
+        self.assertLess(slip.min(), 0.5)
+        work = self.scene["external_work"][-1]
+        self.assertGreater(self.scene["viscous_dissipation"][-1], 0.05 * work)
+        self.assertGreater(self.scene["friction_dissipation"][-1], 0.01 * work)
+
+    def test_columns_say_their_units(self):
+        documented = documented_units()
+        for column, unit in header(self.scene).items():
+            words = documented[documented_name(column)]
+            self.assertEqual(unit, UNITS_OF_WORDS[words], column)
+        self.assertEqual(set(header(self.plain).values()), {""})
+
+    def test_fields_say_their_units(self):
+        """In their names, since ParaView shows these."""
+        for series, vectors in (("solution", 2), ("contact", 4)):
+            (_, record) = self.scene.series(series)[-1]
+            labels = dict(
+                re.findall(r'Name="([a-z_0-9]+)(?: \[(.+?)\])?"', record.read_text())
+            )
+            text = record.read_text()
+            self.assertEqual(text.count('NumberOfComponents="3"'), vectors + 1)
+            mine, theirs = self.scene.fields(series), self.plain.fields(series)
+            for fields, expected in (
+                (mine.point_data, theirs.point_data),
+                (mine.cell_data, theirs.cell_data),
+            ):
+                self.assertEqual(set(fields), set(expected))
+                for name, values in fields.items():
+                    size = SIZES[labels[name]] if labels[name] else 1
+                    largest = abs(expected[name]).max()
+                    self.assertClose(
+                        values * size, expected[name], absolute=1e-5 * largest, what=name
+                    )
+            if series == "solution":
+                self.assertEqual(labels["creep_rate"], "1/day")
+                self.assertEqual(labels["velocity"], "m/day")
+                self.assertEqual(labels["subdomain"], "")
+            else:
+                self.assertEqual(labels["friction_work"], "MPa*m")
+                self.assertEqual(labels["stick"], "")
+
+    def test_words_and_record(self):
+        self.assertEqual(
+            self.scene.info["units"], {"length": "m", "time": "day", "stress": "MPa"}
+        )
+        self.assertNotIn("units", self.plain.info)
+        self.assertRegex(self.scene.stdout, r"(?m)^At t = 91.312 day:$")
+        self.assertRegex(self.scene.stdout, r"Step 1/8  t = 3\.3333 day  k = 3\.33 day  ")
+        self.assertRegex(self.scene.stdout, r"friction force +\S+; \S+ MN/m\n")
+        self.assertRegex(
+            self.scene.stdout, r"von Mises stress +\S+ MPa at t = \S+ day, x = \(.*\) m\n"
+        )
+        for unit in ("day", "MPa", "MN"):
+            self.assertNotIn(unit, self.plain.stdout)
+        # The record of the run is the scene, word by word, and repeats it.
+        record = (self.scene.directory / "parameters.prm").read_text()
+        self.assertRegex(record, r"set Phases +=\s240 h: 3, 0.25 year: 5 ")
+        self.assertRegex(record, r"set Rate factor += 3.65e-5 MPa\^-3/year ")
+        again = run("record", text=record)
+        for column in again.statistics:
+            if not column.startswith("wall_"):
+                self.assertTrue(np.array_equal(again[column], self.scene[column]), column)
+
+    def test_read_by_python(self):
+        results = Results(self.scene.directory)
+        self.assertEqual(set(results.statistics), set(self.scene.statistics))
+        self.assertClose(results["t"], self.scene["t"])
+        self.assertClose(
+            results.vector("friction_force"), self.scene.vector("friction_force")
+        )
+        self.assertIn("von_mises", results.body())
+        self.assertIn("slip_rate", results.face())
+        self.assertEqual(results.info["units"]["stress"], "MPa")
+
+    def test_ranks(self):
+        several = run("salt", text=SALT, ranks=2)
+        self.assertEqual(header(several), header(self.scene))
+        for column, unit in header(several).items():
+            if not unit or column in EFFORT or column.startswith("wall_"):
+                continue
+            values, expected = several[column][1:], self.scene[column][1:]
+            self.compare(column, values, expected, 1, column)
+
+
+class Work(TestCase):
+    """The program in a directory of its own."""
+
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.work = Path(directory.name)
+        (self.work / "salt.prm").write_text(SALT)
+
+    def program(self, *arguments, code=0):
+        process = run_program(arguments, 1, self.work)
+        self.assertEqual(process.returncode, code, process.stderr)
+        return process
+
+    def test_restart(self):
+        """Into the same table; not with other units."""
+        table = self.work / "output" / "salt" / "statistics.csv"
+        every = ["--set", "Checkpoint/Every n steps=1"]
+        self.program("salt.prm", *every)
+        whole = table.read_text().splitlines()
+        self.program("salt.prm", *every, "--set", "Time/Phases=240 h: 3")
+        self.program("--restart", "salt.prm", *every)
+        rows = table.read_text().splitlines()
+        self.assertEqual(rows[0], whole[0])
+        self.assertEqual(len(rows), len(whole))
+        kept = [i for i, name in enumerate(whole[0].split(",")) if "wall" not in name]
+        for row, expected in zip(rows, whole):
+            row, expected = row.split(","), expected.split(",")
+            self.assertEqual([row[i] for i in kept], [expected[i] for i in kept])
+        refused = self.program(
+            "--restart", "salt.prm", *every, "--set", "Units/Stress=kPa", code=1
+        )
+        self.assertIn("'Units/Stress' is kPa (was MPa)", refused.stderr)
+
+    def test_check(self):
+        """Materials with a time, and doubts about powers of ten."""
+        said = self.program("--check", "salt.prm").stdout
+        # 1/(E A sigma^2) but for Poisson's ratio and the deviator: 6 MPa or,
+        # since nothing moves as far, what moves first.
+        line = re.search(
+            r"Material: E = 25156 to 27344 MPa, nu = 0.25, norton with Rate "
+            r"factor = 3.65e-5 MPa\^-3/year, Exponent = 3, Stress cap = 30 MPa; at (\S+) "
+            r"MPa, (.*), it relaxes stress within \|sigma\|/\|G\| = (\S+) to (\S+) day",
+            said,
+        )
+        self.assertEqual(line.group(2), "the traction of boundary 0")
+        stress, shortest, longest = (float(line.group(i)) for i in (1, 3, 4))
+        self.assertEqual(stress, 6)
+        for modulus, time in (
+            (25e3 * (1 + 0.25 / 40), longest),
+            (25e3 * (1 + 3.75 / 40), shortest),
+        ):
+            # |G| = 3 mu A sigma^3 (2/3)^(1/2)
+            flow = 3 * modulus / 2.5 * (3.65e-5 / 365.25) * 6**3 * (2 / 3) ** 0.5
+            self.assertClose(time, 6 / flow, 1e-3)
+        self.assertIn("until t = 91.3125 day", said)
+        self.assertNotIn("Warning", said)
+        for entries, words in (
+            (["Material/Young's modulus=25 GPa*1e6"], "(2.5e+16 Pa in the SI); known"),
+            (["Material/Young's modulus=25"], "a strain of about 24 % with"),
+            (["Material/Young's modulus=2.5e-4"], "(250 Pa in the SI)"),
+            (["Loads/Body force=0; -22 GPa/m"], "(2.2e+10 N/m^3 in the SI); water"),
+        ):
+            text = self.program(
+                "--check",
+                "salt.prm",
+                *(word for entry in entries for word in ("--set", entry)),
+            ).stdout
+            self.assertIn(words, text)
+            self.assertIn("The scene is valid, with the remarks above.", text)
+
+    def test_default_material(self):
+        """Is doubted where there are loads, with and without units."""
+        text = re.sub(r"(?s)subsection Material.*?\nend\n", "", SALT)
+        (self.work / "salt.prm").write_text(text)
+        said = self.program("--check", "salt.prm").stdout
+        self.assertIn(
+            "Warning: 'Material/Young's modulus' is not given, so that it is 1 MPa, its "
+            "default, beside 6 MPa, the traction of boundary 0.",
+            said,
+        )
+        at_rest = "".join(
+            f"subsection Boundary {i}\n set Role = {'clamped' if i < 1 else 'free'}\nend\n"
+            for i in range(4)
+        )
+        (self.work / "rest.prm").write_text(at_rest)
+        self.assertNotIn("Warning", self.program("--check", "rest.prm").stdout)
+
+    def test_refusals(self):
+        """With file and line, or the words of the command line."""
+        said = self.program(
+            "salt.prm", "--set", "Boundary 2/Friction bound=700 kpa", code=1
+        ).stderr
+        self.assertIn("there is no unit 'kpa'; did you mean 'kPa'?", said)
+        # The unit would be that of the exponent.
+        for value in "10^8 Pa", "2*10^8 Pa", "pow(10, 8 Pa)":
+            said = self.program(
+                "salt.prm", "--set", f"Boundary 2/Friction bound={value}", code=1
+            ).stderr
+            self.assertIn("an exponent is a stress", said)
+        text = SALT.replace("22 kN/m^3*(2 m - y)", "22 kN/m^2*(2 m - y)")
+        line = text[: text.index("kN/m^2")].count("\n") + 1
+        (self.work / "salt.prm").write_text(text)
+        self.assertIn(
+            f"'salt.prm', line {line}: 'Boundary 1/Pressure' is '22 kN/m^2*(2 m - y)'; "
+            "'22 kN/m^2*(2 m - y)' is a force per length, but it must be a stress.",
+            self.program("salt.prm", code=1).stderr,
+        )
+        (self.work / "salt.prm").write_text(SALT.replace("  set Time   = day\n", ""))
+        self.assertIn(
+            "'Units' has no Time; give `Length', `Time' and `Stress'",
+            self.program("salt.prm", code=1).stderr,
+        )
+
+
+if __name__ == "__main__":
+    main()

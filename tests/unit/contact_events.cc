@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// What counts as an event of contact, and what turning slip costs.
+
+#include <viscoplastic_contact/contact/contact_event.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+
+
+
+  /// Points with sticking given by '.', slip to the right or left by '>', '<'.
+  FrictionState
+  points(const std::string &signs, const std::vector<double> &bounds = {})
+  {
+    FrictionState state(bounds.empty() ? std::vector<double>(signs.size(), 1.) :
+                                         bounds);
+    for (unsigned int p = 0; p < signs.size(); ++p)
+      {
+        state.sticks[p] = signs[p] == '.';
+        if (!state.sticks[p])
+          state.multiplier[p][0] = signs[p] == '>' ? 1. : -1.;
+      }
+    return state;
+  }
+
+
+
+  TEST(ContactEvent, BeginCoverEndTurn)
+  {
+    FrictionFace face;
+    face.points.resize(3); // of friction
+    const auto event = [&](const std::string &from, const std::string &to) {
+      return has_contact_event(face, points(from), points(to), false);
+    };
+    EXPECT_TRUE(event("...", "..>"));
+    EXPECT_TRUE(event(".>>", ">>>"));
+    EXPECT_TRUE(event("...", ">>>"));
+    EXPECT_TRUE(event("..>", "..."));
+    EXPECT_TRUE(event(".<>", ".>>"));
+    EXPECT_FALSE(event("...", "..."));
+    EXPECT_FALSE(event("..>", ".>>"));
+    EXPECT_FALSE(event(".>>", "..>"));
+    EXPECT_FALSE(event(">>>", ".>>"));
+    EXPECT_FALSE(event(">>>", ">>>"));
+    // Behind a kink of the data, an end and a turn are no news.
+    EXPECT_FALSE(has_contact_event(face, points("..>"), points("..."), true));
+    EXPECT_FALSE(has_contact_event(face, points("..>"), points("..<"), true));
+    EXPECT_TRUE(has_contact_event(face, points("..."), points("..<"), true));
+    // Points without friction slip always, glued ones never.
+    const std::vector<double> bounds{0., 1., infinity};
+    EXPECT_FALSE(
+      has_contact_event(face, points(">.."), points(">..", bounds), false));
+    EXPECT_TRUE(
+      has_contact_event(face, points(">.."), points(">>.", bounds), false));
+    EXPECT_TRUE(has_contact_event(
+      face, points(".>>"), points("..>", {1., 1., 0.}), false));
+    EXPECT_FALSE(has_contact_event(face, points(""), points(""), false));
+  }
+
+
+
+  TEST(ContactEvent, TouchCoverLiftOff)
+  {
+    // Obstacles that are touched, '|', or not.
+    FrictionFace face;
+    face.has_obstacles = true;
+    face.points.resize(3);
+    for (auto &point : face.points)
+      point.is_obstacle = true;
+    const auto obstacles = [](const std::string &signs) {
+      FrictionState state(std::vector<double>(signs.size(), 0.1));
+      for (unsigned int p = 0; p < signs.size(); ++p)
+        {
+          state.sticks[p]        = signs[p] == '|';
+          state.multiplier[p][0] = signs[p] == '|' ? 1. : 0.;
+        }
+      return state;
+    };
+    const auto event = [&](const std::string &from,
+                           const std::string &to,
+                           const bool         from_kink = false) {
+      return has_contact_event(face, obstacles(from), obstacles(to), from_kink);
+    };
+    EXPECT_TRUE(event("   ", "  |"));
+    EXPECT_TRUE(event(" ||", "|||"));
+    EXPECT_TRUE(event("  |", "   "));
+    EXPECT_FALSE(event("   ", "   "));
+    EXPECT_FALSE(event("  |", " ||"));
+    EXPECT_FALSE(event("|||", " ||"));
+    EXPECT_FALSE(event("|||", "|||"));
+    // Behind a kink, beginning and end are no news.
+    EXPECT_FALSE(event("   ", "  |", true));
+    EXPECT_FALSE(event("  |", "   ", true));
+    EXPECT_TRUE(event(" ||", "|||", true));
+  }
+
+
+
+  TEST(ContactEvent, TurningCostsWork)
+  {
+    // Points with the bound 2 whose multiplier turns by an angle while they
+    // slip by 3.
+    const auto state = [](const std::vector<double> &angles) {
+      FrictionState result(std::vector<double>(angles.size(), 2.));
+      for (unsigned int p = 0; p < angles.size(); ++p)
+        {
+          result.sticks[p]        = false;
+          result.multiplier[p][0] = 2. * std::cos(angles[p]);
+          result.multiplier[p][1] = 2. * std::sin(angles[p]);
+        }
+      return result;
+    };
+    FrictionFace face;
+    face.points.resize(3); // of friction
+    const auto work = [&](const FrictionState &from, const FrictionState &to) {
+      std::vector<Tensor<1, 2>> slips(to.multiplier);
+      for (Tensor<1, 2> &slip : slips)
+        slip *= 1.5;
+      return turning_work(face, from, to, slips);
+    };
+    const double n_ranks = face.sum(1.);
+    EXPECT_NEAR(work(state({0., 1.}), state({0., 1.})), 0., 1e-14);
+    EXPECT_NEAR(work(state({0., 0.2}), state({0.3, 0.1})),
+                n_ranks * 6. * (2. - std::cos(0.3) - std::cos(0.1)),
+                1e-13);
+    // Slip that turns back counts as a right angle, slip that begins or ends
+    // not.
+    EXPECT_NEAR(work(state({0.}), state({numbers::PI})), n_ranks * 6., 1e-13);
+    FrictionState at_rest = state({0.});
+    at_rest.sticks[0]     = true;
+    EXPECT_EQ(work(at_rest, state({0.5})), 0.);
+    EXPECT_EQ(work(state({0.5}), at_rest), 0.);
+  }
+} // namespace

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Solves with friction and large ones with multigrid, by all solvers of the
+// bulk. The direct one runs on one rank only.
+
+#include "bulk_scenario.h"
+#include <viscoplastic_contact/contact/contact_solver.h>
+
+#include <cmath>
+#include <string>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  template <typename Dimension>
+  class FrictionalSolves : public testing::Test
+  {};
+  TYPED_TEST_SUITE(FrictionalSolves, Dimensions, );
+
+
+
+  TYPED_TEST(FrictionalSolves, SolutionsAgree)
+  {
+    constexpr int           dim       = TypeParam::value;
+    constexpr double        tolerance = 1e-9;
+    const BulkScenario<dim> scenario(dim == 2 ? 8 : 3, true);
+    const FrictionFace     &face = scenario.face->layout();
+    // The load is a rough one of size 1 a node; so are these bounds.
+    auto bounds = scenario.face->bounds(0.5);
+    for (double &bound : bounds)
+      bound *= dim == 2 ? 20. : 60.;
+
+    std::vector<DistributedVector> solutions;
+    std::vector<FrictionState>     states;
+    for (const auto &solver : scenario.solvers())
+      {
+        DistributedVector u(scenario.start);
+        Vector<double>    increment(face.n_dofs());
+        FrictionState     state(bounds);
+        solver->begin(scenario.load, u);
+        const ContactReport report =
+          ContactSolver(50).solve(*solver, face, tolerance, increment, state);
+        EXPECT_LE(report.relative_error, tolerance);
+        EXPECT_LE(report.iterations, 20u);
+
+        // Equilibrium with the friction forces, whatever the solver says.
+        DistributedVector residual(scenario.load);
+        scenario.matrix.vmult(residual, u);
+        residual.sadd(-1., 1., scenario.load);
+        scenario.set_excluded_to_zero(residual);
+        const double   size    = residual.l2_norm();
+        Vector<double> on_face = scenario.face->restriction().gather(residual);
+        Vector<double> force(face.n_dofs());
+        unsigned int   n_stick = 0;
+        for (unsigned int p = 0; p < face.points.size(); ++p)
+          {
+            const unsigned int node = face.points[p].node;
+            face.set_node_values(face.node_values(force, node) +
+                                   node_force(face.points[p],
+                                              state.multiplier[p]),
+                                 node,
+                                 force);
+            n_stick += state.sticks[p];
+          }
+        n_stick = Utilities::MPI::sum(n_stick, MPI_COMM_WORLD);
+        EXPECT_GT(n_stick, 0u);
+        EXPECT_LT(n_stick, scenario.face->n_global_points());
+        scenario.face->restriction().add(-1., force, residual);
+        EXPECT_LT(residual.l2_norm(), 1e-6 * size);
+
+        // Slip belongs to the displacement.
+        DistributedVector moved(u);
+        moved -= scenario.start;
+        const auto slips = scenario.face->slips(moved, {});
+        for (unsigned int p = 0; p < slips.size(); ++p)
+          EXPECT_LT((slips[p] - state.slip[p]).norm(), 1e-11);
+        solutions.push_back(u);
+        states.push_back(state);
+      }
+    for (unsigned int s = 1; s < solutions.size(); ++s)
+      {
+        SCOPED_TRACE(s);
+        solutions[s] -= solutions[0];
+        EXPECT_LT(solutions[s].l2_norm(), 1e-6 * solutions[0].l2_norm());
+        EXPECT_EQ(states[s].sticks, states[0].sticks);
+        for (unsigned int p = 0; p < face.points.size(); ++p)
+          EXPECT_LT((states[s].multiplier[p] - states[0].multiplier[p]).norm(),
+                    1e-6);
+      }
+  }
+
+
+
+  TYPED_TEST(FrictionalSolves, MultigridWithSeveralLevels)
+  {
+    // Large enough that ML does not just factorize.
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(dim == 2 ? 7 : 2, 2);
+    ASSERT_GT(scenario.dof_handler.n_dofs(), 2500u);
+    DistributedVector load(scenario.load);
+    scenario.set_excluded_to_zero(load);
+    for (const auto &solver : scenario.solvers())
+      {
+        SCOPED_TRACE(solver->name());
+        DistributedVector u(scenario.start);
+        const unsigned    n = solver->solve(scenario.load, u, 1e-9);
+        EXPECT_LT(n, 60u);
+        DistributedVector residual(scenario.load);
+        scenario.matrix.vmult(residual, u);
+        residual.sadd(-1., 1., scenario.load);
+        scenario.set_excluded_to_zero(residual);
+        EXPECT_LT(residual.l2_norm(), 1e-6 * load.l2_norm());
+
+        if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+          {
+            DistributedVector exact(scenario.start);
+            scenario.direct()->solve(scenario.load, exact, 1e-9);
+            const double size = exact.l2_norm();
+            exact -= u;
+            EXPECT_LT(exact.l2_norm(), 1e-6 * size);
+          }
+      }
+  }
+
+
+
+  TYPED_TEST(FrictionalSolves, SlipOnAFoundationTakesWhatBilateralSlipTakes)
+  {
+    // The same system twice: normal components are no unknowns, or blocked.
+    constexpr int                                    dim = TypeParam::value;
+    std::map<std::string, std::vector<unsigned int>> iterations;
+    for (const std::string law : {"bilateral", "unilateral"})
+      {
+        const BulkScenario<dim> scenario(dim == 2 ? 7 : 2, 2, false, law);
+        const FrictionFace     &face = scenario.face->layout();
+        EXPECT_EQ(face.has_obstacles, law == "unilateral");
+        FaceTruncation truncation;
+        truncation.spring.resize(face.n_nodes());
+        truncation.projector.assign(face.n_nodes(),
+                                    Tensor<2, 3>(unit_symmetric_tensor<3>()));
+        for (const FrictionFace::Point &point : face.points)
+          if (point.is_obstacle)
+            {
+              const Tensor<1, 3> n = point.map[0] / point.map[0].norm();
+              truncation.projector[point.node] -= outer_product(n, n);
+            }
+        const auto solve = [&](const std::unique_ptr<BulkSolver> &solver) {
+          Vector<double>    force(face.n_dofs()), w(face.n_dofs());
+          DistributedVector u(scenario.start);
+          solver->begin(scenario.load, u);
+          solver->set_truncation(truncation);
+          iterations[law].push_back(solver->correct(force, 1e-8, w));
+        };
+        solve(scenario.geometric());
+        solve(scenario.geometric(true));
+        solve(scenario.algebraic());
+      }
+    for (unsigned int i = 0; i < 3; ++i)
+      EXPECT_LE(iterations["unilateral"][i], iterations["bilateral"][i] + 2);
+  }
+} // namespace

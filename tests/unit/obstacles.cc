@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// Obstacles in the solver of contact: unilateral contact and foundations that
+// give way, on small convex problems.
+
+#include "dense_bulk.h"
+#include <viscoplastic_contact/contact/contact_solver.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+namespace
+{
+  using namespace dealii;
+  using namespace Viscoplastic;
+  using namespace Viscoplastic::Testing;
+
+  TEST(Obstacles, UnilateralContact)
+  {
+    constexpr double tolerance = 1e-9;
+    for (const unsigned int n_tangents : {0, 1, 2})
+      for (const bool with_corners : {false, true})
+        {
+          unsigned int n_open = 0, n_touch = 0, n_iterations = 0, n_solves = 0;
+          for (unsigned int seed = 0; seed < 40; ++seed)
+            {
+              const Problem problem =
+                random_unilateral_problem(seed, n_tangents, with_corners);
+              const Solution reference = reference_solution(problem);
+              for (const bool condensed : {true, false})
+                {
+                  SCOPED_TRACE("seed " + std::to_string(seed) + ", tangents " +
+                               std::to_string(n_tangents) +
+                               (with_corners ? ", corners" : "") +
+                               (condensed ? ", condensed" : ", frozen bulk"));
+                  const Result result = solve(problem, condensed, tolerance);
+                  expect_solution(problem, result, reference, tolerance);
+                  EXPECT_NEAR(result.report.duality_gap,
+                              duality_gap(problem, result),
+                              1e-12);
+                  for (unsigned int p = 0; p < problem.bounds.size(); ++p)
+                    if (problem.face.points[p].is_obstacle)
+                      ++(result.state.sticks[p] ? n_touch : n_open);
+                  n_iterations += result.report.iterations;
+                  ++n_solves;
+
+                  // From its own solution nothing is left to do.
+                  const Result again = solve(
+                    problem, condensed, tolerance, result.state, result.u);
+                  EXPECT_EQ(again.report.iterations, 0u);
+                  // At corners the sets may be a matter of choice.
+                  if (!with_corners)
+                    {
+                      EXPECT_EQ(again.state.sticks, result.state.sticks);
+                    }
+                }
+            }
+          EXPECT_GT(n_open, 50u);
+          EXPECT_GT(n_touch, 50u);
+          EXPECT_LT(n_iterations / double(n_solves),
+                    with_corners   ? 8. :
+                    n_tangents < 2 ? 4. :
+                                     6.);
+        }
+  }
+
+
+
+  TEST(Obstacles, ObstaclesThatGiveWay)
+  {
+    // The duality gap of admissible forces bounds the error, whoever found
+    // them.
+    constexpr double tolerance = 1e-9;
+    for (const unsigned int n_tangents : {0, 1, 2})
+      for (const bool with_corners : {false, true})
+        {
+          unsigned int n_open = 0, n_pressed = 0, n_iterations = 0;
+          for (unsigned int seed = 0; seed < 40; ++seed)
+            for (const bool condensed : {true, false})
+              {
+                SCOPED_TRACE("seed " + std::to_string(seed) + ", tangents " +
+                             std::to_string(n_tangents) +
+                             (with_corners ? ", corners" : "") +
+                             (condensed ? ", condensed" : ", frozen bulk"));
+                Problem problem =
+                  random_unilateral_problem(seed, n_tangents, with_corners);
+                Random random(seed + 1000);
+                for (auto &point : problem.face.points)
+                  if (point.is_obstacle)
+                    for (unsigned int piece = 0; piece < 1 + seed % 2; ++piece)
+                      point.compliance.add(random.logarithmic(0.1, 1e6),
+                                           1. + 0.5 * (seed % 4) + piece);
+                const Result result = solve(problem, condensed, tolerance);
+                n_iterations += result.report.iterations;
+
+                Vector<double> unbalanced = problem.residual(result.u);
+                unbalanced -= problem.force(result.state.multiplier);
+                double gap =
+                  0.5 * (unbalanced * solve_dense(problem.A, unbalanced));
+                const auto slips = problem.slips(result.u);
+                for (unsigned int c = 0; c < slips.size(); ++c)
+                  {
+                    const auto        &point = problem.face.points[c];
+                    const Tensor<1, 2> force = result.state.multiplier[c];
+                    if (point.is_obstacle)
+                      {
+                        const double w = slips[c][0] - problem.bounds[c],
+                                     p = force[0];
+                        ASSERT_GE(p, 0.);
+                        const double there =
+                          p > 0. ? point.compliance.penetration(p) : 0.;
+                        gap += point.compliance.energy(w) -
+                               point.compliance.energy(there) - p * (w - there);
+                        EXPECT_EQ(result.state.sticks[c], p > 0.);
+                        ++(p > 0. ? n_pressed : n_open);
+                        continue;
+                      }
+                    ASSERT_LE(force.norm(), problem.bounds[c] * (1. + 1e-14));
+                    // At corners a point is held as well as its node is solved.
+                    if (result.state.sticks[c])
+                      {
+                        EXPECT_LE(slips[c].norm(), 0.1 * tolerance);
+                        continue;
+                      }
+                    gap +=
+                      problem.bounds[c] * slips[c].norm() - force * slips[c];
+                  }
+                const double size = problem.energy_norm(result.u);
+                EXPECT_LE(gap, 0.5 * std::pow(tolerance * size, 2) + 1e-14);
+              }
+          EXPECT_GT(n_open, 50u);
+          EXPECT_GT(n_pressed, 50u);
+          EXPECT_LT(n_iterations / 80., with_corners ? 10. : 7.);
+        }
+  }
+
+
+
+  TEST(Obstacles, WholeFaceClosesOrOpensAtOnce)
+  {
+    // The force on the obstacles is the excess times the load, down to none.
+    for (const unsigned int n_tangents : {1, 2})
+      for (const double excess : {-1e-3, -1e-12, 0., 1e-16, 1e-12, 1e-3})
+        for (const bool condensed : {true, false})
+          {
+            std::ostringstream trace;
+            trace << "tangents " << n_tangents << ", excess " << excess
+                  << (condensed ? ", condensed" : ", frozen bulk");
+            SCOPED_TRACE(trace.str());
+            Random  random(7);
+            Problem problem;
+            for (unsigned int n = 0; n < 6; ++n)
+              {
+                auto rows = random_rows(random, n_tangents + 1, n_tangents + 1);
+                const Tensor<1, 3> normal = rows.back();
+                rows.pop_back();
+                problem.add_node(n_tangents + 1, {rows}, {normal});
+              }
+            fill_at_random(problem, random, 4, 0.2, 0.4);
+            // All obstacles at the distance at which a given displacement
+            // without slip touches, which the load holds.
+            Vector<double>            u(problem.u_prev), force(problem.size());
+            std::vector<Tensor<1, 2>> pressure(problem.bounds.size());
+            for (unsigned int p = 0; p < problem.bounds.size(); ++p)
+              if (problem.face.points[p].is_obstacle)
+                {
+                  problem.bounds[p] = 0.;
+                  pressure[p][0]    = excess;
+                }
+            problem.A.vmult(problem.load, u);
+            problem.load += problem.force(pressure);
+            const Result result = solve(problem, condensed, 1e-10);
+            expect_solution(problem,
+                            result,
+                            reference_solution(problem),
+                            1e-10);
+            EXPECT_LE(result.report.iterations, 6u);
+          }
+  }
+} // namespace

@@ -23,6 +23,7 @@ cannot draw without a display; xvfb-run, package xvfb, lends it one):
 """
 
 import argparse
+import json
 import math
 import os
 import sys
@@ -105,14 +106,20 @@ def read(path, name):
     return reader
 
 
+def named(source, name):
+    """The name of a field as it is there, which a unit may follow: `slip [m]'."""
+    names = [source.PointData.GetArray(i).Name for i in range(len(source.PointData))]
+    return next((n for n in names if n.split(" [")[0] == name), name)
+
+
 def largest(source, name):
-    array = source.PointData.GetArray(name)
+    array = source.PointData.GetArray(named(source, name))
     return array.GetRange(-1)[1] if array else 0.0
 
 
 def warp(reader, name, factor):
     warped = pv.WarpByVector(registrationName=name, Input=reader)
-    warped.Vectors = ["POINTS", "displacement"]
+    warped.Vectors = ["POINTS", named(reader, "displacement")]
     warped.ScaleFactor = factor
     warped.UpdatePipeline(pv.GetAnimationScene().AnimationTime)
     return warped
@@ -142,13 +149,16 @@ def show_body(warped, view, flat):
     display = pv.Show(warped, view)
     display.Representation = "Surface With Edges"
     display.EdgeColor = (0.55, 0.55, 0.55)
-    pv.ColorBy(display, ("POINTS", "von_mises"))
-    lut = pv.GetColorTransferFunction("von_mises")
+    field = named(warped, "von_mises")
+    pv.ColorBy(display, ("POINTS", field))
+    lut = pv.GetColorTransferFunction(field)
     lut.ApplyPreset("Viridis (matplotlib)", True)
     lut.RescaleTransferFunction(0.0, largest(warped, "von_mises") or 1.0)
     lut.AutomaticRescaleRangeMode = "Grow and update every timestep"
     display.SetScalarBarVisibility(view, True)
-    bar = show_bar(lut, view, "von Mises stress", (0.08, 0.1), 0.4)
+    bar = show_bar(
+        lut, view, field.replace("von_mises", "von Mises stress"), (0.08, 0.1), 0.4
+    )
     bar.UseCustomLabels, bar.RangeLabelFormat = 0, "%-#.3g"
     if flat:
         display.Ambient, display.Diffuse = 1.0, 0.0  # no light from an angle
@@ -161,7 +171,9 @@ def add_state(contact):
     state = pv.Calculator(registrationName="state", Input=contact)
     state.ResultArrayName = "state"
     has_friction = contact.PointData.GetArray("stick") is not None
-    state.Function = "if (bound > 0, 1 - stick, -1)" if has_friction else "-1"
+    bound = named(contact, "bound")
+    bound = f'"{bound}"' if " " in bound else bound
+    state.Function = f"if ({bound} > 0, 1 - stick, -1)" if has_friction else "-1"
     state.UpdatePipeline(last_time(contact))
     return state
 
@@ -219,8 +231,8 @@ def show_arrows(source, view, size):
     if longest <= 0.0:
         return
     arrows = pv.Glyph(registrationName="slip", Input=source, GlyphType="Arrow")
-    arrows.OrientationArray = ["POINTS", "slip"]
-    arrows.ScaleArray = ["POINTS", "slip"]
+    arrows.OrientationArray = ["POINTS", named(source, "slip")]
+    arrows.ScaleArray = ["POINTS", named(source, "slip")]
     arrows.ScaleFactor = 0.1 * size / longest
     arrows.GlyphMode = "Every Nth Point"  # one corner of some faces
     arrows.Stride = 4 * max(1, source.GetDataInformation().GetNumberOfCells() // 250)
@@ -229,11 +241,20 @@ def show_arrows(source, view, size):
     display.AmbientColor = display.DiffuseColor = INK
 
 
-def show_time(reader, view):
+def time_unit(directory):
+    """" day", as run.json has it, or nothing."""
+    try:
+        with open(os.path.join(directory, "run.json"), encoding="utf-8") as file:
+            return " " + json.load(file)["units"]["time"]
+    except (OSError, ValueError, LookupError, TypeError):
+        return ""
+
+
+def show_time(reader, view, unit):
     annotation = pv.AnnotateTimeFilter(registrationName="time", Input=reader)
     version = pv.GetParaViewVersion()
     modern = (version.major, version.minor) >= (5, 10)
-    annotation.Format = "t = {time:g}" if modern else "t = %g"
+    annotation.Format = ("t = {time:g}" if modern else "t = %g") + unit
     display = pv.Show(annotation, view)
     display.Color = INK
     display.FontSize = 14
@@ -304,7 +325,7 @@ def main():
     scene.GoToLast()
     warped = warp(solution, f"body, displacement x {factor:g}", factor)
     show_body(warped, view, flat)
-    show_time(solution, view)
+    show_time(solution, view, time_unit(directory))
     if contact is not None:
         state = add_state(contact)
         moved = warp(state, f"contact, displacement x {factor:g}", factor)

@@ -4,9 +4,13 @@
 results     what a run wrote: records of a series, statistics, parameters
 geometry    welding, boundary faces, edges: meshes without physics
 faces       the contact boundary in flat pieces with coordinates of their own
-style       colours, labels and numbers, the same in all pictures
-body        a field on the deformed body, in two and in three dimensions
-overview, fields, contact, history, errors, efficiency, hysteresis, stick_slip
+units       units on axes, in handy multiples
+quantities  words and kinds of units of fields and columns
+style       colours, titles and keys, the same in all pictures
+supports    what the scene prescribes on the boundary
+body_base, body, body_3d
+            a field on the deformed body, in two and in three dimensions
+overview, fields, contact, history, errors, efficiency, hysteresis, lines, stick_slip
             one kind of picture each: draw(...) returns a figure
 animation   a picture over time
 command     the command line

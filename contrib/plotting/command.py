@@ -21,11 +21,13 @@ from . import (
     fields,
     history,
     hysteresis,
+    lines,
     overview,
     stick_slip,
 )
 from . import study_pictures, style
-from .body import VIEW, available_fields
+from .body_3d import VIEW
+from .body_base import available_fields
 from .paraview import write_state
 from .results import NoPicture, Results, UserError, number
 from .study_pictures import is_study
@@ -47,15 +49,18 @@ pictures:
   efficiency  estimated over true errors of the cells of one output, where the
               scene has an exact solution
   hysteresis  force over displacement, with the area of the loop
+  lines       fields along the lines of 'Output/Lines' at some times, or
+              --columns
   stick-slip  map of stick and slip over arc length and time (2D)
-All but the overview go to RESULTS/pictures/.  Numbers are in the units of
-the scene.
+All but the overview go to RESULTS/pictures/.  Axes show the units that the
+scene declares, in handy multiples, or --units.
 
 pictures of a study (a directory with study.csv), which go to RESULTS/:
   convergence     the error over mesh width and time step, with orders
   work-precision  the error over seconds, with the efficient frontier
   cost            seconds of each run by phase
-Without a name all three; --error chooses another error.
+Without a name all three; --error chooses another error.  Of many ways to compute
+they show the best of each strategy; --all draws the others, too, four at a time.
 
 The directory of a study of effects (with effects.json) has one picture, what
 each effect changes and costs.
@@ -81,6 +86,7 @@ OVER_TIME = {
     "errors": errors,
     "efficiency": efficiency,
     "hysteresis": hysteresis,
+    "lines": lines,
     "stick-slip": stick_slip,
 }
 PICTURES = ("overview", "fields", "contact", *OVER_TIME)
@@ -105,6 +111,24 @@ def positive(text):
 
 def names(text):
     return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def units(text):
+    """Length, time and stress, a dash for one without a unit, for argparse."""
+    parts = names(text)
+    if len(parts) != 3:
+        raise ValueError
+    given = zip(("length", "time", "stress"), parts)
+    return {name: unit for name, unit in given if unit != "-"}
+
+
+def named_place(text):
+    """(coordinates, words) of X,Y=TEXT or X,Y,Z=TEXT."""
+    place, _, words = text.partition("=")
+    coordinates = [finite(part) for part in place.split(",")]
+    if len(coordinates) not in (2, 3) or not words:
+        raise ValueError
+    return coordinates, words
 
 
 def view(text):
@@ -161,7 +185,7 @@ def parse(arguments):
     )
     what = parser.add_argument_group("what")
     what.add_argument(
-        "--columns", type=names, metavar="C,...", help="columns for history"
+        "--columns", type=names, metavar="C,...", help="columns for history and lines"
     )
     what.add_argument("--force", metavar="F", help="for hysteresis")
     what.add_argument("--displacement", metavar="U", help="for hysteresis")
@@ -189,6 +213,20 @@ def parse(arguments):
         type=finite,
         metavar="M",
         help="of the displacement (default: 1 if it then shows, or more)",
+    )
+    how.add_argument(
+        "--units",
+        type=units,
+        metavar="L,T,S",
+        help="of length, time and stress, e.g. m,s,Pa, where the scene declares none",
+    )
+    how.add_argument(
+        "--label",
+        type=named_place,
+        action="append",
+        default=[],
+        metavar="X,Y[,Z]=TEXT",
+        help="words at a place of the body; in 3D also on the contact face",
     )
     how.add_argument(
         "--view",
@@ -341,6 +379,8 @@ def main(arguments=None):
                 f"{options.results} holds no study.csv, so it has no errors to draw"
             )
         results = Results(options.results)
+        if options.units:
+            results.units = options.units
         if options.list:
             print(describe(results))
             return 0

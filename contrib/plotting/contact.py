@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The contact face: traction, slip, and where it sticks.
+"""The contact face: pressure, gap, traction, slip, and where it sticks.
 
 In two dimensions curves over the arc length of each straight piece, in three
 dimensions each plane as seen from the foundation.
@@ -11,16 +11,20 @@ import math
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import Normalize
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.transforms import offset_copy
 from scipy.spatial import cKDTree
 
 from . import style
 from .body import draw_mesh, shaded, tiles
-from .faces import friction_state, lines, planes, required, state_runs
+from .faces import friction_state, is_unilateral, lines, planes, required, state_runs
 from .geometry import thinned
 from .layout import add_colour_bar
+from .results import UserError
+from .supports import MOTION
+from .units import Unit, Units, show
 
 MOST_PIECES = 4
 
@@ -49,36 +53,62 @@ class Arrows:
 class Scale:
     """Ranges that all frames of an animation share.
 
-    largest  sizes of vectors, by name
+    largest  sizes of vectors and largest numbers, by name
     limits   in two dimensions (lowest, highest) of their tangential components
     arrows   those of the slip in three dimensions
+    units    of the numbers
     """
 
+    KINDS = {
+        "contact_pressure": "stress",
+        "gap": "length",
+        "traction": "stress",
+        "slip": "length",
+        "slip_rate": "velocity",
+    }
+
     def __init__(self, results, indices):
+        self.units = Units.of(results)
+        self.time = self.units.unit("time", [time for time, _ in results.solution])
+        bodies = [results.body(index).points for index in indices]
+        self.length = self.units.unit("length", np.concatenate(bodies))
         self.arrows = Arrows()
-        self.largest = {"traction": 0.0, "slip": 0.0, "slip_rate": 0.0}
+        self.largest = dict.fromkeys(self.KINDS, 0.0)
         self.limits = {name: (0.0, 0.0) for name in self.largest}
         for index in indices:
             contact = required(results, index)
             for name in self.largest:
                 if name in contact:
-                    size = np.linalg.norm(contact[name], axis=1).max(initial=0.0)
+                    size = sizes(contact[name]).max(initial=0.0)
                     self.largest[name] = max(self.largest[name], size)
             if contact.cells.shape[1] == 2:
                 self.extend_limits(contact)
             else:
                 self.arrows.extend(contact, results.body(index))
 
+    def unit(self, name):
+        return self.units.unit(self.KINDS[name], [*self.limits[name], self.largest[name]])
+
     def extend_limits(self, contact):
         for line in lines(contact):
             for name in self.largest:
                 if name in contact:
-                    values = line.component(contact[name])
+                    values = along(line, contact[name])
                     if name == "traction":
                         bound = contact["bound"][line.nodes]
                         values = np.concatenate([values, bound, -bound])
                     low, high = self.limits[name]
                     self.limits[name] = min(low, values.min()), max(high, values.max())
+
+
+def sizes(values):
+    """Of vectors their lengths."""
+    return values if values.ndim == 1 else np.linalg.norm(values, axis=1)
+
+
+def along(line, values):
+    """What a piece has of a field: numbers, or the component along it."""
+    return values[line.nodes] if values.ndim == 1 else line.component(values)
 
 
 def scale(results, indices, options):
@@ -87,15 +117,21 @@ def scale(results, indices, options):
 
 def draw(results, index, options, scale):
     contact = required(results, index)
-    heading = style.title(results.name, results.solution[index][0])
+    time = scale.time.value(results.solution[index][0])
+    what = "traction and slip of the contact face"
+    if "stick" not in contact:
+        what = "slip of the contact face, which has no friction,"
+        if is_unilateral(contact):
+            what = "pressure, gap and slip of the contact face, which has no friction,"
+    elif is_unilateral(contact):
+        what = "pressure, gap, traction and slip of the contact face"
+    heading = style.title(results.name, what, time)
     if contact.cells.shape[1] == 2:
         figure, left_out = draw_lines(contact, scale)
     else:
         figure, left_out = draw_planes(contact, results.body(index), scale)
-    if "stick" not in contact:
-        heading += "   (no friction)"
     if left_out:
-        heading += f"   (the {MOST_PIECES} largest of {MOST_PIECES + left_out} pieces)"
+        heading += f" (the {MOST_PIECES} largest of {MOST_PIECES + left_out} pieces)"
     figure.suptitle(heading, fontsize="large")
     return figure
 
@@ -106,8 +142,12 @@ def draw(results, index, options, scale):
 def draw_lines(contact, scale):
     found = lines(contact)
     shown = found[:MOST_PIECES]
+    has_states = "traction" in contact or is_unilateral(contact)
     friction = "traction" in contact
-    n_rows = 3 if friction else 2
+    names = ["contact_pressure", "gap"] if is_unilateral(contact) else []
+    names += ["traction"] if friction else []
+    names += ["slip", "slip_rate"]
+    n_rows = len(names)
     columns = len(shown)
     figure, panels = plt.subplots(
         n_rows,
@@ -119,32 +159,36 @@ def draw_lines(contact, scale):
         layout="constrained",
     )
     for line, column in zip(shown, panels.T):
-        if friction:
-            draw_traction(column[0], contact, line)
-        for axes, name in zip(column[-2:], ("slip", "slip_rate")):
-            axes.plot(line.s, line.component(contact[name]), color=style.SERIES[0])
-        for axes in column:
+        for axes, name in zip(column, names):
+            axes.plot(line.s, along(line, contact[name]), color=style.SERIES[0])
+            if name == "traction":
+                draw_bound(axes, contact, line)
             axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
             axes.margins(x=0.0)
-            if friction:
-                mark_slipping(axes, contact, line)
-        column[-1].set_xlabel(line.label())
+            if has_states:
+                mark_states(axes, contact, line)
+        show(column[-1].xaxis, line.label(scale.length), scale.length)
     first = panels[:, 0]
-    if friction:
-        first[0].set_ylabel("tangential\n" r"traction $\tau$")
-    first[-2].set_ylabel("slip since $t=0$\n" r"$s_\tau$")
-    first[-1].set_ylabel("slip rate\n" r"$\dot{s}_\tau$")
-    for axes, name in zip(first, ("traction", "slip", "slip_rate")[-n_rows:]):
+    words = {
+        "contact_pressure": "contact pressure\n$p$",
+        "gap": "gap that is left\n$g_n-u_n$",
+        "traction": "tangential traction\n" r"on the body $\tau$",
+        "slip": "slip of the body\n" r"since $t=0$, $s_\tau$",
+        "slip_rate": "slip rate of\n" r"the body $\dot{s}_\tau$",
+    }
+    for axes, name in zip(first, names):
+        show(axes.yaxis, words[name], scale.unit(name))
         low, high = scale.limits[name]
         if high > low:
             axes.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
-    if friction:
+    if has_states:
         occurring = friction_state(contact)
-        handles = [
-            Line2D([], [], color=style.SERIES[0], label="traction on the body"),
-            Line2D([], [], color="black", ls="--", lw=1.0, label=r"bound $\pm\rho$"),
-            *(SHADES[state] for state in SHADES if (occurring == state).any()),
-        ]
+        handles = [SHADES[state] for state in SHADES if (occurring == state).any()]
+        if friction:
+            handles[:0] = [
+                Line2D([], [], color=style.SERIES[0], label="traction on the body"),
+                Line2D([], [], color="black", ls="--", lw=1.0, label=r"bound $\pm\rho$"),
+            ]
         panels[0, -1].legend(
             handles=handles,
             loc="lower right",
@@ -156,8 +200,7 @@ def draw_lines(contact, scale):
     return figure, len(found) - len(shown)
 
 
-def draw_traction(axes, contact, line):
-    axes.plot(line.s, line.component(contact["traction"]), color=style.SERIES[0])
+def draw_bound(axes, contact, line):
     bound = contact["bound"][line.nodes]
     for sign in (1.0, -1.0):
         axes.plot(line.s, sign * bound, color="black", ls="--", lw=1.0)
@@ -169,6 +212,7 @@ SHADES = {
     style.NO_FRICTION: Patch(
         facecolor=style.FRICTIONLESS, alpha=0.5, label="no friction"
     ),
+    style.NO_CONTACT: Patch(facecolor=style.OPEN, alpha=0.5, label="no contact"),
 }
 
 
@@ -177,8 +221,8 @@ def node_intervals(s):
     return np.concatenate([s[:1], 0.5 * (s[1:] + s[:-1]), s[-1:]])
 
 
-def mark_slipping(axes, contact, line):
-    """Shade what slips; a state belongs to a node and half its edges."""
+def mark_states(axes, contact, line):
+    """Shade all but what sticks; a state belongs to a node and half its edges."""
     states = friction_state(contact)[line.nodes]
     ends = node_intervals(line.s)
     for state, first, last in state_runs(states):
@@ -200,49 +244,62 @@ def draw_planes(contact, body, scale):
     found = planes(contact, body)
     shown = found[:MOST_PIECES]
     friction = "stick" in contact
-    columns = 3 if friction else 1
+    # Rows of panels for each plane: of friction, and of what acts along the normal.
+    rows = [["slip", "traction", "states"] if friction else ["slip"]]
+    if is_unilateral(contact):
+        of_normal = ["contact_pressure", "gap"]
+        rows = [*rows, of_normal] if friction else [[*of_normal, "slip"]]
+    columns = max(map(len, rows))
     aspect = shown[0].aspect()
     if shown[0].is_flat():
         height = max(4.4 * aspect, 0.4) + 1.7
     else:
         height = min(3.6 * aspect, 5.0) + 1.1
     figure, panels = plt.subplots(
-        len(shown),
+        len(rows) * len(shown),
         columns,
-        figsize=(5.4 * columns if friction else 6.4, height * len(shown) + 0.5),
+        figsize=(
+            5.4 * columns if columns > 1 else 6.4,
+            height * len(rows) * len(shown) + 0.5,
+        ),
         squeeze=False,
         layout="constrained",
     )
     figure.get_layout_engine().set(wspace=0.06)
-    slips = style.Shade([0.0, scale.largest["slip"] or 1.0], "slip")
-    tractions = style.Shade([0.0, scale.largest["traction"] or 1.0], "traction")
-    tractions.map = matplotlib.colormaps["cividis"]
-    for plane, row, length in zip(shown, panels, scale.arrows.lengths):
-        axes = row[0]
-        values = np.linalg.norm(contact["slip"], axis=1)
-        shaded(axes, plane.plane, plane.cells, values, slips)
-        add_arrows(axes, plane, contact, scale.arrows.longest, length, "white")
-        plane.prepare(axes)
-        add_colour_bar(
-            axes, slips.mappable(), r"slip since $t=0$ $|s_\tau|$", plane.is_flat()
-        )
-        axes.set_title(f"{plane.name()}, seen from the foundation", pad=10)
-        if not friction:
-            continue
-        axes = row[1]
-        values = np.linalg.norm(contact["traction"], axis=1)
-        shaded(axes, plane.plane, plane.cells, values, tractions)
-        plane.prepare(axes)
-        add_colour_bar(
-            axes,
-            tractions.mappable(),
-            r"tangential traction $|\sigma_\tau|$",
-            plane.is_flat(),
-        )
-        axes = row[2]
-        states = draw_states(axes, plane, contact)
-        plane.prepare(axes)
-        style.legend_above(axes, style.state_legend(states))
+    shades = {
+        name: style.Shade([0.0, largest or 1.0], name)
+        for name, largest in scale.largest.items()
+    }
+    shades["traction"].map = matplotlib.colormaps["cividis"]
+    shades["contact_pressure"].map = matplotlib.colormaps["cividis"]
+    words = {
+        "slip": r"slip since $t=0$, $|s_\tau|$",
+        "traction": r"tangential traction $|\sigma_\tau|$",
+        "contact_pressure": "contact pressure $p$",
+        "gap": "gap that is left $g_n-u_n$",
+    }
+    panels = iter(panels)
+    for plane, length in zip(shown, scale.arrows.lengths):
+        for i, names in enumerate(rows):
+            row = next(panels)
+            for axes in row[len(names) :]:
+                axes.axis("off")
+            for axes, name in zip(row, names):
+                if name == "states":
+                    states = draw_states(axes, plane, contact)
+                    plane.prepare(axes, scale.length, length)
+                    style.legend_above(axes, style.state_legend(states))
+                    continue
+                values, shade = sizes(contact[name]), shades[name]
+                shaded(axes, plane.plane, plane.cells, values, shade)
+                if name == "slip":
+                    add_arrows(axes, plane, contact, scale.arrows.longest, length)
+                plane.prepare(axes, scale.length, length)
+                unit = scale.unit(name)
+                label = unit.label(words[name])
+                add_colour_bar(axes, shade.mappable(), label, unit, plane.is_flat())
+            if i == 0:
+                row[0].set_title(f"{plane.name(scale.length)}, {plane.view()}", pad=10)
     return figure, len(found) - len(shown)
 
 
@@ -279,8 +336,9 @@ def length_of_arrows(plane):
     return min(spacing, extent / 8.0)
 
 
-def add_arrows(axes, plane, contact, longest, length, colour):
-    """Arrows of the slip at some nodes; one of `longest` has that length."""
+def add_arrows(axes, plane, contact, longest, length):
+    """Arrows of the slip at some nodes; one of `longest` has that length.  Black
+    with a white border: they lie on dark and on light colours."""
     if longest <= 0.0:
         return None
     chosen, _ = nodes_with_arrows(plane)
@@ -292,8 +350,10 @@ def add_arrows(axes, plane, contact, longest, length, colour):
         angles="xy",
         scale_units="xy",
         scale=longest / length,
-        color=colour,
-        width=0.006,
+        color="black",
+        edgecolor="white",
+        linewidth=0.6,
+        width=0.007,
         zorder=4,
     )
     return arrows
@@ -306,20 +366,26 @@ def one_of_each(plane):
     return used[first]
 
 
-def draw_utilisation(axes, plane, contact, longest, length):
+# Dark where there is nothing, white at the bound: under dots in the colour of
+# slip and under black arrows.
+UTILISATION = ListedColormap(matplotlib.colormaps["bone"](np.linspace(0.25, 1.0, 256)))
+
+
+def draw_utilisation(axes, plane, body, longest, length):
     """The panel of the overview: utilisation, slipping nodes, slip.
 
     longest, length  the largest slip of all, and how long its arrow is
     """
+    contact, scale = body.contact, body.scale
     utilisation = contact["utilisation"]
     faces = tiles(
         axes,
         plane.plane[plane.cells],
         array=utilisation[plane.cells].mean(axis=1),
-        cmap=matplotlib.colormaps["cividis"],
+        cmap=UTILISATION,
         norm=Normalize(0.0, 1.0),
     )
-    draw_mesh(axes, plane.plane, plane.cells, plane.vertex())
+    draw_mesh(axes, plane.plane, plane.cells, plane.vertex(), (0.5, 0.5, 0.5, 0.5))
     nodes = one_of_each(plane)
     slipping = nodes[friction_state(contact)[nodes] == style.SLIPPING]
     axes.plot(
@@ -330,16 +396,62 @@ def draw_utilisation(axes, plane, contact, longest, length):
         color=style.SLIP,
         mec="none",
     )
-    arrows = add_arrows(axes, plane, contact, longest, length, "black")
+    arrows = add_arrows(axes, plane, contact, longest, length)
     if arrows is not None:
+        text = scale.units.unit("length", longest).value(longest)
         axes.quiverkey(
             arrows,
             0.94,
             1.05,
             longest,
-            f"slip, at most {style.short(longest)}",
+            f"slip, at most {text}",
             labelpos="W",
             fontproperties={"size": "small"},
         )
-    plane.prepare(axes)
-    add_colour_bar(axes, faces, "utilisation of the bound", plane.is_flat())
+    for place, text in scale.labels:
+        if len(place) == 3 and plane.holds(place):
+            axes.text(*plane.project(place), text, zorder=6, **style.LABEL)
+    plane.prepare(axes, scale.length, length)
+    draw_foundation_motion(axes, plane, body)
+    unit = Unit(0.01, "%")
+    label = unit.label("traction over its bound")
+    add_colour_bar(axes, faces, label, unit, plane.is_flat())
+
+
+def draw_foundation_motion(axes, plane, body):
+    """Above the panel an arrow that shows how a moving foundation goes by."""
+    supports = body.scale.supports
+    if not supports:
+        return
+    centres = plane.contact.points[plane.cells].mean(axis=1)
+    number = supports.of(centres[:1])[0]
+    normals = np.tile(plane.normal, (len(centres), 1))
+    try:
+        velocity = supports.velocity(number, centres, normals, body.time).mean(axis=0)
+    except UserError:  # an expression of more than place and time
+        return
+    speed = np.linalg.norm(plane.project(velocity))
+    if speed <= 0.0:
+        return
+    tail, tip = (
+        offset_copy(axes.transAxes, axes.figure, *way, units="points")
+        for way in np.outer((-10.0, 10.0), plane.project(velocity) / speed)
+    )
+    axes.annotate(
+        "",
+        (0.06, 1.055),
+        (0.06, 1.055),
+        xycoords=tip,
+        textcoords=tail,
+        arrowprops={"arrowstyle": "-|>", "color": MOTION, "lw": 2.0},
+    )
+    text = supports.units.unit("velocity", speed).value(speed, 3)
+    axes.text(
+        0.12,
+        1.055,
+        f"foundation, {text}",
+        transform=axes.transAxes,
+        color=MOTION,
+        fontsize="small",
+        va="center",
+    )

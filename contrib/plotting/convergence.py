@@ -7,29 +7,34 @@ from matplotlib.lines import Line2D
 
 from . import rates, style
 from .results import NoPicture
-from .study import LADDERS, TOLERANCE, error_label
+from .study import MOST, TOLERANCE, error_label
 
 # What is refined along each axis; "both" belongs to both.
 AXES = {
     "h": ("space", "mesh width $h$"),
     "k": ("time", "time step $k$"),
 }
+FIT = "fit, where it is within 10 %"
 ALONE = {"lw": 1.7, "marker": "o"}
 BOTH = {"lw": 1.0, "marker": "s", "mfc": "white"}
 
 
-def draw(study, error):
-    variants = study.variants()
+def draw(study, error, variants=None):
+    variants = variants or study.groups(error)[0]
     panels = []
     for axis, (alone, label) in AXES.items():
         ladders = [
             ladder
             for ladder in study.ladders()
-            if ladder.name in (alone, "both")
+            if ladder.variant in variants
+            and ladder.name in (alone, "both")
             # steps to a tolerance are of all sizes
             and (axis == "h" or ladder.variant[0] != TOLERANCE)
             and rates.known(ladder.sizes(axis), study[error][ladder.rows]).any()
         ]
+        if len(ladders) > MOST:  # one each
+            only = {l.variant for l in ladders if l.name == alone}
+            ladders = [l for l in ladders if l.name == alone or l.variant not in only]
         if ladders:
             panels.append((axis, label, ladders))
     if not panels:
@@ -43,15 +48,37 @@ def draw(study, error):
         layout="constrained",
     )
     for axes, (axis, label, ladders) in zip(all_axes[0], panels):
-        draw_panel(axes, study, error, axis, ladders)
+        draw_panel(axes, study, error, axis, ladders, variants)
+        if axis == "k" and study.chooses_steps():
+            label = rf"tolerance of the steps, ${study.step_symbol()}$"
         axes.set_xlabel(label)
     for axes in all_axes[0]:
+        mark_reference(axes, study.error_of_reference(error))
         style.numbers_on_logarithmic_axis(axes.xaxis)
         style.numbers_on_logarithmic_axis(axes.yaxis, 100)
     all_axes[0, 0].set_ylabel(f"{error_label(error)} [%]")
-    heading = f"{style.plain(study.name)}: convergence"
-    figure.suptitle(heading, fontsize="large")
+    figure.suptitle(study.title("convergence", variants), fontsize="large")
     return figure
+
+
+def mark_reference(axes, error, side="right"):
+    """Grey where differences to the reference say more of its own error."""
+    low, high = axes.get_ylim()
+    if error is None or error <= low:
+        return
+    axes.axhspan(low, error, color="#e4e4e4", zorder=0.5, lw=0)
+    axes.annotate(
+        "below the estimated error of the reference",
+        (0.98 if side == "right" else 0.02, error),
+        (0, -3),
+        xycoords=axes.get_yaxis_transform(),
+        textcoords="offset points",
+        ha=side,
+        va="top",
+        fontsize=8.5,
+        color="#444444",
+    )
+    axes.set_ylim(low, high)
 
 
 def curve(study, error, axis, ladder):
@@ -61,18 +88,22 @@ def curve(study, error, axis, ladder):
     return sizes[usable], errors[usable], ladder.rows[usable]
 
 
-def draw_panel(axes, study, error, axis, ladders):
+def draw_panel(axes, study, error, axis, ladders, variants):
     curves, orders, fitted = [], {}, False
-    looks = study.looks()
+    looks = study.looks(variants)
     for ladder in ladders:
         sizes, errors, rows = curve(study, error, axis, ladder)
         look = looks[ladder.variant]
         kind = BOTH if ladder.name == "both" else ALONE
         axes.plot(sizes, errors, ms=6, **look, **kind)
         fit = study.fit(ladder.variant, error)
-        if fit and len(rows) > 1:
-            draw_fit(axes, fit, axis, study, rows, look["color"])
-            fitted = True
+        if fit:
+            good = rates.fits(fit, study["h"][rows], study["k"][rows], errors)
+            # The finest runs in a row that it fits.
+            rows = rows[np.logical_and.accumulate(good[::-1])[::-1]]
+            if len(rows) > 1:
+                draw_fit(axes, fit, axis, study, rows, look["color"])
+                fitted = True
         curves.append((sizes, errors))
         orders.setdefault(ladder.variant, {})[ladder.name] = rates.final_order(
             sizes, errors
@@ -80,7 +111,7 @@ def draw_panel(axes, study, error, axis, ladders):
     axes.set_xscale("log")
     axes.set_yscale("log")
     draw_triangles(axes, curves)
-    legend(axes, study, ladders, orders, fitted)
+    legend(axes, study, ladders, orders, fitted, looks)
     axes.grid(True, which="major", color="#dddddd", lw=0.6)
     axes.set_axisbelow(True)
     axes.margins(0.08)
@@ -91,7 +122,7 @@ def draw_fit(axes, fit, axis, study, rows, colour):
     share = np.linspace(0.0, 1.0, 60)
     h, k = (
         np.exp(np.interp(share * (len(rows) - 1), range(len(rows)), np.log(sizes)))
-        for sizes in (study["h"][rows], study["k"][rows])
+        for sizes in (study["h"][rows], study.step_sizes()[rows])
     )
     axes.plot(
         h if axis == "h" else k,
@@ -154,12 +185,12 @@ def draw_triangle(axes, segment, curves, above):
     return corners, order
 
 
-def legend(axes, study, ladders, orders, fitted):
+def legend(axes, study, ladders, orders, fitted, looks):
     """Below the panel: a line for each variant with its orders, then the looks."""
-    handles, looks = [], study.looks()
+    handles = []
     for variant, found in orders.items():
         texts = [
-            f"{order_text(order)} ({LADDERS[name]})"
+            f"{order_text(order)} ({study.ladder_label(name)})"
             for name, order in found.items()
             if order is not None
         ]
@@ -170,24 +201,26 @@ def legend(axes, study, ladders, orders, fitted):
     names = list(dict.fromkeys(ladder.name for ladder in ladders))
     for name in names:
         kind = BOTH if name == "both" else ALONE
-        text = LADDERS[name] + fixed_size(ladders, name)
+        text = study.ladder_label(name) + fixed_size(study, ladders, name)
         handles.append(
             Line2D([], [], color=style.OUTLINE, ms=6, label=text, **kind)
         )
     if fitted:
         handles.append(
-            Line2D([], [], color=style.OUTLINE, ls=":", lw=2.2, label="fit")
+            Line2D([], [], color=style.OUTLINE, ls=":", lw=2.2, label=FIT)
         )
     axes.legend(
         handles=handles,
         loc="upper center",
         bbox_to_anchor=(0.5, -0.15),
         frameon=False,
-        handlelength=2.6,
+        fontsize=8.5,
+        handlelength=2.4,
+        labelspacing=0.3,
     )
 
 
-def fixed_size(ladders, name):
+def fixed_size(study, ladders, name):
     """The size that a ladder keeps, if all of that name keep the same."""
     axis = {"space": "k", "time": "h"}.get(name)
     if axis is None:
@@ -197,4 +230,5 @@ def fixed_size(ladders, name):
     )
     if np.ptp(sizes) > 1e-9 * sizes.max():
         return ""
-    return f", ${axis}$ = {style.short(sizes[0])}"
+    symbol = study.step_symbol() if axis == "k" else axis
+    return f", ${symbol}$ = {style.short(sizes[0])}"

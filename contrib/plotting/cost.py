@@ -24,7 +24,7 @@ OTHER = "#777777"
 REST = ("rest", "#cccccc")
 # What a study does not count as time of the run, and what is left of it.
 NO_PHASES = ("seconds_total", "seconds_output", "seconds_errors", "seconds_rest")
-MOST_RUNS = 40
+MOST_RUNS = 24
 
 
 def look(name):
@@ -61,10 +61,10 @@ def shares(columns, total):
     return found
 
 
-def chosen(study):
+def chosen(study, variants):
     """Rows to draw, and a remark: all, or where they are many of each variant the
     finest with h and k refined."""
-    ladders = study.ladders()
+    ladders = [ladder for ladder in study.ladders() if ladder.variant in variants]
     timed = {
         ladder: ladder.rows[rates.known(study["seconds_total"][ladder.rows])]
         for ladder in ladders
@@ -80,8 +80,9 @@ def chosen(study):
     return few, f" ({len(few)} of {len(rows)} runs)"
 
 
-def draw(study, error=None):
-    rows, remark = chosen(study)
+def draw(study, error=None, variants=None):
+    variants = variants or study.groups(error)[0]
+    rows, remark = chosen(study, variants)
     if not len(rows):
         raise NoPicture(f"no run of {study.directory} has a time")
     parts = shares(
@@ -128,7 +129,7 @@ def draw(study, error=None):
     right.set_xscale("log")
     # to the right of the longest bar there is room for its numbers
     right.set_xlim(low, seconds.max() * (seconds.max() / low) ** 0.85)
-    decades = np.arange(np.log10(low), np.log10(seconds.max()) + 1e-9)
+    decades = np.arange(np.log10(low), np.ceil(np.log10(seconds.max())) + 0.5)
     right.set_xticks(10.0**decades)
     right.minorticks_off()
     for at, row in zip(place, rows):
@@ -144,7 +145,7 @@ def draw(study, error=None):
     right.tick_params(axis="y", left=False, labelleft=False)
     right.spines[["top", "right"]].set_visible(False)
     figure.suptitle(
-        f"{style.plain(study.name)}: cost of each run by phase{remark}",
+        study.title(f"cost of each run by phase{remark}", variants),
         fontsize="large",
     )
     return figure
@@ -158,7 +159,8 @@ def positions(study, rows):
     """
     place, heads, labels = [], [], []
     at, before = 0.0, None
-    names = {"space": "h alone", "time": "k alone", "both": "h and k"}
+    k = "TOL" if study.chooses_steps() else "k"
+    names = {"space": "h alone", "time": f"{k} alone", "both": f"h and {k}"}
     for row in rows:
         variant = tuple(study[name][row] for name in ("strategy", "scheme", "history"))
         group = variant, study["ladder"][row]
@@ -178,7 +180,8 @@ def positions(study, rows):
 def size(study, row):
     if study["strategy"][row] == TOLERANCE:
         return f"{100 * study['tolerance'][row]:.3g} %"
-    return f"$h$ = {style.short(study['h'][row])}, $k$ = {style.short(study['k'][row])}"
+    step = style.short(study.step_sizes()[row])
+    return f"$h$ = {style.short(study['h'][row])}, ${study.step_symbol()}$ = {step}"
 
 
 def facts(study, row):

@@ -40,6 +40,8 @@ def decisive(effect):
 def draw_changes(axes, rows, effects, colours):
     changes, errors = np.array([decisive(effect) for effect in effects]).T
     shown = 100 * np.maximum(changes, SMALLEST)
+    idle = np.array([effect["verdict"] in NOTHING for effect in effects])
+    errors = np.where(idle, np.nan, errors)
     axes.barh(rows, shown - 100 * SMALLEST, left=100 * SMALLEST, color=colours)
     axes.plot(
         100 * np.maximum(errors, SMALLEST),
@@ -76,7 +78,8 @@ def draw_changes(axes, rows, effects, colours):
         ],
         fontsize="small",
     )
-    axes.set_xlabel("largest change in proportion to its error [%]")
+    axes.set_xlabel("change of the quantity named, the largest for its error [%]")
+    style.numbers_on_logarithmic_axis(axes.xaxis)
 
 
 def draw_costs(axes, rows, effects, colours):
@@ -95,7 +98,7 @@ def draw_costs(axes, rows, effects, colours):
         error_kw={"elinewidth": 1, "capsize": 2},
     )
     axes.axvline(0, color="black", linewidth=0.8)
-    axes.set_xlabel("costs, of the seconds of the scene [%]")
+    axes.set_xlabel("cost, share of the run [%]")
 
 
 def draw(about):
@@ -120,9 +123,9 @@ def draw(about):
     labels = [verdict for verdict in VERDICTS if verdict in found - set(NOTHING)]
     handles = [plt.Rectangle((0, 0), 1, 1, color=VERDICTS[label]) for label in labels]
     line, label = left.get_legend_handles_labels()
-    title = style.plain(f'{about["scene"]}: which effects it calls for')
+    title = style.plain(f'{about["scene"]}: what each effect changes and costs')
     if any(KINDS[effect["kind"]] for effect in effects):
-        title += " (*: not of the problem)"
+        title += " (*: of the discretization)"
     figure.suptitle(title)
     # Below all axes: the layout leaves no room for it, the file does.
     figure.legend(

@@ -6,6 +6,7 @@ import numpy as np
 
 from . import style
 from .results import NoPicture
+from .units import Units
 
 ESTIMATES = {
     "estimator": (r"residuals, $C\,\eta_K$", style.SERIES[0], "o"),
@@ -49,16 +50,23 @@ def draw(results, options):
         raise NoPicture(f"at t = {time:g} there are no errors")
     ends = np.array([known.min(), known.max()])
     axes.plot(ends, ends, color=style.OUTLINE, lw=1)
-    for factor in (0.2, 5.0):
-        axes.plot(ends, factor * ends, color=style.OUTLINE, lw=0.7, ls=(0, (5, 3)))
+    for factor, label in ((0.2, "a factor of five"), (5.0, None)):
+        look = {"color": style.OUTLINE, "lw": 0.8, "ls": (0, (5, 3))}
+        axes.plot(ends, factor * ends, label=label, **look)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(*ends * (0.7, 1.4))
     axes.set_ylim(*ends * (0.7, 1.4))
-    axes.set_xlabel(r"true error of a cell in the energy norm")
-    axes.set_ylabel("estimated error of the cell (dashed: a factor of five)")
-    axes.legend(loc="upper left", fontsize=9)
-    axes.set_title(f"{style.plain(results.name)}   t = {time:.4g}")
+    units = Units.of(results)
+    unit = units.unit("energy norm", known)
+    axes.set_xlabel(unit.label("true error of a cell in the energy norm"))
+    axes.set_ylabel(unit.label("estimated error of the cell"))
+    axes.legend(loc="lower right", fontsize="small")
+    for axis in axes.xaxis, axes.yaxis:
+        style.numbers_on_logarithmic_axis(axis, 1.0 / unit.size)
+    time = units.unit("time", [t for t, _ in results.solution]).value(time)
+    what = "estimated and true errors of the cells"
+    figure.suptitle(style.title(results.name, what, time), fontsize="large")
     return figure
 
 

@@ -18,4 +18,6 @@ def draw(results, options):
     panels = history.those_with_something(PANELS, statistics)
     if not any(panel in (history.ERROR, history.QUANTITY) for panel, _ in panels):
         raise NoPicture("statistics.csv has no error estimate to draw")
-    return history.draw_panels(results, panels, statistics)
+    return history.draw_panels(
+        results, panels, statistics, "estimated error by its causes over time"
+    )

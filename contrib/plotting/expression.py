@@ -88,9 +88,9 @@ FUNCTIONS = {
 CONSTANTS = {"pi": np.pi, "Pi": np.pi, "_pi": np.pi, "_e": np.e}
 
 
-def evaluate(text, t):
-    """The values at the times t; UserError if it depends on more than t or is
-    not finite."""
+def evaluate(text, t, **places):
+    """The values at the times t, and at places x, y, z of as many; UserError if it
+    depends on more or is not finite."""
     python = re.sub(r"\bif\s*\(", "if_(", text.replace("^", "**"))
     python = python.replace("&&", " and ").replace("||", " or ").strip()
     shown = text.strip() if len(text) <= 80 else f"{text.strip()[:77]}..."
@@ -98,7 +98,7 @@ def evaluate(text, t):
     try:
         tree = ast.parse(python, mode="eval")
         with np.errstate(all="ignore"):
-            value = visit(tree.body, {"t": t, **names})
+            value = visit(tree.body, {"t": t, **places, **names})
     except (RecursionError, MemoryError):  # the latter is that of the parser
         raise UserError(
             f'the expression "{shown}" cannot be drawn: it is nested too deeply, or '

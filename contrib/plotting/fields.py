@@ -3,21 +3,20 @@
 
 import matplotlib.pyplot as plt
 
-from . import style
-from .body import Body2D, Scale, make_body
+from .body import Body2D, make_body
+from .body_base import Scale
 from .layout import fit_rows
 
 
 def scale(results, indices, options, name):
-    return Scale(results, indices, name, options.magnification)
+    return Scale(results, indices, name, options)
 
 
 def draw(results, index, options, scale):
     body = make_body(results, index, scale)
     figure = plt.figure(figsize=(8.5, 6.0), layout="constrained")
     grid = figure.add_gridspec(1, 1)
-    heading = style.title(results.name, results.solution[index][0], body.magnification)
-    figure.suptitle(heading, fontsize="large")
+    figure.suptitle(body.heading(), fontsize="large")
     if isinstance(body, Body2D):
         axes = figure.add_subplot(grid[0])
         body.draw(axes)

@@ -155,3 +155,19 @@ def thinned(place, nodes, distance):
             kept = np.vstack([kept, place[node]])
             chosen.append(node)
     return np.array(chosen, dtype=int)
+
+
+def corner_volumes(points, cells):
+    """The (signed) area or volume that the edges span at each corner of a cell,
+    shape (cells, corners)."""
+    corners = points[cells]
+    if cells.shape[1] == 4:
+        ahead = np.roll(corners, -1, axis=1) - corners
+        behind = np.roll(corners, 1, axis=1) - corners
+        return ahead[:, :, 0] * behind[:, :, 1] - ahead[:, :, 1] * behind[:, :, 0]
+    beside = [
+        [4 * (i // 4) + (i + 1) % 4, 4 * (i // 4) + (i + 3) % 4, (i + 4) % 8]
+        for i in range(8)
+    ]
+    edges = corners[:, beside] - corners[:, :, None]
+    return np.linalg.det(edges)

@@ -2,18 +2,20 @@
 """The main columns of the statistics over time."""
 
 import re
+import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import MaxNLocator
 
-from . import style
+from . import quantities, style
 from .results import NoPicture
+from .units import Unit, Units, show
 
 
 class Panel:
     """One diagram: columns that share a unit.
 
+    label       words at its axis
     columns     names, or patterns of names, of the statistics
     logarithmic values of many orders of magnitude, drawn by their size
     steps       a value holds for a step, not for an instant
@@ -61,11 +63,13 @@ class Panel:
         return [name for name in found if sizes[name] > threshold]
 
 
-AREA = Panel("area", ["slip_area", "stick_area"], steps=True)
+AREA = Panel(
+    "part of\nthe face", ["slip_area", "stick_area", "contact_area"], steps=True
+)
 STEP_SIZE = Panel("step size", ["k", "step_limit"], logarithmic=True, steps=True)
 CELLS = Panel("cells", ["cells"], steps=True, changing=True)
 ERROR = Panel(
-    "error in the\nenergy norm, %",
+    "error in the\nenergy norm",
     [
         "error_energy",
         *(
@@ -82,9 +86,12 @@ QUANTITY = Panel(
 
 PANELS = (
     Panel("friction force\non the foundation", ["friction_force_[xyz]"]),
+    Panel("contact force\non the foundation", ["contact_force_[xyz]"]),
     Panel("reactions\non the body", ["reaction_\\d+_[xyz]"]),
     Panel("loads on the body", ["load_[xyz]"]),
     AREA,
+    Panel("contact pressure", ["max_pressure"]),
+    Panel("gap", ["max_gap"]),
     Panel(
         "energy",
         [
@@ -93,12 +100,17 @@ PANELS = (
             "viscous_dissipation",
             "friction_dissipation",
             "adaptation_energy",
+            "construction_energy",
         ],
     ),
     Panel("displacement", ["max_displacement", "point\\d+_[xyz]"]),
     Panel("stress", ["max_von_mises", "mean_von_mises"]),
     Panel("capped volume", ["capped_volume"], steps=True),
-    Panel("iterations", ["contact_iterations", "linear_iterations"], steps=True),
+    Panel(
+        "iterations",
+        ["contact_iterations", "linear_iterations", "bound_iterations"],
+        steps=True,
+    ),
     STEP_SIZE,
     CELLS,
     Panel("estimate\n" r"$(\sum\eta_K^2)^{1/2}$", ["estimator"]),
@@ -126,6 +138,12 @@ NAMES = {
     "quantity_total": "all",
     "contact_iterations": "contact",
     "linear_iterations": "linear",
+    "bound_iterations": "of the bounds",
+    "contact_area": "touches",
+    "max_pressure": "largest",
+    "max_gap": "largest",
+    "slip_area": "slips",
+    "stick_area": "sticks",
     "k": "step $k$",
     "step_limit": "limit $2/r$",
     "algebraic_error": "algebraic",
@@ -139,14 +157,14 @@ def label(name):
     """A short name of a column for a legend."""
     if name in NAMES:
         return NAMES[name]
-    match = re.fullmatch(r"(friction_force|load)_([xyz])", name)
+    match = re.fullmatch(r"(friction_force|contact_force|load)_([xyz])", name)
     if match:
         return f"${match.group(2)}$"
     match = re.fullmatch(r"(reaction|point)_?(\d+)_([xyz])", name)
     if match:
         what = "boundary" if match.group(1) == "reaction" else "point"
         return f"{what} {match.group(2)}, ${match.group(3)}$"
-    return style.plain(re.sub("^max_", "largest ", name).replace("_", " "))
+    return quantities.plain(re.sub("^max_", "largest ", name).replace("_", " "))
 
 
 def finite(values):
@@ -174,10 +192,21 @@ def draw(results, options):
     if options.columns:
         for name in options.columns:
             results.column(name)
-        panels = [(Panel(label(name), [name]), [name]) for name in options.columns]
-    else:
-        panels = those_with_something(PANELS, statistics)
-    return draw_panels(results, panels, statistics)
+        panels = [(alone(name), [name]) for name in options.columns]
+        names = options.columns[:2]
+        labels = [quantities.column(name)[0] for name in names]
+        what = ", ".join(map(quantities.in_titles, labels))
+        if len(options.columns) > len(names):
+            what = "some quantities over time"
+        return draw_panels(results, panels, statistics, what)
+    panels = those_with_something(PANELS, statistics)
+    return draw_panels(results, panels, statistics, "forces, energies, errors over time")
+
+
+def alone(name):
+    """A panel for one column, whose label says all of it."""
+    words, _ = quantities.column(name)
+    return Panel(textwrap.fill(words, 22), [name], steps=name.endswith("_area"))
 
 
 def those_with_something(panels, statistics):
@@ -186,7 +215,9 @@ def those_with_something(panels, statistics):
     return [(panel, names) for panel, names in chosen if names]
 
 
-def draw_panels(results, panels, statistics):
+def draw_panels(results, panels, statistics, what):
+    units = Units.of(results)
+    time = units.unit("time", results.statistics["t"])
     columns = 1 if len(panels) < 3 else 2
     rows = -(-len(panels) // columns)
     figure = plt.figure(
@@ -198,13 +229,14 @@ def draw_panels(results, panels, statistics):
         row, column = divmod(i, columns)
         alone = i == len(panels) - 1 and column == 0  # takes the whole row
         axes = figure.add_subplot(grid[row, :] if alone else grid[row, column])
-        draw_panel(axes, panel, names, statistics)
+        draw_panel(axes, panel, names, statistics, units)
         axes.set_xlim(*padded(statistics["t"]))
-        if row == rows - 1:
-            axes.set_xlabel("time $t$")
-        elif row < rows - 2 or len(panels) % columns == 0:
+        show(axes.xaxis, "time $t$", time)
+        if row < rows - 1:
+            axes.set_xlabel("")
+        if row < rows - 1 and (row < rows - 2 or len(panels) % columns == 0):
             axes.tick_params(labelbottom=False)
-    figure.suptitle(style.plain(results.name), fontsize="large")
+    figure.suptitle(style.title(results.name, what), fontsize="large")
     return figure
 
 
@@ -213,7 +245,24 @@ def padded(t):
     return t.min() - margin, t.max() + margin
 
 
-def draw_panel(axes, panel, names, statistics):
+def unit_of(panel, names, statistics, units):
+    """The unit that the columns of a panel share."""
+    if panel.share_of in statistics:
+        return Unit(1.0, "%")
+    kind = quantities.column(names[0])[1]
+    if names[0] == "estimator" and "quantity_total" in statistics:
+        kind = None
+    values = np.concatenate([finite(statistics[name]) for name in names])
+    if panel.logarithmic:
+        # The limit of the first steps may be that of nothing at all.
+        values = values[values > 0.0]
+        if kind is None:
+            return Unit(1.0, "")
+        return units.unit(kind, [np.median(values)] if len(values) else [])
+    return units.unit(kind, values)
+
+
+def draw_panel(axes, panel, names, statistics, units):
     t = statistics["t"]
     few = len(t) < 12
     scale = 1.0
@@ -241,16 +290,19 @@ def draw_panel(axes, panel, names, statistics):
             drawstyle="steps-pre" if panel.steps else "default",
             label=label(name),
         )
+    unit = unit_of(panel, names, statistics, units)
     if panel.logarithmic:
         axes.set_yscale("log")
-    elif panel.steps:
-        axes.set_ylim(bottom=0.0)
-        if "iterations" in panel.label or "cells" in panel.label:
-            axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+        style.numbers_on_logarithmic_axis(axes.yaxis, 1.0 / unit.size)
+        axes.set_ylabel(unit.label(panel.label))
     else:
-        axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
-    axes.set_ylabel(panel.label)
-    if len(names) > 1 or re.search(r"_[xyz]$", names[0]):
+        counted = "iterations" in panel.label or "cells" in panel.label
+        if panel.steps:
+            axes.set_ylim(bottom=0.0)
+        else:
+            axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
+        show(axes.yaxis, panel.label, unit, integer=counted)
+    if len(names) > 1 or panel.columns != names:
         axes.legend(
             loc="center left",
             bbox_to_anchor=(1.0, 0.5),

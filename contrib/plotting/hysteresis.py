@@ -11,7 +11,9 @@ from matplotlib.colors import Normalize
 from . import style
 from .expression import evaluate
 from .history import window
+from .layout import number_bar
 from .results import NoPicture, UserError
+from .units import Units, show
 
 CLOSED = 0.01  # of the extents of the loop
 
@@ -52,11 +54,12 @@ def displacements(results, statistics):
     """
     found = {}
     t = statistics["t"]
-    for key, text in results.parameters.items():
+    entries = results.data
+    for key, text in entries.items():
         match = re.fullmatch(r"Boundary (\d+)", key[0])
         if not match or len(key) != 2 or not text:
             continue
-        role = results.parameters.get((key[0], "Role"))
+        role = entries.get((key[0], "Role"))
         if (role, key[1]) == ("displacement", "Displacement"):
             name, symbol = f"boundary{match.group(1)}", "displacement of boundary"
         elif (role, key[1]) == ("contact", "Foundation motion"):
@@ -83,15 +86,15 @@ def displacements(results, statistics):
 def forces(statistics):
     found = {}
     for name, values in statistics.items():
-        match = re.fullmatch(r"friction_force_([xyz])", name)
+        match = re.fullmatch(r"(friction|contact)_force_([xyz])", name)
         if match:
             found[name] = values, (
-                f"friction force on the foundation, $F_{match.group(1)}$"
+                f"{match.group(1)} force on the foundation, $F_{match.group(2)}$"
             )
         match = re.fullmatch(r"reaction_(\d+)_([xyz])", name)
         if match:
             found[name] = values, (
-                f"reaction of boundary {match.group(1)}, $R_{match.group(2)}$"
+                f"reaction of boundary {match.group(1)} on the body, $R_{match.group(2)}$"
             )
     return found
 
@@ -116,6 +119,11 @@ def draw(results, options):
     if not results.statistics:
         raise NoPicture(f"{results.directory} has no statistics.csv with rows")
     statistics = window(results.statistics, options)
+    if not (options.force or options.displacement or dissipates(statistics)):
+        raise NoPicture(
+            "nothing dissipates in the scene, neither friction nor a law, so a force "
+            "over a displacement has no loop; --force and --displacement draw it"
+        )
     possible_forces = forces(statistics)
     possible_displacements = displacements(results, statistics)
     if not possible_forces:
@@ -167,6 +175,12 @@ def draw(results, options):
     )
 
 
+def dissipates(statistics):
+    """Whether the scene has an effect that takes energy, so that a path differs on
+    the way back."""
+    return any(name.endswith("_dissipation") for name in statistics)
+
+
 def drives(force, names):
     """Whether a reaction belongs to one of the prescribed displacements."""
     match = re.fullmatch(r"reaction_(\d+)_([xyz])", force)
@@ -176,21 +190,24 @@ def drives(force, names):
 def draw_loop(results, t, displacement, force, plane):
     """plane: in two dimensions forces are those on a unit of thickness."""
     (u, u_label), (f, f_label) = displacement, force
+    units = Units.of(results)
+    time = units.unit("time", results.statistics["t"])
+    energy = units.unit("energy", np.ptp(u) * np.ptp(f))
     figure, axes = plt.subplots(figsize=(7.6, 5.6), layout="constrained")
     begin = last_cycle(u, f)
     if begin is not None:
         axes.fill(u[begin:], f[begin:], color=style.SERIES[5], alpha=0.2, lw=0)
         area = (
-            rf"loop area $\oint F\,dU$ = {style.short(work(u[begin:], f[begin:]))}: "
-            f"work per cycle{' and unit thickness' if plane else ''}"
+            rf"loop area $\oint F\,dU$ = {energy.value(work(u[begin:], f[begin:]))}: "
+            f"work per cycle{' and unit depth' if plane else ''}"
         )
         if begin > 0:
-            area += f"   (from t = {style.short(t[begin])})"
+            area += f" (from $t$ = {time.value(t[begin])})"
     else:
         area = (
-            rf"open path, $\int F\,dU$ = {style.short(work(u, f))}: "
-            f"work{' per unit thickness' if plane else ''}"
-            f"   (t = {style.short(t[0])} to {style.short(t[-1])})"
+            rf"open path, $\int F\,dU$ = {energy.value(work(u, f))}: "
+            f"work{' per unit depth' if plane else ''}"
+            f" ($t$ = {time.value(t[0])} to {time.value(t[-1])})"
         )
     points = np.column_stack([u, f])
     path = LineCollection(
@@ -209,10 +226,12 @@ def draw_loop(results, t, displacement, force, plane):
     axes.axvline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
     axes.margins(0.06)
     axes.autoscale_view()
-    axes.set_xlabel(u_label)
-    axes.set_ylabel(f_label)
+    show(axes.xaxis, u_label, units.unit("length", u))
+    show(axes.yaxis, f_label, units.unit("force", f))
     axes.legend(loc="best")
     axes.set_title(area, pad=10)
-    figure.colorbar(path, ax=axes, pad=0.02).set_label("time $t$")
-    figure.suptitle(style.plain(results.name), fontsize="large")
+    bar = figure.colorbar(path, ax=axes, pad=0.02)
+    number_bar(bar, time.label("time $t$"), time)
+    what = "force over displacement"
+    figure.suptitle(style.title(results.name, what), fontsize="large")
     return figure

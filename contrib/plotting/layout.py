@@ -5,6 +5,7 @@ What surrounds a panel, its labels, legends and colour bars, has a size in
 inches that only matplotlib knows.  Figures are therefore laid out once, and
 then get the height that their panels need.
 """
+from .units import Numbers, Ticks
 
 FLAT = 0.45  # height over width of panels with the colour bar underneath
 
@@ -14,7 +15,7 @@ def is_flat(aspect):
     return aspect < FLAT
 
 
-def add_colour_bar(axes, mappable, label, flat, **options):
+def add_colour_bar(axes, mappable, label, unit, flat, **options):
     """A colour bar beside the panel, as high as it, or under a flat one."""
     figure = axes.figure
     if flat:
@@ -22,14 +23,20 @@ def add_colour_bar(axes, mappable, label, flat, **options):
         bar = figure.colorbar(
             mappable, ax=axes, location="bottom", shrink=0.8, aspect=34, **options
         )
-        power = bar.ax.xaxis.get_offset_text()
-        power.set(x=1.0, horizontalalignment="left")  # off the label
     else:
         width = 0.18 / axes.get_position().width / figure.get_figwidth()
         cax = axes.inset_axes((1.0 + 1.2 * width, 0.0, width, 1.0))
         bar = figure.colorbar(mappable, cax=cax, **options)
-    bar.set_label(label)
+    number_bar(bar, label, unit)
     return bar
+
+
+def number_bar(bar, label, unit):
+    """Label a colour bar and number it in a unit."""
+    bar.set_ticks(Ticks(unit.size))
+    bar.formatter = Numbers(unit.size)
+    bar.update_ticks()
+    bar.set_label(label)
 
 
 def cell(axes):

@@ -5,17 +5,19 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import style
-from .body import Body2D, Scale, make_body
+from .body import Body2D, make_body
+from .body_base import Scale
 from .contact import Arrows, draw_utilisation
 from .faces import planes
 from .layout import cell, fit_rows
+from .units import Unit, show
 
 MOST_PLANES = 2
 
 
 def scale(results, indices, options):
     """That of the body, and of the arrows on the contact face if there are any."""
-    found = Scale(results, indices, "von_mises", options.magnification)
+    found = Scale(results, indices, "von_mises", options)
     found.arrows = Arrows()
     if results.dimension() == 3:
         for index in indices:
@@ -31,11 +33,10 @@ def has_friction(contact):
 
 def draw(results, index, options, scale):
     body = make_body(results, index, scale)
-    time = results.solution[index][0]
-    heading = style.title(results.name, time, body.magnification)
+    heading = body.heading()
     curve = None
     if has_force_curve(results.statistics):
-        curve = results.statistics, time
+        curve = results.statistics, body
     if isinstance(body, Body2D):
         return draw_2d(body, heading, curve)
     return draw_3d(body, heading, curve, options.view)
@@ -69,14 +70,13 @@ def draw_3d(body, heading, curve, view):
         arrows = body.scale.arrows
         for plane, place, length in zip(shown, column, arrows.lengths):
             faces.append(figure.add_subplot(place))
-            draw_utilisation(
-                faces[-1], plane, body.contact, arrows.longest, length
-            )
-        title = "Contact face" if len(found) == 1 else "Contact faces"
+            draw_utilisation(faces[-1], plane, body, arrows.longest, length)
+        title = f"Contact face {shown[0].name(body.scale.length)}"
         if len(found) > len(shown):
-            title += f" (the {len(shown)} largest of {len(found)})"
-        title += " seen from the foundation, slipping nodes marked"
-        faces[0].set_title(title, pad=24)
+            title = f"Contact faces (the {len(shown)} largest of {len(found)})"
+        elif len(shown) > 1:
+            title = "Contact faces"
+        faces[0].set_title(f"{title}, {shown[0].view()}; dots: slip", pad=24)
 
     def needed(size):
         cells = [cell(axes) for axes in faces]
@@ -103,18 +103,24 @@ def begin(width, heading, curve, columns=(1.0,)):
 
 
 def has_force_curve(statistics):
-    return len(statistics.get("t", ())) > 1 and any(
-        name.startswith("friction_force_") for name in statistics
-    )
+    return len(statistics.get("t", ())) > 1 and bool(forces_of("friction", statistics))
 
 
-def draw_force_curve(axes, statistics, time):
-    times = statistics["t"]
-    forces = {
-        axis: statistics[f"friction_force_{axis}"]
+def forces_of(kind, statistics):
+    """By axis the components of the friction or contact force."""
+    return {
+        axis: statistics[f"{kind}_force_{axis}"]
         for axis in "xyz"
-        if f"friction_force_{axis}" in statistics
+        if f"{kind}_force_{axis}" in statistics
     }
+
+
+def draw_force_curve(axes, statistics, body):
+    times, units = statistics["t"], body.scale.units
+    kind, forces = "friction", forces_of("friction", statistics)
+    pressed = forces_of("contact", statistics)
+    if pressed and not any(force.any() for force in forces.values()):
+        kind, forces = "contact", pressed
     largest = max(np.abs(force).max(initial=0.0) for force in forces.values())
     for component, force in forces.items():
         # The component along a face's normal is zero all the time.
@@ -124,17 +130,19 @@ def draw_force_curve(axes, statistics, time):
                 force,
                 color=style.COMPONENT[component],
                 ls=style.DASHES[component],
-                label=f"force ${component}$",
+                label=f"force, ${component}$",
                 marker="." if len(times) < 12 else None,
             )
-    axes.axvline(time, color="black", lw=0.9, ls=":")
+    axes.axvline(body.time, color="black", lw=0.9, ls=":")
     axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
-    axes.set_xlabel("time $t$")
-    axes.set_ylabel("friction force\non the foundation")
+    show(axes.xaxis, "time $t$", units.unit("time", times))
+    unit = units.unit("force", largest)
+    show(axes.yaxis, f"{kind} force\non the foundation", unit)
     axes.margins(x=0.01)
 
     handles = axes.get_legend_handles_labels()[0]
-    if "stick_area" in statistics and "slip_area" in statistics:
+    has_areas = "stick_area" in statistics and "slip_area" in statistics
+    if kind == "friction" and has_areas:
         slip = statistics["slip_area"]
         total = statistics["stick_area"] + slip
         share = np.divide(slip, total, out=np.zeros_like(slip), where=total > 0.0)
@@ -151,7 +159,7 @@ def draw_force_curve(axes, statistics, time):
             )
         )
         other.set_ylim(0.0, 1.05)
-        other.set_ylabel("slipping share\nof the face")
+        show(other.yaxis, "slipping share\nof the face", Unit(0.01, "%"))
         axes.set_zorder(other.get_zorder() + 1)
         axes.patch.set_visible(False)
     axes.legend(

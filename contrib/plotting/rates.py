@@ -44,17 +44,33 @@ def final_order(sizes, errors):
     return float(orders[-1]) if np.isfinite(orders[-1:]).any() else None
 
 
-def efficient_frontier(seconds, errors):
+def efficient_frontier(seconds, errors, gain=0.0):
     """Indices, the cheapest first, of the runs than which no other is both at
-    least as cheap and at least as accurate (of equal ones the first)."""
+    least as cheap and at least as accurate (of equal ones the first).  Each has to
+    lower the error by more than a share `gain` of that of the run before."""
     seconds, errors = np.asarray(seconds, float), np.asarray(errors, float)
     candidates = np.nonzero(known(seconds, errors))[0]
-    best, frontier = np.inf, []
+    best, frontier = np.finfo(float).max, []
     for i in sorted(candidates, key=lambda i: (seconds[i], errors[i], i)):
-        if errors[i] < best:
+        if errors[i] < (1.0 - gain) * best:
             best = errors[i]
             frontier.append(int(i))
     return frontier
+
+
+def without_detours(seconds, errors, frontier, factor=1.2):
+    """Those runs of a frontier whose error is within a factor of the straight line,
+    in logarithms, between those before and after them."""
+    kept = []
+    for i in frontier:
+        while len(kept) > 1:
+            before, last = kept[-2:]
+            line = at(seconds[last], seconds[[before, i]], errors[[before, i]])
+            if errors[last] <= factor * line:
+                break
+            kept.pop()
+        kept.append(i)
+    return kept
 
 
 def cheapest_within(tolerance, seconds, errors):
@@ -72,6 +88,11 @@ def predicted_error(fit, h, k):
     of_mesh = (fit.get("C_h") or 0.0) * h ** (fit.get("p") or 0.0)
     of_steps = (fit.get("C_k") or 0.0) * k ** (fit.get("q") or 0.0)
     return (of_mesh**m + of_steps**m) ** (1.0 / m)
+
+
+def fits(fit, h, k, errors, factor=1.1):
+    """Where a fit is within a factor of the errors."""
+    return np.abs(np.log(predicted_error(fit, h, k) / errors)) <= np.log(factor)
 
 
 def at(x, curve_x, curve_y):

@@ -8,7 +8,9 @@ from matplotlib.colors import ListedColormap
 from . import style
 from .contact import MOST_PIECES, node_intervals
 from .faces import friction_state, lines
+from .layout import number_bar
 from .results import NoPicture
+from .units import Units, show
 
 FEWEST_TIMES = 3
 FINEST = 2000  # columns of the map
@@ -87,9 +89,12 @@ def draw_maps(results, times, pieces, left_out):
     states_map = ListedColormap(
         [
             style.STATE_COLOURS[state]
-            for state in (style.NO_FRICTION, style.STICKING, style.SLIPPING)
+            for state in sorted(style.STATE_COLOURS)
         ]
     )
+    units = Units.of(results)
+    length = units.unit("length", [line.length for line, _ in pieces])
+    rate = units.unit("velocity", everything)
     occurring = []
     for (line, found), (upper, lower) in zip(pieces, panels.T):
         count = columns_for([s / line.length for s, _, _ in found])
@@ -99,15 +104,15 @@ def draw_maps(results, times, pieces, left_out):
         states = np.array([resample(s, state, centres) for s, state, _ in found])
         rates = np.array([np.interp(centres, s, rate) for s, _, rate in found])
         upper.pcolormesh(
-            ends, times, states, cmap=states_map, vmin=-1.5, vmax=1.5, rasterized=True
+            ends, times, states, cmap=states_map, vmin=-2.5, vmax=1.5, rasterized=True
         )
         lower.pcolormesh(
             ends, times, rates, cmap=shade.map, norm=shade.norm, rasterized=True
         )
-        lower.set_xlabel(line.label())
+        show(lower.xaxis, line.label(length), length)
         occurring.append(np.unique(states))
-    panels[0, 0].set_ylabel("time $t$")
-    panels[1, 0].set_ylabel("time $t$")
+    for row in panels:
+        show(row[0].yaxis, "time $t$", units.unit("time", times))
     handles = style.state_legend(np.concatenate(occurring))
     panels[0, -1].legend(
         handles=handles,
@@ -116,13 +121,13 @@ def draw_maps(results, times, pieces, left_out):
         ncol=len(handles),
         frameon=False,
     )
-    figure.colorbar(
+    bar = figure.colorbar(
         shade.mappable(), extend=shade.extend, ax=panels[1].tolist(), pad=0.02
-    ).set_label(
-        style.range_label(shade, r"slip rate $\dot{s}_\tau$", everything, "\n")
     )
-    heading = style.plain(results.name)
+    words = r"slip rate of the body $\dot{s}_\tau$"
+    number_bar(bar, style.range_label(shade, words, everything, rate, "\n"), rate)
+    heading = style.title(results.name, "where and when the contact face slips")
     if left_out:
-        heading += f"   (the {MOST_PIECES} longest of {MOST_PIECES + left_out} pieces)"
+        heading += f" (the {MOST_PIECES} longest of {MOST_PIECES + left_out} pieces)"
     figure.suptitle(heading, fontsize="large")
     return figure

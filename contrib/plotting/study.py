@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What a study wrote: study.csv, one row a run, and study.json."""
 
+import json
 import re
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from . import rates, style
 from .results import LEVELS, VARIANT, UserError, read_study_about, read_study_table
 
 TOLERANCE = "tolerance"  # the strategy of runs that choose meshes and steps
+
+MOST = 4  # variants in a picture
 
 LADDERS = {"space": "$h$ alone", "time": "$k$ alone", "both": "$h$ and $k$"}
 ERRORS = {
@@ -31,7 +34,7 @@ class Ladder:
         self.name = name
         self.rows = rows
         self.h = study["h"][rows]
-        self.k = study["k"][rows]
+        self.k = study.step_sizes()[rows]
 
     def sizes(self, axis):
         return self.h if axis == "h" else self.k
@@ -60,6 +63,22 @@ class Study:
                 + ", ".join(self.columns)
             )
         return self.columns[name]
+
+    def chooses_steps(self):
+        """Whether step control has chosen the steps of runs, to a tolerance."""
+        return "step_tolerance" in self and rates.known(self["step_tolerance"]).any()
+
+    def step_sizes(self):
+        """What the part of the steps in errors is a power of: their tolerance, or
+        the longest of them."""
+        return self["step_tolerance" if self.chooses_steps() else "k"]
+
+    def step_symbol(self):
+        return r"\mathrm{TOL}" if self.chooses_steps() else "k"
+
+    def ladder_label(self, name):
+        label = LADDERS.get(name, name)
+        return label.replace("$k$", f"${self.step_symbol()}$")
 
     def errors(self):
         """Columns of errors that are known for some run."""
@@ -117,26 +136,72 @@ class Study:
         ]
         return style.plain(", ".join(parts or variant[:2]))
 
-    def looks(self):
-        """{variant: colour and dashes}: a colour each, or where they are many one
-        for each scheme and history, and dashes for each further strategy."""
+    def groups(self, error=None):
+        """The variants in groups that one picture can hold: first the best of each
+        strategy, or where there is one strategy of each scheme, then the others."""
         variants = self.variants()
-        if len(variants) <= len(style.SERIES):
-            return {
-                variant: {"color": colour, "ls": "-"}
-                for variant, colour in zip(variants, style.SERIES)
-            }
-        methods = list(dict.fromkeys(variant[1:] for variant in variants))
-        strategies = list(dict.fromkeys(variant[0] for variant in variants))
-        # dotted lines are fits
-        dashes = ("-", (0, (4, 1.5)), (0, (7, 1.5, 1.5, 1.5)))
+        if len(variants) <= MOST:
+            return [variants]
+        kind = next((i for i in (0, 1) if len({v[i] for v in variants}) > 1), 2)
+        best = {}
+        for variant in sorted(variants, key=lambda variant: self.price(variant, error)):
+            best.setdefault(variant[kind], variant)
+        first = [variant for variant in variants if variant in best.values()][:MOST]
+        others = [variant for variant in variants if variant not in first]
+        return [first, *(others[i : i + MOST] for i in range(0, len(others), MOST))]
+
+    def price(self, variant, error):
+        """The seconds for the smallest error that all variants of the strategy
+        reach; infinite where errors are not known."""
+        if error is None:
+            return 0.0
+
+        def runs(variant):
+            rows = np.concatenate(
+                [ladder.rows for ladder in self.ladders() if ladder.variant == variant]
+            )
+            return rows[rates.known(self["seconds_total"][rows], self[error][rows])]
+
+        reached = [
+            self[error][runs(other)].min(initial=np.inf)
+            for other in self.variants()
+            if other[0] == variant[0]
+        ]
+        reached = [value for value in reached if np.isfinite(value)]
+        rows = runs(variant)
+        if not reached or not len(rows):
+            return np.inf
+        seconds, errors = self["seconds_total"][rows], self[error][rows]
+        cheapest = rates.cheapest_within(max(reached), seconds, errors)
+        return np.inf if cheapest is None else seconds[cheapest]
+
+    def looks(self, variants):
+        """{variant: colour and line} in a picture of some of them."""
         return {
-            variant: {
-                "color": style.SERIES[methods.index(variant[1:]) % len(style.SERIES)],
-                "ls": dashes[strategies.index(variant[0]) % len(dashes)],
-            }
-            for variant in variants
+            variant: {"color": colour, "ls": "-"}
+            for variant, colour in zip(variants, style.SERIES)
         }
+
+    def title(self, what, variants):
+        """What a picture shows, and of which variants."""
+        text = f"{style.plain(self.name)}: {what}"
+        everything = self.variants()
+        if len(variants) == len(everything):
+            return text
+        kinds = {variant[0] for variant in variants}
+        if len(kinds) == len({variant[0] for variant in everything}) == len(variants):
+            return f"{text}, best of each strategy"
+        return f"{text}, {len(variants)} of {len(everything)} ways"
+
+    def error_of_reference(self, error):
+        """The estimated error of the run that others are compared with, relative,
+        or None where it is not known."""
+        run = self.about.get("reference_run")
+        record = self.directory / str(run) / "run.json"
+        if not run or error != "error_energy" or not record.exists():
+            return None
+        estimate = json.loads(record.read_text()).get("estimated_error", {})
+        return estimate.get("relative")
 
     def fit(self, variant, error):
         """The fitted {C_h, p, C_k, q, ...} of study.json, or None."""

@@ -44,24 +44,30 @@ def describe(study):
     return "\n".join([*lines, "columns: " + ", ".join(study.columns)])
 
 
-def path(study, options, name, error, suffix):
+def path(study, options, name, error, number, suffix):
     if options.output:
         return options.output
     stem = name.replace("-", "_")
     if error is not None:
         stem += f"_{error}"
+    if number > 1:
+        stem += f"_{number}"
     return study.directory / f"{stem}.{suffix}"
 
 
 def draw(study, options, name, error):
-    """One picture; `error` is None for the usual one."""
-    shown = None if name in WITHOUT_ERRORS else study.error(error)
-    figure = PICTURES[name].draw(study, shown)
-    for suffix in options.formats:
-        file = path(study, options, name, error and shown, suffix)
-        figure.savefig(file, dpi=options.dpi, bbox_inches="tight", pad_inches=0.15)
-        print(file)
-    plt.close(figure)
+    """A picture, with --all one for each group of variants; `error` is None for the
+    usual one."""
+    known = study.errors()
+    shown = study.error(error) if name not in WITHOUT_ERRORS or known else None
+    groups = study.groups(shown)
+    for number, variants in enumerate(groups if options.all else groups[:1], start=1):
+        figure = PICTURES[name].draw(study, shown, variants)
+        for suffix in options.formats:
+            file = path(study, options, name, error and shown, number, suffix)
+            figure.savefig(file, dpi=options.dpi, bbox_inches="tight", pad_inches=0.15)
+            print(file)
+        plt.close(figure)
 
 
 def main(options):

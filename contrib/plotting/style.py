@@ -2,9 +2,8 @@
 """Colours, labels and numbers, the same in all pictures.
 
 Colours are those of Okabe and Ito, which readers with any colour vision can
-tell apart; maps are viridis, cividis and a red-blue one for signed fields.
-Results carry no units: labels name quantities by their symbols, the numbers
-are in the units of the scene.
+tell apart; maps are viridis, whose dark end is next to zero, greys, and a red-blue one for
+signed fields.
 """
 
 import math
@@ -16,60 +15,41 @@ import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.scale import LinearScale, register_scale
-from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import FixedLocator, NullFormatter
 
+from .quantities import plain
 from .results import UserError
+from .units import Numbers
 
 SLIP = "#d55e00"
 STICK = "#ffffff"
 FRICTIONLESS = "#b3b3b3"
+OPEN = "#a6d5ee"
 OUTLINE = "#555555"
 SERIES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 COMPONENT = {"x": SERIES[0], "y": SERIES[4], "z": SERIES[2]}
 DASHES = {"x": "-", "y": "--", "z": "-."}
 
-SLIPPING, STICKING, NO_FRICTION = 1, 0, -1
-STATE_COLOURS = {SLIPPING: SLIP, STICKING: STICK, NO_FRICTION: FRICTIONLESS}
-STATE_NAMES = {SLIPPING: "slip", STICKING: "stick", NO_FRICTION: "no friction"}
-
-SCALARS = {
-    "von_mises": r"von Mises stress $\sigma_\mathrm{vM}$",
-    "creep_strain": r"equivalent creep strain $\varepsilon_\mathrm{c}$",
-    "creep_rate": r"equivalent creep rate $\dot\varepsilon_\mathrm{c}$",
-    "pressure": r"pressure $-\mathrm{tr}\,\sigma/3$",
-    "estimator": r"error estimator $\eta_K$",
-    "error_energy": r"true error $\Vert u-u_h\Vert_{a,K}$",
-    "recovery": "error by recovered strain",
-    "subdomain": "MPI rank",
+SLIPPING, STICKING, NO_FRICTION, NO_CONTACT = 1, 0, -1, -2
+STATE_COLOURS = {
+    SLIPPING: SLIP,
+    STICKING: STICK,
+    NO_FRICTION: FRICTIONLESS,
+    NO_CONTACT: OPEN,
 }
-VECTORS = {
-    "displacement": ("displacement", "u"),
-    "velocity": ("velocity", r"\dot{u}"),
+STATE_NAMES = {
+    SLIPPING: "slip",
+    STICKING: "stick",
+    NO_FRICTION: "no friction",
+    NO_CONTACT: "no contact",
 }
-TENSORS = {
-    "stress": ("stress", r"\sigma"),
-    "irreversible_stress": ("irreversible stress", "z"),
-    "strain": ("strain", r"\varepsilon"),
-    "irreversible_strain": ("irreversible strain", r"\varepsilon^\mathrm{i}"),
-    "principal_stress": ("principal stress", r"\sigma"),
-}
-
-
-class PlainNumbers(ScalarFormatter):
-    """Tick labels as text, which matplotlib would parse as mathematics, each of
-    them: half of the time of a picture.  Their power of ten stays mathematics."""
-
-    def __call__(self, x, pos=None):
-        label = super().__call__(x, pos)
-        return label.removeprefix(r"$\mathdefault{").removesuffix("}$")
-
 
 class Linear(LinearScale):
-    """The linear scale of matplotlib with these labels."""
+    """The linear scale of matplotlib without detached powers of ten."""
 
     def set_default_locators_and_formatters(self, axis):
         super().set_default_locators_and_formatters(axis)
-        axis.set_major_formatter(PlainNumbers())
+        axis.set_major_formatter(Numbers())
 
 
 def set_up():
@@ -87,27 +67,6 @@ def set_up():
             "svg.fonttype": "none",
         }
     )
-
-
-def plain(text):
-    """A name as it is, not as mathematics."""
-    return text.replace("$", r"\$")
-
-
-def field_label(name):
-    if name in SCALARS:
-        return SCALARS[name]
-    if name in VECTORS:
-        word, symbol = VECTORS[name]
-        return f"{word} $|{symbol}|$"
-    stem, _, component = name.rpartition("_")
-    if stem in VECTORS:
-        word, symbol = VECTORS[stem]
-        return f"{word} ${symbol}_{component}$"
-    if stem in TENSORS:
-        word, symbol = TENSORS[stem]
-        return f"{word} ${symbol}_{{{component}}}$"
-    return plain(name)
 
 
 def short(value):
@@ -143,13 +102,17 @@ class Shade:
             self.map = matplotlib.colormaps["RdBu_r"]
             above, below = values.max() > limit, values.min() < -limit
         else:
-            self.map = matplotlib.colormaps["viridis"]
+            # Dark is the end next to zero, and zero itself where it is near.
+            negative = high <= 0.0 and low < 0.0
+            self.map = matplotlib.colormaps["viridis_r" if negative else "viridis"]
             above = below = False
-            if high <= 0.0 and low < 0.0:
+            if negative:
                 limit, below = robust(-values)
                 low = -limit
+                high = 0.0 if high > NEAR_ZERO * low else high
             else:
                 high, above = robust(values)
+                low = 0.0 if 0.0 < low < NEAR_ZERO * high else low
             beyond = above or below
         if high - low <= 1e-9 * max(abs(low), abs(high), 1e-300):
             middle = 0.5 * (low + high)
@@ -162,11 +125,17 @@ class Shade:
         }[(bool(above and beyond), bool(below and beyond))]
         self.norm = Normalize(low, high)
 
+    def ends(self):
+        return self.norm.vmin, self.norm.vmax
+
     def mappable(self):
         return matplotlib.cm.ScalarMappable(self.norm, self.map)
 
     def colours(self, values):
         return self.map(self.norm(values))
+
+
+NEAR_ZERO = 0.3  # of the largest value: colours then begin with zero
 
 
 def robust(values):
@@ -177,16 +146,16 @@ def robust(values):
     return quantile, True
 
 
-def range_label(shade, label, values, separator=" "):
+def range_label(shade, label, values, unit, separator=" "):
     """The label of a colour bar with how far `values` go beyond its ends."""
-    low, high = short(values.min()), short(values.max())
+    low, high = (short(end / unit.size) for end in (values.min(), values.max()))
     beyond = {
         "neither": "",
         "max": f"{separator}(at most {high})",
         "min": f"{separator}(at least {low})",
         "both": f"{separator}({low} to {high})",
     }
-    return label + beyond[shade.extend]
+    return unit.label(label) + beyond[shade.extend]
 
 
 def rounded_magnification(largest, size):
@@ -200,12 +169,22 @@ def rounded_magnification(largest, size):
     return power * max(m for m in (1, 2, 5) if m * power <= wanted)
 
 
-def title(name, time, magnification=None):
-    text = f"{plain(name)}   t = {short(time)}"
+def next_smaller(magnification):
+    """The next of the numbers 1, 2 or 5 times 10^k."""
+    power = 10.0 ** math.floor(math.log10(magnification * 1.0001))
+    leading = round(magnification / power)
+    return power * {1: 0.5, 2: 1.0, 5: 2.0}[leading]
+
+
+def title(name, what, time=None, magnification=None):
+    """What a picture shows: of which run, and when."""
+    text = f"{plain(name)}: {what}"
+    if time is not None:
+        text += f" at $t$ = {time}"
     if magnification == 1.0:
-        return text + "   (true displacement)"
+        return text + ", true displacement"
     if magnification is not None:
-        return text + f"   (displacement × {short(magnification)})"
+        return text + f", displacement × {short(magnification)}"
     return text
 
 
@@ -223,19 +202,40 @@ def state_legend(states):
                 matplotlib.patheffects.Normal(),
             ],
         )
-        for state in (SLIPPING, STICKING, NO_FRICTION)
+        for state in STATE_NAMES
         if (np.asarray(states) == state).any()
     ]
 
 
-def legend_above(axes, handles, columns=None):
+# Words on a picture of a body.
+LABEL = {
+    "fontsize": "small",
+    "ha": "center",
+    "va": "center",
+    "bbox": {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75},
+}
+
+
+def visible_anywhere(width=2.6):
+    """A white border, for lines on dark and on light colours."""
+    return [
+        matplotlib.patheffects.Stroke(linewidth=width, foreground="white", alpha=0.8),
+        matplotlib.patheffects.Normal(),
+    ]
+
+
+def legend_above(axes, handles, most=6):
+    """Keys above a panel, at most so many in a row."""
     if handles:
+        rows = -(-len(handles) // most)
         axes.legend(
             handles=handles,
             loc="lower center",
             bbox_to_anchor=(0.5, 1.02),
-            ncol=columns or len(handles),
+            ncol=-(-len(handles) // rows),
             frameon=False,
+            columnspacing=1.4,
+            handlelength=1.8,
         )
 
 
@@ -244,15 +244,16 @@ def numbers_on_logarithmic_axis(axis, factor=1.0):
 
     factor  between the values and the numbers, 100 for percent
     """
-    low, high = sorted(axis.get_view_interval())
+    low, high = (factor * end for end in sorted(axis.get_view_interval()))
     decades = math.log10(high / low)
     steps = (1, 2, 5) if decades < 2.2 else (1, 3) if decades < 3.2 else (1,)
-    first, last = math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 1
-    ticks = [
-        step * 10.0**power / factor
-        for power in range(first + round(math.log10(factor)), last + 4)
-        for step in steps
-    ]
-    axis.set_major_locator(FixedLocator([t for t in ticks if low <= t <= high]))
-    axis.set_major_formatter(lambda value, _: short(value * factor))
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    numbers = [step * 10.0**power for power in powers for step in steps]
+    axis.set_major_locator(FixedLocator([n / factor for n in numbers if low <= n <= high]))
+    if decades < 5.0:
+        axis.set_major_formatter(lambda value, _: short(value * factor))
+    else:
+        axis.set_major_formatter(
+            lambda value, _: f"$10^{{{round(math.log10(value * factor))}}}$"
+        )
     axis.set_minor_formatter(NullFormatter())

@@ -5,25 +5,26 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
 
-from . import rates, style
+from . import convergence, rates, style
 from .results import NoPicture
-from .study import LADDERS, error_label
+from .study import error_label
 
 MARKERS = {"both": "s", "space": "^", "time": "v"}
 FRONTIER = "#f7e48f"
+GAIN = 0.1  # a run of the frontier lowers the error by so much at least
 
 
-def draw(study, error):
+def draw(study, error, variants=None):
     seconds, errors = study["seconds_total"], study[error]
     if not rates.known(seconds, errors).any():
         raise NoPicture(
             f"no run of {study.directory} has both a known {error} and a time"
         )
-    variants = study.variants()
+    variants = variants or study.groups(error)[0]
     figure, axes = plt.subplots(
         figsize=(7.6, 5.2 + 0.24 * (len(variants) + 1)), layout="constrained"
     )
-    handles, names, looks = [], [], study.looks()
+    handles, names, drawn, looks = [], [], [], study.looks(variants)
     for variant in variants:
         ladders = [
             ladder
@@ -40,6 +41,7 @@ def draw(study, error):
         for ladder in ladders:
             rows = ladder.rows[rates.known(seconds[ladder.rows], errors[ladder.rows])]
             on_curve = ladder in through
+            drawn.append(rows)
             axes.plot(
                 seconds[rows],
                 errors[rows],
@@ -53,14 +55,16 @@ def draw(study, error):
             )
             names.append(ladder.name)
         handles.append(
-            Line2D([], [], color=colour, ls=dashes, lw=2.5, label=study.variant_label(variant))
+            Line2D([], [], lw=2.5, label=study.variant_label(variant), **looks[variant])
         )
-    frontier = rates.efficient_frontier(seconds, errors)
+    # Of the runs drawn, and without those that gain next to nothing.
+    drawn = np.unique(np.concatenate(drawn)) if drawn else np.array([], dtype=int)
+    best = rates.efficient_frontier(seconds[drawn], errors[drawn], GAIN)
+    frontier = rates.without_detours(seconds, errors, drawn[best])
     axes.plot(
         seconds[frontier],
         errors[frontier],
         color=FRONTIER,
-        drawstyle="steps-post",  # between two runs one gets the error of the cheaper
         lw=6,
         solid_joinstyle="round",
         marker="o",
@@ -77,7 +81,7 @@ def draw(study, error):
                 ls="none",
                 marker=MARKERS.get(name, "o"),
                 mfc=style.OUTLINE if name == "both" else "white",
-                label=LADDERS.get(name, name) + " refined",
+                label=study.ladder_label(name) + " refined",
             )
         )
     handles.append(
@@ -88,6 +92,7 @@ def draw(study, error):
     axes.margins(0.08)
     axes.grid(True, which="major", color="#dddddd", lw=0.6)
     axes.set_axisbelow(True)
+    convergence.mark_reference(axes, study.error_of_reference(error), "left")
     style.numbers_on_logarithmic_axis(axes.xaxis)
     style.numbers_on_logarithmic_axis(axes.yaxis, 100)
     axes.set_xlabel(f"wall time [s]{machine(study)}")
@@ -98,10 +103,10 @@ def draw(study, error):
         bbox_to_anchor=(0.5, -0.13),
         ncol=2,
         frameon=False,
+        fontsize=8.5,
+        labelspacing=0.3,
     )
-    figure.suptitle(
-        f"{style.plain(study.name)}: what accuracy costs", fontsize="large"
-    )
+    figure.suptitle(study.title("what accuracy costs", variants), fontsize="large")
     return figure
 
 

@@ -51,8 +51,14 @@ of it instead, which has the cells where they matter.
 slope $p$, which the triangles show. A curve that becomes flat has met the part
 of the error that its ladder leaves alone: where the curve of $h$ alone levels
 out, smaller cells buy nothing before the steps become smaller, too. The dotted
-line is the fit $C_h h^p+C_k k^q$ of all runs of a way to compute; prices are
-read off it, so where it leaves the points the prices do.
+line is the fit $C_h h^p+C_k k^q$ of all runs of a way to compute, drawn where it is
+within 10 % of the finest runs; prices are read off it, and the tables of fits say
+how far it misses the others. In the grey below, differences say more of the error
+that the reference itself is estimated to have than of the run: curves level out
+there, or fall without a reason.
+
+**Pictures show the best of each strategy**, the scheme that is cheapest at the
+smallest error that all schemes of that strategy reach; the tables have all of them.
 
 **Work and precision.** Each point is a run: to the left is cheap, below is
 accurate. Compare curves along a horizontal line, at the error that you want:
@@ -62,10 +68,11 @@ error. A method of higher order is steeper; it pays beyond the crossing only. A
 point far to the upper right of its curve was refined in one of $h$ and $k$
 alone, and paid for the wrong one.
 
-**The efficient frontier**, in yellow, joins the runs that no other run beats in
-both time and error. Between two of its runs one gets the error of the cheaper
-one, hence the stairs. Whatever does not touch it is not worth running; which
-ways to compute do is the answer to "which scheme, which mesh".
+**The efficient frontier**, in yellow, joins the runs drawn that no other one beats
+in both time and error, without those that gain little: an error less than a tenth
+smaller than that of the one before, or more than a fifth above the line between its
+neighbours. Whatever does not touch it is not worth running; which ways to compute
+do is the answer to "which scheme, which mesh".
 
 **Cost by phase.** The share of each phase in the time of a run, and its total
 on a logarithmic scale. Where the contact problem takes most of the time a
@@ -211,12 +218,14 @@ def render(parts):
     return TEMPLATE.format(diagrams=diagrams, fixed=plan.FIXED_TOLERANCE, **parts)
 
 
-def write(file, name, text):
-    """Replace one computed part of the page."""
+def write(file, name=None, text=None):
+    """Write the page anew with one computed part replaced, or with those it has."""
     parts = {}
     if file.exists():
         parts = parts_of(file.read_text(encoding="utf-8"))
         if not parts:
             raise UserError(f"{file} is no page of contrib/make_results")
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(render({**parts, name: text}), encoding="utf-8")
+    if name is not None:
+        parts[name] = text
+    file.write_text(render(parts), encoding="utf-8")

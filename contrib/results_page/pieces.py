@@ -112,11 +112,19 @@ def manufactured_cases():
     return cases
 
 
+def unilateral(friction_law, contact_law):
+    """What a contact piece has: its friction law, and whether it may open."""
+    opens = contact_law in ("unilateral", "normal compliance")
+    return f"{friction_law}, {contact_law}" if opens else friction_law
+
+
 def facts(scene, law, mesh):
     """What the table of convergence says of a case."""
     parameters = read_parameters(scene)
     friction = dict.fromkeys(
-        value for key, value in parameters.items() if key[1:] == ("Friction law",)
+        unilateral(value, parameters.get((key[0], "Contact law")))
+        for key, value in parameters.items()
+        if key[1:] == ("Friction law",)
     )
     name = parameters.get(("Material", "Law"), "elastic")
     if law is not None:
@@ -180,18 +188,25 @@ def diagram_study(name, runner):
     return runner.study(name, [SCENES / f"{name}.prm"], {**plan.COUPLED, **overrides})
 
 
-def diagram(name, runner, images):
-    """Pictures and fits of one scene."""
-    study = diagram_study(name, runner)
-    error = study.error()
+def draw_diagram(name, study, images):
+    """Draw the pictures of one scene; {module: path from the page}."""
+    style.set_up()
     pictures = {}
     for module in (work_precision, convergence, cost):
         picture = f"accuracy_{name}_{module.__name__.rpartition('.')[2]}.png"
         images.mkdir(parents=True, exist_ok=True)
-        figure = module.draw(study, error)
-        figure.savefig(images / picture, dpi=110, bbox_inches="tight", pad_inches=0.15)
+        figure = module.draw(study, study.error())
+        figure.savefig(images / picture, dpi=130, bbox_inches="tight", pad_inches=0.15)
         plt.close(figure)
         pictures[module] = f"images/{picture}"
+    return pictures
+
+
+def diagram(name, runner, images):
+    """Pictures and fits of one scene."""
+    study = diagram_study(name, runner)
+    error = study.error()
+    pictures = draw_diagram(name, study, images)
     return (
         f"![Error over seconds]({pictures[work_precision]})\n\n"
         + f"![Error over mesh width and time step]({pictures[convergence]})\n\n"

@@ -5,11 +5,12 @@ import csv
 import json
 import re
 import xml.etree.ElementTree as ElementTree
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from .tables import UserError, frame
+from .tables import UserError, frame, without_unit
 
 
 class NotAvailable(UserError):
@@ -42,7 +43,9 @@ class Record:
             points.append(np.asarray(mesh.points, dtype=float))
             for block in mesh.cells:
                 cells.append(np.asarray(block.data) + n_points)
-            data.append(mesh.point_data)
+            data.append(
+                {without_unit(name): field for name, field in mesh.point_data.items()}
+            )
             n_points += len(mesh.points)
         if not points:
             raise UserError(f"{path} contains no cells")
@@ -124,7 +127,7 @@ def number(path):
 
 
 def read_statistics(path):
-    """The columns of statistics.csv that are numbers, by name.
+    """The columns of statistics.csv that are numbers, by name without unit.
 
     The last row may be one that a run is just writing, or was when it ended.
     """
@@ -148,7 +151,7 @@ def read_statistics(path):
             )
     for name, *values in zip(*rows):
         try:
-            columns[name.strip()] = np.array([float(value) for value in values])
+            columns[without_unit(name)] = np.array([float(value) for value in values])
         except ValueError:
             continue
     if not np.isfinite(columns.get("t", ())).all():
@@ -213,6 +216,16 @@ class Results:
         return read_parameters(self.directory / "parameters.prm")
 
     @property
+    def data(self):
+        """The same with all numbers in the units of the scene, also where the
+        scene has written others."""
+        result = dict(self.parameters)
+        if (self.directory / "run.json").exists():
+            for path, text in self.info.get("entries_with_units", {}).items():
+                result[tuple(path.split("/"))] = text
+        return result
+
+    @property
     def info(self):
         """What run.json says: version, ranks, effects, estimated errors."""
         path = self.directory / "run.json"
@@ -221,12 +234,41 @@ class Results:
         except (OSError, ValueError) as error:
             raise UserError(f"{path} cannot be read: {error}") from error
 
+    @cached_property
+    def units(self):
+        """The units of length, time and stress that the scene declares, as
+        {"length": "m", ...}; empty where it declares none."""
+        if not (self.directory / "run.json").exists():
+            return {}
+        return self.info.get("units") or {}
+
     def vector(self, prefix):
         """The columns prefix_x, prefix_y(, prefix_z) as one array (step, axis);
         vector("point0") is the displacement of the first of `Output/Points'."""
         names = [f"{prefix}_{axis}" for axis in "xyz"]
         found = [name for name in names if name in self.statistics]
         return np.stack([self.column(name) for name in found or names], axis=1)
+
+    def lines(self):
+        """What has been recorded along each line of `Output/Lines': the columns of
+        line_0.csv and so on, by name, one time after the other."""
+        # Files of an earlier run may be beside them.
+        given = self.parameters.get(("Output", "Lines"), "").split(";")
+        paths = [
+            self.directory / f"line_{number}.csv"
+            for number in range(sum(bool(line.strip()) for line in given))
+        ]
+        return [line for line in map(read_statistics, paths) if line]
+
+    def line(self, number=0):
+        """One of them."""
+        found = self.lines()
+        if not 0 <= number < len(found):
+            raise NotAvailable(
+                f"{self.directory} has {len(found)} lines ('Output/Lines'), none with "
+                f"the number {number}"
+            )
+        return found[number]
 
     def frame(self):
         """The statistics as a pandas.DataFrame."""
@@ -279,6 +321,12 @@ class Results:
         if abs(nearest[0] - time) > 1e-9 * max(abs(time), abs(nearest[0])):
             return None
         return self.read(nearest[1])
+
+    def boundary(self):
+        """The faces of the boundary at the first output with their `boundary_id',
+        or None in results of versions that did not write them."""
+        path = self.directory / "boundary_00000.pvtu"
+        return self.read(path) if path.exists() else None
 
     def dimension(self):
         return 2 if self.body(0).cells.shape[1] == 4 else 3

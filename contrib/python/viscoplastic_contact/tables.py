@@ -3,6 +3,7 @@
 
 import csv
 import json
+import re
 
 import numpy as np
 
@@ -15,6 +16,11 @@ COEFFICIENTS = ("C_h", "p", "C_k", "q", "m")  # of a fit
 
 class UserError(Exception):
     """Something the user can mend; its text is the whole message."""
+
+
+def without_unit(name):
+    """The name of a column or a field, which a unit may follow: `t [day]'."""
+    return re.sub(r"\s*\[[^\]]*\]$", "", name.strip())
 
 
 def frame(columns):
@@ -47,7 +53,7 @@ def read_study_table(path):
         raise UserError(f"{path} cannot be read: {error}") from error
     if len(rows) < 2:
         raise UserError(f"{path} has no runs")
-    names = [name.strip() for name in rows[0]]
+    names = [without_unit(name) for name in rows[0]]
     missing = [name for name in NEEDED if name not in names]
     if missing:
         raise UserError(f"{path} lacks the columns " + ", ".join(missing))

@@ -435,13 +435,7 @@ namespace Viscoplastic
 
       if (!aside.empty())
         remove_own(aside, remarks);
-      std::vector<std::string> older;
-      for (const Entry &entry : entries())
-        if (entry.is_complete && entry.n < manifest.n &&
-            !own_files(entry.path).empty())
-          older.push_back(entry.path);
-      for (std::size_t i = 0; i + n_kept <= older.size(); ++i)
-        remove_own(older[i], remarks);
+      remove_before(manifest.n, n_kept, remarks);
     }));
     return Utilities::MPI::broadcast(communicator, remarks);
   }
@@ -504,8 +498,24 @@ namespace Viscoplastic
 
 
 
+  void
+  CheckpointStore::remove_before(const unsigned int        n,
+                                 const unsigned int        n_kept,
+                                 std::vector<std::string> &remarks) const
+  {
+    std::vector<std::string> older;
+    for (const Entry &entry : entries())
+      if (entry.is_complete && entry.n < n && !own_files(entry.path).empty())
+        older.push_back(entry.path);
+    for (std::size_t i = 0; i + n_kept <= older.size(); ++i)
+      remove_own(older[i], remarks);
+  }
+
+
+
   CheckpointStore::Removal
-  CheckpointStore::remove_if(const bool all, const unsigned int after) const
+  CheckpointStore::remove_others(const unsigned int n,
+                                 const unsigned int n_kept) const
   {
     Removal            removal;
     std::vector<Entry> found; // on rank 0
@@ -515,12 +525,14 @@ namespace Viscoplastic
     });
     const std::string failure = attempt([&]() {
       for (const Entry &entry : found)
-        if (all || entry.n > after || !entry.is_complete)
+        if (n_kept == 0 || entry.n > n || !entry.is_complete)
           {
             const bool was_ours = remove_own(entry.path, removal.remarks);
             if (was_ours && entry.is_complete)
               ++removal.n_checkpoints;
           }
+      if (rank == 0 && n_kept > 0)
+        remove_before(n, n_kept, removal.remarks);
     });
     const std::string text = common_failure(failure, communicator);
     AssertThrow(text.empty(),
@@ -535,16 +547,8 @@ namespace Viscoplastic
 
 
   CheckpointStore::Removal
-  CheckpointStore::remove_after(const unsigned int n) const
-  {
-    return remove_if(false, n);
-  }
-
-
-
-  CheckpointStore::Removal
   CheckpointStore::remove_all() const
   {
-    return remove_if(true, 0);
+    return remove_others(0, 0);
   }
 } // namespace Viscoplastic

@@ -328,7 +328,8 @@ namespace Viscoplastic
     output.emplace(scene, communicator);
     output->resume(output_times);
     lines.resume(output->directory(), state.n);
-    for (const std::string &remark : store.remove_after(state.n).remarks)
+    for (const std::string &remark :
+         store.remove_others(state.n, parameters.checkpoint.keep).remarks)
       console.remark(remark);
 
     out << "Restart after step " << state.n << " (t = " << state.t

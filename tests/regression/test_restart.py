@@ -916,6 +916,14 @@ class Changes(RestartCase):
             self.assertIn("nothing left to do", result.stdout)
             self.assertIdentical(job.results, self.reference.results)
 
+    def test_killed_before_the_oldest_was_removed(self):
+        with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
+            last = job.steps()[-2:]
+            job.overrides = {**job.overrides, "Checkpoint/Keep": 2}
+            job.run("--restart")
+            self.assertEqual(job.steps(), last)
+            self.assertIdentical(job.results, self.reference.results)
+
     def test_tolerance_and_output(self):
         with Job("slab_adaptive", self.reference.overrides, self.reference) as job:
             job.forget_after(9)

@@ -93,10 +93,13 @@ namespace Viscoplastic
       std::vector<std::string> remarks;
     };
 
-    /// Remove checkpoints after step @p n, and what has been left of unfinished
-    /// ones.
+    /**
+     * Remove checkpoints after step @p n, what has been left of unfinished
+     * ones, and all but the newest @p n_kept up to step @p n: a run may have
+     * been killed after it had written one, before it removed the oldest.
+     */
     Removal
-    remove_after(const unsigned int n) const;
+    remove_others(const unsigned int n, const unsigned int n_kept) const;
 
     /// Remove all checkpoints.
     Removal
@@ -117,8 +120,12 @@ namespace Viscoplastic
     std::vector<Entry>
     entries() const;
 
-    Removal
-    remove_if(const bool all, const unsigned int after) const;
+    /// Remove all but the newest @p n_kept (at least one) up to step @p n,
+    /// which is there. Not collective.
+    void
+    remove_before(const unsigned int        n,
+                  const unsigned int        n_kept,
+                  std::vector<std::string> &remarks) const;
 
     const MPI_Comm     communicator;
     const unsigned int rank, n_ranks;

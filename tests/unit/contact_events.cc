@@ -16,10 +16,6 @@ namespace
   using namespace dealii;
   using namespace Viscoplastic;
 
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-
-
-
   /// Points with sticking given by '.', slip to the right or left by '>', '<'.
   FrictionState
   points(const std::string &signs, const std::vector<double> &bounds = {})
@@ -59,7 +55,9 @@ namespace
     EXPECT_FALSE(has_contact_event(face, points("..>"), points("..<"), true));
     EXPECT_TRUE(has_contact_event(face, points("..."), points("..<"), true));
     // Points without friction slip always, glued ones never.
-    const std::vector<double> bounds{0., 1., infinity};
+    const std::vector<double> bounds{0.,
+                                     1.,
+                                     std::numeric_limits<double>::infinity()};
     EXPECT_FALSE(
       has_contact_event(face, points(">.."), points(">..", bounds), false));
     EXPECT_TRUE(

@@ -263,7 +263,7 @@ namespace
   /// A rotated box with contact and symmetry planes and hanging nodes on them.
   template <int dim>
   std::unique_ptr<Body<dim>>
-  rotated_body(const bool mean_dilatation)
+  oblique_body(const bool mean_dilatation)
   {
     std::string text =
       box<dim>(2, oblique<dim>()) +
@@ -292,7 +292,7 @@ namespace
     constexpr int dim = TypeParam::value;
     for (const bool mean_dilatation : {false, true})
       {
-        const auto body = rotated_body<dim>(mean_dilatation);
+        const auto body = oblique_body<dim>(mean_dilatation);
         EXPECT_GT(
           Utilities::MPI::sum(body->space->hanging_nodes().n_constraints(),
                               MPI_COMM_WORLD),
@@ -341,7 +341,7 @@ namespace
     constexpr int dim = TypeParam::value;
     for (const bool mean_dilatation : {false, true})
       {
-        const auto body = rotated_body<dim>(mean_dilatation);
+        const auto body = oblique_body<dim>(mean_dilatation);
         // (z, eps(v)) for z = E eps(u) is a(u, v).
         const DistributedVector u = body->rough_vector(0.3);
         IrreversibleStress      z(body->stress_space->n_cells() *

@@ -17,10 +17,6 @@ namespace
   using namespace Viscoplastic;
   using namespace Viscoplastic::Testing;
 
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-
-
-
   /// 1/2 lambda . C lambda - q . lambda.
   double
   dual_energy(const Tensor<2, 2> &C,
@@ -152,8 +148,8 @@ namespace
         const PointSolution free = solve_friction_point(C, q, n_tangents, 0.);
         EXPECT_EQ(free.multiplier.norm(), 0.);
         EXPECT_FALSE(free.sticks);
-        const PointSolution glued =
-          solve_friction_point(C, q, n_tangents, infinity);
+        const PointSolution glued = solve_friction_point(
+          C, q, n_tangents, std::numeric_limits<double>::infinity());
         EXPECT_TRUE(glued.sticks);
         EXPECT_NEAR((C * glued.multiplier)[0], q[0], 1e-14);
         const PointSolution unloaded =

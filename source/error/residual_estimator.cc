@@ -2,6 +2,7 @@
 #include <deal.II/distributed/tria_base.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
+#include <viscoplastic_contact/contact/normal_compliance.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 #include <viscoplastic_contact/laws/strain.h>
 
@@ -235,6 +236,28 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  ResidualEstimator<dim>::off_the_law(const BoundaryFace &face,
+                                      const unsigned int  q,
+                                      const double        w,
+                                      const double        p) const
+  {
+    const double k =
+      cells[face.cell].stiffness.smallest_deviatoric_eigenvalue() /
+      face.diameter;
+    if (!face.condition->gives_way())
+      return w > 0. ? k * w : std::min(-k * w, p);
+    NormalCompliance foundation;
+    foundation.add(face.compliances[q], face.condition->compliance_exponent);
+    const double another_pressure = std::abs(p - foundation.force(w));
+    return p > 0. ? std::min(k * std::abs(w - foundation.penetration(p)),
+                             another_pressure) :
+                    std::min(k * std::max(0., w), another_pressure);
+  }
+
+
+
+  template <int dim>
   typename ResidualEstimator<dim>::Residuals
   ResidualEstimator<dim>::boundary_residuals(
     const BoundaryFace   &face,
@@ -248,19 +271,24 @@ namespace Viscoplastic
                varies =
                  condition.carries_load() && condition.load_depends_on_time(),
                has_bound   = condition.has_given_bound(),
-               bounds_vary = has_bound && condition.bound_depends_on_time();
+               opens       = condition.is_unilateral(),
+               bounds_vary = condition.bound_depends_on_time();
     Assert(!has_multipliers || fields.multiplier_density != nullptr,
            ExcMessage("A scene with friction has multipliers."));
     Residuals result;
     for (unsigned int q = 0; q < n_face_points; ++q)
       {
-        Tensor<1, dim> density, given;
-        if (has_multipliers)
+        const auto at_point = [&](const double *nodal) {
+          Tensor<1, dim> value;
           for (unsigned int v = 0; v < n_vertices; ++v)
             for (unsigned int d = 0; d < dim; ++d)
-              density[d] +=
-                face_values[face.face][q][v] *
-                fields.multiplier_density->begin()[cell.nodes[v] + d];
+              value[d] +=
+                face_values[face.face][q][v] * nodal[cell.nodes[v] + d];
+          return value;
+        };
+        Tensor<1, dim> density, given;
+        if (has_multipliers)
+          density = at_point(fields.multiplier_density->begin());
         if (fields.t)
           {
             given =
@@ -276,6 +304,18 @@ namespace Viscoplastic
                            (bounds_vary ?
                               condition.bound(face.positions[q], *fields.t) :
                               face.bounds[q]));
+            if (opens)
+              {
+                const double gap =
+                  bounds_vary ? condition.gap(face.positions[q], *fields.t) :
+                                face.gaps[q];
+                result[n_face_points + q][1] =
+                  off_the_law(face,
+                              q,
+                              at_point(fields.u.begin()) * condition.normal -
+                                gap,
+                              std::max(0., density * condition.normal));
+              }
           }
         result[q] = contradiction(condition, tractions[q], given, density);
       }

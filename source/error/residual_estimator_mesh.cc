@@ -304,7 +304,7 @@ namespace Viscoplastic
     const BoundaryCondition<dim> &condition)
   {
     BoundaryFace face{
-      number, f, &condition, cell->face(f)->diameter(), {}, {}, {}};
+      number, f, &condition, cell->face(f)->diameter(), {}, {}, {}, {}, {}};
     const FaceShape &shape = shapes[cells[number].shape].faces[f];
     for (unsigned int q = 0; q < n_face_points; ++q)
       {
@@ -314,6 +314,10 @@ namespace Viscoplastic
           face.data[q] = condition.load(x, shape.normals[q], 0.);
         if (condition.has_given_bound() && !condition.bound_depends_on_time())
           face.bounds[q] = condition.bound(x, 0.);
+        if (condition.is_unilateral() && !condition.bound_depends_on_time())
+          face.gaps[q] = condition.gap(x, 0.);
+        if (condition.gives_way())
+          face.compliances[q] = condition.compliance(x);
       }
     boundary_faces.push_back(face);
   }

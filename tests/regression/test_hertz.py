@@ -435,49 +435,69 @@ class Punch(Contact):
 
 
 class Indentation(Contact):
-    MODULUS, LONG_TERM, TIME, NU, RADIUS = 1, 0.3, 1, 0.3, 100
-    PLANE = {
+    MODULUS, LONG_TERM, NU, RADIUS = 1, 0.3, 0.3, 100
+    ZENER = {
         "Material/Law": "zener",
         "Material/zener/Long-term Young's modulus": LONG_TERM,
         "Material/zener/Long-term Poisson's ratio": NU,
-        "Material/zener/Relaxation time": TIME,
+        "Material/zener/Relaxation time": 1,
+    }
+    SHEAR, BULK = MODULUS / (2 * (1 + NU)), MODULUS / (3 * (1 - 2 * NU))
+    MAXWELL = {"Material/Law": "maxwell", "Material/maxwell/Viscosity": SHEAR}
+    PLANE = {
         "Material/Stress history": "quadrature points",
-        "Boundary 4/Foundation displacement": "-0.006*min(10*t, 1) - 0.007*t",
         "Time/Phases": "0.1: 2, 2: 10",
         "Time/Scheme": "Heun",
     }
+    # 1/E* as it grows under a load: c + r t - d exp(-t/theta), as (c, r, d, theta)
+    CREEP_OF_ZENER = (
+        (1 - NU**2) / LONG_TERM,
+        0,
+        (1 - NU**2) * (1 / LONG_TERM - 1 / MODULUS),
+        MODULUS / LONG_TERM,
+    )
+    # 1/E* = 1/(4 mu) + 3/(4 (3 K + mu)), where shear alone relaxes, in time 1
+    CREEP_OF_MAXWELL = (
+        1 / (4 * SHEAR) + 1 / (4 * BULK),
+        1 / (4 * SHEAR),
+        1 / (4 * BULK) - 3 / (4 * (3 * BULK + SHEAR)),
+        (3 * BULK + SHEAR) / (3 * BULK),
+    )
 
-    def creep(self, t, values):
+    def creep(self, law, t, values):
         """int J(t - s) d values(s) at all t, values linear between."""
-        long, rate = 1 / self.LONG_TERM, self.LONG_TERM / (self.MODULUS * self.TIME)
+        constant, rate, decaying, time = law
         result = np.zeros_like(values)
         for n in range(1, len(t)):
             a, b = t[n] - t[1 : n + 1], t[n] - t[:n]
-            mean = (np.exp(-rate * a) - np.exp(-rate * b)) / (rate * (b - a))
-            kernel = long - (long - 1 / self.MODULUS) * mean
+            mean = (np.exp(-a / time) - np.exp(-b / time)) * time / (b - a)
+            kernel = constant + rate * (a + b) / 2 - decaying * mean
             result[n] = np.tensordot(kernel, np.diff(values[: n + 1], axis=0), 1)
         return result
 
-    def check(self, result, dim, area, radius, pressure):
+    def check(self, result, dim, law, area, radius, pressure):
         t = result["t"]
         force = 2 ** (dim - 1) * abs(result[f"contact_force_{'xyz'[dim - 1]}"])
-        strain = (1 - self.NU**2) * self.creep(t, force)
+        strain = self.creep(law, t, force)
         if dim == 2:
             a = np.sqrt(4 * strain * self.RADIUS / np.pi)
-            peak = a / (2 * self.RADIUS * (1 - self.NU**2))
+            peak = a / (2 * self.RADIUS)
         else:
             a = (0.75 * strain * self.RADIUS) ** (1 / 3)
-            peak = 2 * a / (np.pi * self.RADIUS * (1 - self.NU**2))
+            peak = 2 * a / (np.pi * self.RADIUS)
         self.assertTrue(np.all(np.diff(a) > 0), "contact grows")
         # an elastic body with this force would have a much smaller radius
-        self.assertLess((force[-1] / self.creep(t, force)[-1]) ** (1 / dim), 0.83)
+        elastic = (1 - self.NU**2) / self.MODULUS * force[-1]
+        self.assertLess((elastic / strain[-1]) ** (1 / dim), 0.83)
 
         profiles = [Profile(result, i) for i in range(len(t))]
         for profile in profiles[1:]:
             self.check_complementary(profile)
         r = np.linalg.norm(profiles[0].points[:, : dim - 1], axis=1)
         h = np.unique(np.round(profiles[0].x, 6))[1]
-        elastic = self.creep(t, np.array([profile.pressure for profile in profiles]))
+        elastic = self.creep(
+            law, t, np.array([profile.pressure for profile in profiles])
+        )
         touching = result["contact_area"]
         if dim == 3:
             touching = np.sqrt(4 * touching / np.pi)
@@ -499,14 +519,34 @@ class Indentation(Contact):
         self.errors = []
 
     def test_plane(self):
-        result = run("hertz_2d", self.PLANE)
+        path = {"Boundary 4/Foundation displacement": "-0.006*min(10*t, 1) - 0.007*t"}
+        result = run("hertz_2d", {**self.PLANE, **self.ZENER, **path})
         # measured: 0.53 of a cell, 0.0019, 0.0071
-        self.check(result, 2, area=1, radius=0.005, pressure=0.015)
+        self.check(result, 2, self.CREEP_OF_ZENER, area=1, radius=0.005, pressure=0.015)
 
     def test_space(self):
         # measured: 0.22 of a cell, 0.0296, 0.0379, falling as a grows to 8 cells
         result = run("indentation_3d")
-        self.check(result, 3, area=0.5, radius=0.06, pressure=0.08)
+        self.check(
+            result, 3, self.CREEP_OF_ZENER, area=0.5, radius=0.06, pressure=0.08
+        )
+
+    def test_constant_load(self):
+        """The radius grows at a force that stays."""
+        total = 0.004
+        load = {
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Pressure": f"{total / 16}*min(10*t, 1)",
+            "Boundary 4/Foundation displacement": "0",
+        }
+        for law, creep in (
+            (self.ZENER, self.CREEP_OF_ZENER),
+            (self.MAXWELL, self.CREEP_OF_MAXWELL),
+        ):
+            result = run("hertz_2d", {**self.PLANE, **law, **load})
+            self.assertClose(abs(result["contact_force_y"][2:]), total, relative=1e-8)
+            # measured: 0.86 of a cell, 0.0037, 0.0053
+            self.check(result, 2, creep, area=1.5, radius=0.01, pressure=0.015)
 
 
 if __name__ == "__main__":

@@ -182,6 +182,82 @@ namespace
 
 
 
+  /// A body moved by w into the foundation below it, with a pressure p: by how
+  /// much that contradicts the law of the foundation.
+  TYPED_TEST(Estimate, SeesStatesThatNoFoundationHas)
+  {
+    constexpr int dim = TypeParam::value;
+    struct Case
+    {
+      std::string foundation;
+      double      w, p, nearest_w, nearest_p; // with the same p, the same w
+    };
+    const std::string rigid = "set Contact law = unilateral\n",
+                      soft  = "set Contact law = normal compliance\n"
+                              "set Compliance = 4\n"
+                              "set Compliance exponent = 2\n";
+    // w and p in places of gap and zero; 4 w^2 is 0.01 at 0.05
+    constexpr double none = 1e10;
+    for (const Case &c : {Case{rigid, 0.01, 0., 0., none},
+                          Case{rigid, 0.01, 0.2, 0., none},
+                          Case{rigid, -0.01, 0., -0.01, 0.},
+                          Case{rigid, -0.01, 0.2, 0., 0.},
+                          Case{rigid, -0.01, 1e-3, 0., 0.},
+                          Case{soft, 0.05, 0.01, 0.05, 0.01},
+                          Case{soft, 0.05, 0.02, std::sqrt(0.005), 0.01},
+                          Case{soft, 0.5, 0.25, 0.25, 1.},
+                          Case{soft, 0.05, 0., 0., 0.01},
+                          Case{soft, -0.01, 1e-3, std::sqrt(2.5e-4), 0.},
+                          Case{soft, -0.01, 0., -0.01, 0.}})
+      for (const bool moves : {false, true})
+        {
+          std::string text =
+            box<dim>(2) +
+            boundary(2,
+                     "set Role = contact\n" + c.foundation +
+                       "set Gap = " + (moves ? "0.06*t" : "0.03") +
+                       "\nset Friction law = none\n");
+          for (unsigned int id = 0; id < 2 * dim; ++id)
+            if (id != 2)
+              text += boundary(id, "set Role = clamped\n");
+          SampledBody<dim> body(text);
+          body.refine_where([](const Point<dim> &x) { return x[0] < 0.7; });
+          body.set_up();
+          const auto downwards = [](const double value) {
+            return [value](const Point<dim> &) {
+              return -value * Point<dim>::unit_vector(1);
+            };
+          };
+          const DistributedVector density = body.interpolate(downwards(c.p));
+          const Vector<double>    estimate =
+            residual_estimate(*body.stress_space,
+                              body.interpolate(downwards(0.03 + c.w)),
+                              {},
+                              0.5,
+                              &density);
+          for (const auto &cell : body.triangulation.active_cell_iterators())
+            {
+              double expected = 0.;
+              if (cell->is_locally_owned())
+                for (const unsigned int f : cell->face_indices())
+                  if (cell->at_boundary(f) && cell->face(f)->boundary_id() == 2)
+                    {
+                      const double h = cell->face(f)->diameter();
+                      const double off =
+                        std::min(2. * mu / h * std::abs(c.w - c.nearest_w),
+                                 std::abs(c.p - c.nearest_p));
+                      // the body has no stress to balance the pressure
+                      expected = h * cell->face(f)->measure() *
+                                 (off * off + c.p * c.p) / (2. * mu);
+                    }
+              EXPECT_NEAR(estimate[cell->active_cell_index()], expected, 1e-14)
+                << c.foundation << c.w << ' ' << c.p;
+            }
+        }
+  }
+
+
+
   /// A kink where the materials meet is no error.
   TYPED_TEST(Estimate, RecoveredStrainOfTwoMaterialsIsThatOfEach)
   {

@@ -35,6 +35,10 @@ namespace Viscoplastic
    * the contact solver's multipliers satisfy the friction law to rounding.
    * Between nodes the density exceeds a bound that jumps, which counts.
    *
+   * Where contact opens, the whole traction is compared with the density, and
+   * off_the_law() counts besides, like a traction: u_nu - g and the density
+   * between the nodes are not those of one state of the foundation.
+   *
    * The estimate bounds the error of one step for given z; the error that has
    * accumulated in z is not part of it. An initial stress, which may vary in
    * cells and balance the loads there, is taken as it is, and not as the cell
@@ -165,6 +169,8 @@ namespace Viscoplastic
       /// they do not depend on time.
       std::array<Tensor<1, dim>, n_face_points> data;
       std::array<double, n_face_points>         bounds;
+      /// g of contact that opens, if it does not depend on time, and c.
+      std::array<double, n_face_points> gaps, compliances;
     };
 
     /// What makes the stress at points of one cell.
@@ -219,12 +225,30 @@ namespace Viscoplastic
                const StressTerms &terms,
                const bool         one_point) const;
 
-    /// The contradictions of tractions to the data at the points of a face,
-    /// and behind them by how much the density of friction exceeds its bound.
+    /// The contradictions of tractions to the data at the points of a face, and
+    /// behind them what is amiss with friction, by how much the density exceeds
+    /// its bound, and with contact that opens, off_the_law().
     Residuals
     boundary_residuals(const BoundaryFace   &face,
                        const Fields         &fields,
                        const Tensor<1, dim> *tractions) const;
+
+    /**
+     * How far the penetration w = u_nu - g and the pressure p at a point of a
+     * face are from each other by the law of the foundation,
+     *
+     *     min(k |w - w(p)|, |p - p(w)|),   k = 2 mu/h_e,
+     *
+     * in stress: as if the body closed a gap, or left a penetration, like a
+     * spring, or felt another pressure, whichever is less. For a rigid
+     * foundation w(p) = 0, or any w <= 0 without pressure, and p(w) = 0 where
+     * it does not touch: k w of what penetrates, min(k g, p) of a gap.
+     */
+    double
+    off_the_law(const BoundaryFace &face,
+                const unsigned int  q,
+                const double        w,
+                const double        p) const;
 
     /// Where residuals are.
     enum class Part

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -186,6 +188,44 @@ namespace Viscoplastic
                         "lengths of the sides");
         }
     }
+
+
+
+    /**
+     * Turn the cells of a coarse mesh so that each line runs the same way in
+     * all of them, where that is possible. Where lines run against each other
+     * (in a quarter of a ball), p4est keeps the balance of refined meshes in 3D
+     * differently from deal.II, whose cells are then no longer those of p4est:
+     * some refinements end in a crash.
+     */
+    void
+    orient_cells(parallel::distributed::Triangulation<3> &triangulation)
+    {
+      bool are_oriented = true;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        for (const unsigned int l : cell->line_indices())
+          are_oriented = are_oriented && cell->line_orientation(l);
+      if (are_oriented)
+        return;
+      auto [vertices, cells, faces] =
+        GridTools::get_coarse_mesh_description(triangulation);
+      try
+        {
+          GridTools::consistently_order_cells(cells);
+        }
+      catch (const ExcMeshNotOrientable &)
+        {
+          return;
+        }
+      std::map<types::manifold_id, std::unique_ptr<Manifold<3>>> manifolds;
+      for (const types::manifold_id id : triangulation.get_manifold_ids())
+        if (id != numbers::flat_manifold_id)
+          manifolds[id] = triangulation.get_manifold(id).clone();
+      triangulation.clear();
+      triangulation.create_triangulation(vertices, cells, faces);
+      for (const auto &[id, manifold] : manifolds)
+        triangulation.set_manifold(id, *manifold);
+    }
   } // namespace
 
 
@@ -221,6 +261,8 @@ namespace Viscoplastic
     AssertThrow(triangulation.all_reference_cells_are_hyper_cube(),
                 ExcMessage("The mesh must consist of quadrilaterals or "
                            "hexahedra; simplices are not supported."));
+    if constexpr (dim == 3)
+      orient_cells(triangulation);
   }
 
 

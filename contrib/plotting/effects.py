@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import style
-from .results import NoPicture, read_effects
+from .results import NoPicture, UserError, read_effects
 
 VERDICTS = {
     "called for": style.SERIES[1],

@@ -2,7 +2,9 @@
 """Studies of effects: what each simplification changes and costs, and whether
 the verdict is the right one."""
 
+import contextlib
 import csv
+import io
 import json
 import sys
 import tempfile
@@ -16,6 +18,7 @@ from test_study import VERIFICATION, Folder
 sys.path.insert(0, str(SOURCE / "contrib"))
 
 from plotting import effects as picture
+from plotting.command import main as plot
 from plotting.results import read_statistics
 
 SLAB = {
@@ -225,6 +228,10 @@ class Effects(TestCase):
                 len(figure.axes[0].get_yticks()),
                 sum(not effect["failure"] for effect in about["effects"]),
             )
+            errors = io.StringIO()
+            with contextlib.redirect_stderr(errors):
+                self.assertNotEqual(plot([str(scene.effects), "loop"]), 0)
+            self.assertIn("one picture, which goes without a name", errors.getvalue())
 
     def test_to_a_tolerance(self):
         with Scene(

@@ -27,7 +27,7 @@ namespace Viscoplastic
 
   /**
    * The constant elastic operator as solvers of contact see it: the energy
-   * 1/2 a(u,u) - l(u) with everything but friction. It is set up once a mesh;
+   * 1/2 a(u,u) - l(u) with everything but contact. It is set up once a mesh;
    * only the truncation of the face changes from solve to solve.
    *
    * The displacement stays inside. A contact solver moves it by the calls below
@@ -87,7 +87,7 @@ namespace Viscoplastic
           const double             tolerance) = 0;
 
     /**
-     * Begin a frictional solve at @p u; both vectors stay in use until
+     * Begin a solve with contact at @p u; both vectors stay in use until
      * finish().
      */
     virtual void

@@ -8,7 +8,7 @@
 
 namespace Viscoplastic
 {
-  /// How a frictional solve went.
+  /// How a solve with contact went.
   struct ContactReport
   {
     /// Corrections of the active set iteration.
@@ -69,7 +69,7 @@ namespace Viscoplastic
    * the defect eps = sum rho |s| - lambda . s + sum p (d - s) of
    * complementarity, gap = 1/2 |R|^2 + eps in
    * the dual energy norm and |error| <= (|R| + sqrt(|R|^2 + 4 eps))/2. The
-   * multipliers satisfy the friction law exactly (eps = 0), except at points
+   * multipliers satisfy the laws of contact exactly (eps = 0), except at points
    * that have hardly begun to slip.
    */
   class ContactSolver

@@ -134,7 +134,8 @@ namespace Viscoplastic
     void
     restrict_to_unknowns(DistributedVector &in_frames) const;
 
-    /// A node with conditions or friction on the boundary, owned by this rank.
+    /// A node with conditions or contact points on the boundary, owned by this
+    /// rank.
     struct BoundaryNode
     {
       types::global_dof_index first_dof;

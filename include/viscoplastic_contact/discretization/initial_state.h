@@ -97,7 +97,8 @@ namespace Viscoplastic
    * relative to the loads: the norm of the residual off Gamma_3 and of its
    * excess over the friction ball on Gamma_3. Evaluated with sigma0 itself by
    * quadrature: its projection would violate equilibrium by O(h). Also gives
-   * the multipliers at t = 0. @p face is null without friction. Collective.
+   * the multipliers at t = 0. @p face is null without contact points.
+   * Collective.
    */
   template <int dim>
   CompatibilityViolation<dim>

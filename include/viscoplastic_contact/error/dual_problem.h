@@ -18,7 +18,7 @@ namespace Viscoplastic
     /// In frames, and Cartesian with ghosts.
     DistributedVector w, cartesian;
     /// The nodal density of what holds w on Gamma_3, Cartesian with ghosts;
-    /// empty without friction.
+    /// empty without contact points.
     DistributedVector density;
     /// a(w, w)^{1/2}.
     double norm = 0.;

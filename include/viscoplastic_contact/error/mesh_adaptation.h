@@ -87,7 +87,8 @@ namespace Viscoplastic
   class StateTransfer
   {
   public:
-    /// @p multiplier_density is ghosted, and null without friction. Collective.
+    /// @p multiplier_density is ghosted, and null without contact points.
+    /// Collective.
     StateTransfer(parallel::distributed::Triangulation<dim> &triangulation,
                   const StressSpace<dim>                    &old_stress_space,
                   const State<dim>                          &state,
@@ -100,9 +101,9 @@ namespace Viscoplastic
 
     struct Result
     {
-      /// Without friction points: their number depends on the new face.
+      /// Without contact points: their number depends on the new face.
       State<dim> state;
-      /// Ghosted; empty without friction.
+      /// Ghosted; empty without contact points.
       DistributedVector multiplier_density;
     };
 
@@ -143,7 +144,7 @@ namespace Viscoplastic
 
 
   /**
-   * The friction of a state that a StateTransfer has brought to a new mesh: the
+   * The contact state that a StateTransfer has brought to a new mesh: the
    * multipliers from their density, within the bounds, and the sets by what
    * multipliers and velocities say. Collective.
    */

@@ -17,7 +17,7 @@
 namespace Viscoplastic
 {
   /**
-   * The residual estimator for the friction inequality of one step,
+   * The residual estimator for the inequality of one step,
    *
    *     eta_K^2 = ( h_K^2 |b + div E eps(u_h)|^2
    *                 + sum_e 1/2 h_e |[sigma_h nu]|^2     interior faces
@@ -66,7 +66,7 @@ namespace Viscoplastic
       /// Of the data; none, for fields that have no data.
       std::optional<double> t;
       /// The nodal field lambda_h on Gamma_3, Cartesian with ghosts; null
-      /// without friction.
+      /// without contact points.
       const DistributedVector *multiplier_density;
     };
 

@@ -24,7 +24,7 @@ namespace Viscoplastic
     std::function<std::vector<DistributedVector>()> rigid_body_modes;
     /// The meshes that the present one has come from.
     std::function<NodeHierarchy()> hierarchy;
-    /// The restriction to the friction face, which is empty without friction.
+    /// The restriction to the contact face; empty without contact points.
     const FaceRestriction &face;
   };
 

@@ -19,8 +19,8 @@ namespace Viscoplastic
   class BoundaryFields
   {
   public:
-    /// Of @p fields those of the boundary. @p face is null without friction.
-    /// Collective.
+    /// Of @p fields those of the boundary. @p face is null without contact
+    /// points. Collective.
     BoundaryFields(const StressSpace<dim>        &stress_space,
                    const State<dim>              &state,
                    const ContactFace<dim>        *face,

@@ -57,7 +57,7 @@ namespace Viscoplastic
 
     /**
      * Write the fields of a state, those of `Output/Additional fields' among
-     * them. @p face is null without friction,
+     * them. @p face is null without contact points,
      * @p squared_estimate without an estimator. Returns sentences about fields
      * that are beyond the range of the files for the first time. Collective.
      */

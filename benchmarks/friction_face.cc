@@ -14,7 +14,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
-#include <viscoplastic_contact/contact/friction_points.h>
+#include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/contact/sparse_face_matrix.h>
 
 #include <malloc.h>
@@ -30,14 +30,14 @@ using namespace Viscoplastic;
 namespace
 {
   /// Nodes [begin, end) of an n x n grid.
-  FrictionFace
+  ContactLayout
   make_face(const unsigned int begin, const unsigned int end)
   {
-    FrictionFace face;
+    ContactLayout face;
     face.communicator = MPI_COMM_WORLD;
     for (unsigned int node = 0; node < end - begin; ++node)
       {
-        FrictionFace::Point point{node, 2, {}};
+        ContactLayout::Point point{node, 2, {}};
         point.map[0][0] = point.map[1][1] = 1.;
         face.points.push_back(point);
         face.first_dof.push_back(2 * (node + 1));
@@ -113,13 +113,13 @@ main(int argc, char **argv)
   const unsigned int begin   = n * (n * rank / n_ranks),
                      end     = n * (n * (rank + 1) / n_ranks);
 
-  const double       memory_before = megabytes();
-  const FrictionFace face          = make_face(begin, end);
-  IndexSet           numbers(2 * types::global_dof_index(n) * n);
+  const double        memory_before = megabytes();
+  const ContactLayout face          = make_face(begin, end);
+  IndexSet            numbers(2 * types::global_dof_index(n) * n);
   numbers.add_range(2 * types::global_dof_index(begin),
                     2 * types::global_dof_index(end));
   const SparseFaceMatrix    matrix(face, numbers, couplings(n, begin, end));
-  FrictionState             state(std::vector<double>(end - begin, 0.5));
+  ContactState              state(std::vector<double>(end - begin, 0.5));
   std::vector<Tensor<2, 3>> diagonal, inverse_diagonal;
   for (unsigned int node = 0; node < face.n_nodes(); ++node)
     {

@@ -78,21 +78,21 @@ namespace Viscoplastic
     /// there is one, know of a node.
     template <typename StateType, typename TruncationType, typename Action>
     void
-    for_each_value(const FrictionFace &face,
-                   const unsigned int  node,
-                   StateType          &friction,
-                   TruncationType     *truncation,
-                   const Action       &act)
+    for_each_value(const ContactLayout &face,
+                   const unsigned int   node,
+                   StateType           &contact,
+                   TruncationType      *truncation,
+                   const Action        &act)
     {
       for (unsigned int p = face.first_point[node];
            p < face.first_point[node + 1];
            ++p)
         {
-          act(friction.bound[p]);
+          act(contact.bound[p]);
           for (unsigned int i = 0; i < 2; ++i)
             {
-              act(friction.slip[p][i]);
-              act(friction.multiplier[p][i]);
+              act(contact.slip[p][i]);
+              act(contact.multiplier[p][i]);
             }
         }
       if (truncation != nullptr)
@@ -105,7 +105,7 @@ namespace Viscoplastic
 
 
     /// Friction at the nodes of some cells' vertices.
-    struct PackedFriction
+    struct PackedContact
     {
       /// A bit a vertex with friction, and how many points its node has.
       std::vector<std::uint8_t> vertices, n_points;
@@ -202,7 +202,7 @@ namespace Viscoplastic
     std::vector<std::uint8_t>   vertices; // a bit a vertex with values here
     std::vector<double>         nodal, samples, estimate;
     const auto                  face_nodes = nodes_by_dof(face);
-    PackedFriction              friction;
+    PackedContact               points;
     std::size_t                 owned_cell = 0;
     for (const auto &cell : space.cells)
       {
@@ -225,23 +225,23 @@ namespace Viscoplastic
             if (node == face_nodes.end())
               continue;
             with_friction |= 1 << v;
-            const FrictionFace &layout = face->layout();
+            const ContactLayout &layout = face->layout();
             for_each_value(layout,
                            node->second,
-                           state.friction,
+                           state.contact,
                            truncation,
-                           [&friction](const double value) {
-                             friction.values.push_back(value);
+                           [&points](const double value) {
+                             points.values.push_back(value);
                            });
-            friction.n_points.push_back(layout.n_node_points(node->second));
+            points.n_points.push_back(layout.n_node_points(node->second));
             for (unsigned int p = layout.first_point[node->second];
                  p < layout.first_point[node->second + 1];
                  ++p)
-              friction.sticks.push_back(state.friction.sticks[p]);
+              points.sticks.push_back(state.contact.sticks[p]);
           }
         vertices.push_back(with_values);
         if (face != nullptr)
-          friction.vertices.push_back(with_friction);
+          points.vertices.push_back(with_friction);
         for (const IrreversibleStress *field : sample_fields(state))
           if (!field->empty())
             for (unsigned int s = 0; s < stress_space.n_samples; ++s)
@@ -259,7 +259,7 @@ namespace Viscoplastic
       }
     BinaryWriter                       archive;
     archive &vertices &nodal &samples &estimate;
-    friction.exchange(archive);
+    points.exchange(archive);
     return archive.bytes();
   }
 
@@ -312,10 +312,10 @@ namespace Viscoplastic
       field->resize(n_owned * stress_space.n_samples);
     if (packed.has_estimate)
       squared_estimate.reinit(triangulation.n_active_cells());
-    const auto          face_nodes = nodes_by_dof(face);
-    const FrictionFace  no_face;
-    const FrictionFace &layout = face != nullptr ? face->layout() : no_face;
-    state.friction = FrictionState(std::vector<double>(layout.points.size()));
+    const auto           face_nodes = nodes_by_dof(face);
+    const ContactLayout  no_face;
+    const ContactLayout &layout = face != nullptr ? face->layout() : no_face;
+    state.contact = ContactState(std::vector<double>(layout.points.size()));
     if (truncation != nullptr)
       {
         truncation->projector.resize(layout.n_nodes());
@@ -330,10 +330,10 @@ namespace Viscoplastic
         std::vector<double>                nodal, samples, estimate;
         BinaryReader                       archive(packed.fields[part]);
         archive &vertices &nodal &samples &estimate;
-        PackedFriction                     friction;
-        friction.exchange(archive);
+        PackedContact                      points;
+        points.exchange(archive);
         require(archive.is_at_end() && vertices.size() == ids.size() &&
-                friction.vertices.size() == (face ? ids.size() : 0) &&
+                points.vertices.size() == (face ? ids.size() : 0) &&
                 samples.size() == sampled.size() * n_z * ids.size() &&
                 estimate.size() == (packed.has_estimate ? ids.size() : 0));
         std::size_t next = 0, next_node = 0, next_point = 0, next_value = 0;
@@ -369,15 +369,15 @@ namespace Viscoplastic
             for (unsigned int v = 0;
                  face && v < GeometryInfo<dim>::vertices_per_cell;
                  ++v)
-              if ((friction.vertices[i] >> v & 1) != 0)
+              if ((points.vertices[i] >> v & 1) != 0)
                 {
-                  require(next_node < friction.n_points.size());
-                  const unsigned int n_points = friction.n_points[next_node++];
+                  require(next_node < points.n_points.size());
+                  const unsigned int n_points = points.n_points[next_node++];
                   const std::size_t  value = next_value, point = next_point;
                   next_point += n_points;
                   next_value += n_points * 5 + (truncation ? 18 : 0);
-                  require(next_point <= friction.sticks.size() &&
-                          next_value <= friction.values.size());
+                  require(next_point <= points.sticks.size() &&
+                          next_value <= points.values.size());
                   if (!is_here)
                     continue;
                   const auto node =
@@ -386,15 +386,15 @@ namespace Viscoplastic
                     continue;
                   const unsigned int n = node->second;
                   require(n_points == layout.n_node_points(n));
-                  const double *from = friction.values.data() + value;
+                  const double *from = points.values.data() + value;
                   for_each_value(layout,
                                  n,
-                                 state.friction,
+                                 state.contact,
                                  truncation,
                                  [&from](double &to) { to = *from++; });
                   for (unsigned int p = 0; p < n_points; ++p)
-                    state.friction.sticks[layout.first_point[n] + p] =
-                      friction.sticks[point + p];
+                    state.contact.sticks[layout.first_point[n] + p] =
+                      points.sticks[point + p];
                   ++n_face_nodes;
                 }
             if (!is_here || !local->cell->is_locally_owned())
@@ -409,9 +409,9 @@ namespace Viscoplastic
             if (packed.has_estimate)
               squared_estimate[local->cell->active_cell_index()] = estimate[i];
           }
-        require(next == nodal.size() && next_node == friction.n_points.size() &&
-                next_point == friction.sticks.size() &&
-                next_value == friction.values.size());
+        require(next == nodal.size() && next_node == points.n_points.size() &&
+                next_point == points.sticks.size() &&
+                next_value == points.values.size());
       }
 
     for (unsigned int f = 0; f < n_fields; ++f)

@@ -8,9 +8,9 @@
 namespace Viscoplastic
 {
   bool
-  has_contact_event(const FrictionFace  &face,
-                    const FrictionState &old_state,
-                    const FrictionState &state,
+  has_contact_event(const ContactLayout &face,
+                    const ContactState  &old_state,
+                    const ContactState  &state,
                     const bool           from_kink)
   {
     // What may begin, cover all points, and end: slip, and contact.
@@ -55,9 +55,9 @@ namespace Viscoplastic
 
 
   double
-  turning_work(const FrictionFace              &face,
-               const FrictionState             &old_state,
-               const FrictionState             &state,
+  turning_work(const ContactLayout             &face,
+               const ContactState              &old_state,
+               const ContactState              &state,
                const std::vector<Tensor<1, 2>> &slips)
   {
     AssertDimension(slips.size(), state.n_points());

@@ -41,14 +41,14 @@ namespace Viscoplastic
     /// Update slips from the increment; a slipping point that does not move
     /// sticks.
     void
-    update_slips(const FrictionFace   &face,
+    update_slips(const ContactLayout  &face,
                  const Vector<double> &x,
-                 FrictionState        &state)
+                 ContactState         &state)
     {
       for (unsigned int p = 0; p < face.points.size(); ++p)
         {
-          const FrictionFace::Point &point = face.points[p];
-          state.slip[p]                    = Tensor<1, 2>();
+          const ContactLayout::Point &point = face.points[p];
+          state.slip[p]                     = Tensor<1, 2>();
           if (!state.sticks[p] || point.is_obstacle)
             state.slip[p] = slip(point, face.node_values(x, point.node));
           if (point.gives_way())
@@ -65,12 +65,12 @@ namespace Viscoplastic
     /// size of @p rounding in the energy norm: its direction means nothing, but
     /// would be that of a force of the size of the bound. @p change takes part.
     void
-    stop_rounding(const FrictionFace              &face,
+    stop_rounding(const ContactLayout             &face,
                   const std::vector<Tensor<2, 3>> &diagonal,
                   const double                     rounding,
                   Vector<double>                  &x,
                   Vector<double>                  &change,
-                  FrictionState                   &state)
+                  ContactState                    &state)
     {
       for (unsigned int node = 0; node < face.n_nodes(); ++node)
         {
@@ -97,7 +97,7 @@ namespace Viscoplastic
     /// Whether all points with friction do the same, stick or slip, and all
     /// obstacles are touched or none. Collective.
     bool
-    all_do_the_same(const FrictionFace &face, const FrictionState &state)
+    all_do_the_same(const ContactLayout &face, const ContactState &state)
     {
       std::array<bool, 4> any{};
       for (unsigned int p = 0; p < state.n_points(); ++p)
@@ -129,14 +129,14 @@ namespace Viscoplastic
      */
     std::optional<KinkStep>
     step_from_kinks(BulkSolver                      &bulk,
-                    const FrictionFace              &face,
+                    const ContactLayout             &face,
                     const std::vector<Tensor<2, 3>> &inverse_diagonal,
                     const Vector<double>            &residual,
                     const Vector<double>            &w,
                     Vector<double>                  &x,
-                    FrictionState                   &state)
+                    ContactState                    &state)
     {
-      const FrictionState  old_state = state;
+      const ContactState   old_state = state;
       const Vector<double> old_x     = x;
       Vector<double>       stop;
       const double change_of_j = bring_to_kinks(face, w, x, state, stop);
@@ -175,11 +175,11 @@ namespace Viscoplastic
   class ContactSolver::Iteration
   {
   public:
-    Iteration(BulkSolver         &bulk,
-              const FrictionFace &face,
-              const double        tolerance,
-              Vector<double>     &x,
-              FrictionState      &state);
+    Iteration(BulkSolver          &bulk,
+              const ContactLayout &face,
+              const double         tolerance,
+              Vector<double>      &x,
+              ContactState        &state);
 
     ContactReport
     solve(const unsigned int max_iterations);
@@ -224,12 +224,12 @@ namespace Viscoplastic
     double
     plain_seconds(const double seconds_to_finish) const;
 
-    BulkSolver         &bulk;
-    const FrictionFace &face;
-    const double        tolerance;
+    BulkSolver          &bulk;
+    const ContactLayout &face;
+    const double         tolerance;
     /// The increment of the face, and what friction does there.
     Vector<double> &x;
-    FrictionState  &state;
+    ContactState   &state;
 
     const FaceMatrix         &matrix;
     std::vector<Tensor<2, 3>> diagonal, inverse_diagonal; // node by node
@@ -259,11 +259,11 @@ namespace Viscoplastic
 
 
 
-  ContactSolver::Iteration::Iteration(BulkSolver         &bulk,
-                                      const FrictionFace &face,
-                                      const double        tolerance,
-                                      Vector<double>     &x,
-                                      FrictionState      &state)
+  ContactSolver::Iteration::Iteration(BulkSolver          &bulk,
+                                      const ContactLayout &face,
+                                      const double         tolerance,
+                                      Vector<double>      &x,
+                                      ContactState        &state)
     : bulk(bulk)
     , face(face)
     , tolerance(tolerance)
@@ -440,8 +440,8 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < face.points.size(); ++p)
       if (face.points[p].is_obstacle)
         {
-          const FrictionFace::Point &point = face.points[p];
-          const double               stiffness =
+          const ContactLayout::Point &point = face.points[p];
+          const double                stiffness =
             point.map[0] * (diagonal[point.node] * point.map[0]);
           if (state.multiplier[p][0] <=
               bulk.rounding_error() * std::sqrt(stiffness))
@@ -545,11 +545,11 @@ namespace Viscoplastic
 
 
   ContactReport
-  ContactSolver::solve(BulkSolver         &bulk,
-                       const FrictionFace &face,
-                       const double        tolerance,
-                       Vector<double>     &x,
-                       FrictionState      &state) const
+  ContactSolver::solve(BulkSolver          &bulk,
+                       const ContactLayout &face,
+                       const double         tolerance,
+                       Vector<double>      &x,
+                       ContactState        &state) const
   {
     AssertDimension(x.size(), face.n_dofs());
     AssertDimension(state.n_points(), face.points.size());

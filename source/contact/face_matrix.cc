@@ -7,7 +7,7 @@
 
 namespace Viscoplastic
 {
-  FaceMatrix::FaceMatrix(const FrictionFace &face)
+  FaceMatrix::FaceMatrix(const ContactLayout &face)
     : face(face)
     , nodes_of_stage(1)
   {
@@ -30,7 +30,7 @@ namespace Viscoplastic
 
 
 
-  DenseFaceMatrix::DenseFaceMatrix(const FrictionFace  &face,
+  DenseFaceMatrix::DenseFaceMatrix(const ContactLayout &face,
                                    FullMatrix<double> &&matrix)
     : FaceMatrix(face)
     , values(std::move(matrix))

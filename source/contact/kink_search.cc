@@ -26,7 +26,7 @@ namespace Viscoplastic
         const NormalCompliance &compliance;
         double                  penetration, change;
       };
-      const FrictionFace   &face;
+      const ContactLayout  &face;
       std::vector<Friction> terms; // of this rank
       std::vector<Spring>   springs;
 
@@ -67,15 +67,15 @@ namespace Viscoplastic
 
 
     FaceAlongLine
-    face_along(const FrictionFace   &face,
-               const FrictionState  &state,
+    face_along(const ContactLayout  &face,
+               const ContactState   &state,
                const Vector<double> &direction)
     {
       FaceAlongLine line{face, {}, {}};
       for (unsigned int p = 0; p < face.points.size(); ++p)
         {
-          const FrictionFace::Point &point  = face.points[p];
-          const auto                 change = [&] {
+          const ContactLayout::Point &point  = face.points[p];
+          const auto                  change = [&] {
             return slip(point, face.node_values(direction, point.node));
           };
           if (point.gives_way())
@@ -98,12 +98,12 @@ namespace Viscoplastic
     };
 
     Approach
-    approach(const FrictionFace   &face,
-             const FrictionState  &state,
+    approach(const ContactLayout  &face,
+             const ContactState   &state,
              const Vector<double> &w,
              const unsigned int    p)
     {
-      const FrictionFace::Point &point = face.points[p];
+      const ContactLayout::Point &point = face.points[p];
       return {std::max(0., state.bound[p] - state.slip[p][0]),
               slip(point, face.node_values(w, point.node))[0]};
     }
@@ -114,8 +114,8 @@ namespace Viscoplastic
     /// where the way to it is along other points, the line search alone
     /// decides.
     bool
-    meets(const FrictionFace   &face,
-          const FrictionState  &state,
+    meets(const ContactLayout  &face,
+          const ContactState   &state,
           const Vector<double> &w,
           const unsigned int    p)
     {
@@ -133,8 +133,8 @@ namespace Viscoplastic
     /// The part of a correction that is possible without entering an obstacle,
     /// beyond 1 if there is room. Collective.
     double
-    largest_step(const FrictionFace   &face,
-                 const FrictionState  &state,
+    largest_step(const ContactLayout  &face,
+                 const ContactState   &state,
                  const Vector<double> &w)
     {
       double result = 2.;
@@ -156,8 +156,8 @@ namespace Viscoplastic
     /// Whether a correction @p w makes the slip of a node change sides. At
     /// corners, where points share a node, the line search alone decides.
     bool
-    reverses(const FrictionFace   &face,
-             const FrictionState  &state,
+    reverses(const ContactLayout  &face,
+             const ContactState   &state,
              const Vector<double> &w,
              const unsigned int    node)
     {
@@ -176,8 +176,8 @@ namespace Viscoplastic
     /// @p here of the node end there: slip that would change sides comes to
     /// rest, and a way into an obstacle ends at it. Returns whether it does.
     bool
-    stop_node_at_kinks(const FrictionFace   &face,
-                       const FrictionState  &state,
+    stop_node_at_kinks(const ContactLayout  &face,
+                       const ContactState   &state,
                        const Vector<double> &x,
                        const Vector<double> &w,
                        const unsigned int    node,
@@ -253,8 +253,8 @@ namespace Viscoplastic
 
   SearchResult
   search_along(BulkSolver           &bulk,
-               const FrictionFace   &face,
-               const FrictionState  &state,
+               const ContactLayout  &face,
+               const ContactState   &state,
                const Vector<double> &w)
   {
     return line_search(bulk.search_terms(w),
@@ -265,8 +265,8 @@ namespace Viscoplastic
 
 
   bool
-  stop_at_kinks(const FrictionFace   &face,
-                const FrictionState  &state,
+  stop_at_kinks(const ContactLayout  &face,
+                const ContactState   &state,
                 const Vector<double> &x,
                 Vector<double>       &w)
   {
@@ -285,13 +285,13 @@ namespace Viscoplastic
 
 
   double
-  bring_to_kinks(const FrictionFace   &face,
+  bring_to_kinks(const ContactLayout  &face,
                  const Vector<double> &w,
                  Vector<double>       &x,
-                 FrictionState        &state,
+                 ContactState         &state,
                  Vector<double>       &change)
   {
-    const FrictionState  old_state     = state;
+    const ContactState   old_state     = state;
     const Vector<double> old_x         = x;
     double               energy_change = 0.;
     change.reinit(x.size());

@@ -8,9 +8,9 @@
 
 namespace Viscoplastic
 {
-  SparseFaceMatrix::SparseFaceMatrix(const FrictionFace &face,
-                                     const IndexSet     &numbers,
-                                     std::vector<Entry>  entries)
+  SparseFaceMatrix::SparseFaceMatrix(const ContactLayout &face,
+                                     const IndexSet      &numbers,
+                                     std::vector<Entry>   entries)
     : FaceMatrix(face)
     , row_begin(face.n_dofs() + 1, 0)
   {

@@ -54,7 +54,7 @@ namespace Viscoplastic
                 return false;
               });
 
-    FrictionFace face;
+    ContactLayout face;
     face.communicator  = space.communicator;
     face.has_obstacles = any_obstacles;
     std::vector<types::global_dof_index> dofs;
@@ -83,7 +83,7 @@ namespace Viscoplastic
         face.first_dof.push_back(face.first_dof.back() + n);
         for (const FrictionPlane<dim> &plane : frame.planes)
           {
-            FrictionFace::Point point;
+            ContactLayout::Point point;
             point.node       = nodes.size();
             point.n_tangents = plane.n_tangents;
             for (unsigned int i = 0; i < point.n_tangents; ++i)
@@ -95,7 +95,7 @@ namespace Viscoplastic
           }
         for (const Obstacle<dim> &obstacle : frame.obstacles)
           {
-            FrictionFace::Point point;
+            ContactLayout::Point point;
             point.node        = nodes.size();
             point.n_tangents  = 1;
             point.is_obstacle = true;
@@ -120,7 +120,7 @@ namespace Viscoplastic
   {
     // The number of each node's first point over all ranks, for those that see
     // the node; its points are those of its frame.
-    const FrictionFace &face  = layout();
+    const ContactLayout &face = layout();
     const IndexSet own_points = Utilities::MPI::create_ascending_partitioning(
       space.communicator,
       face.points.size())[Utilities::MPI::this_mpi_process(space.communicator)];
@@ -270,7 +270,7 @@ namespace Viscoplastic
   ContactFace<dim>::n_global_points(const bool of_obstacles) const
   {
     types::global_dof_index n = 0;
-    for (const FrictionFace::Point &point : layout().points)
+    for (const ContactLayout::Point &point : layout().points)
       n += point.is_obstacle == of_obstacles;
     return Utilities::MPI::sum(n, space.communicator);
   }
@@ -381,7 +381,7 @@ namespace Viscoplastic
     std::vector<double> result = bounds(t, slip_rates);
     if (!any_obstacles)
       return result;
-    const FrictionFace &face = layout();
+    const ContactLayout &face = layout();
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
         const std::size_t first =
@@ -410,11 +410,11 @@ namespace Viscoplastic
   void
   ContactFace<dim>::set_obstacles(const double             t,
                                   const DistributedVector &u,
-                                  FrictionState           &state) const
+                                  ContactState            &state) const
   {
     const std::vector<double> distances = step_bounds(t, u, {});
     for (unsigned int p = 0; p < state.n_points(); ++p)
-      if (const FrictionFace::Point &point = layout().points[p];
+      if (const ContactLayout::Point &point = layout().points[p];
           point.is_obstacle)
         {
           state.bound[p] = distances[p];
@@ -432,7 +432,7 @@ namespace Viscoplastic
   void
   ContactFace<dim>::add_computed_bounds(
     const double               t,
-    const FrictionState       &state,
+    const ContactState        &state,
     std::vector<double>       &bounds,
     const std::vector<double> &slip_rates) const
   {
@@ -448,15 +448,15 @@ namespace Viscoplastic
       &slip_rates);
     if (state.n_points() != bounds.size())
       return;
-    const FrictionFace &face = layout();
+    const ContactLayout &face = layout();
     for (unsigned int p = 0; p < bounds.size(); ++p)
       if (coefficients[p] > 0.)
         {
           // The obstacles of the same pieces; none where other conditions hold
           // the node along the normal.
-          const FrictionFace::Point &point = face.points[p];
-          const auto                &ids   = boundary_ids[p];
-          double                     force = 0., area = 0.;
+          const ContactLayout::Point &point = face.points[p];
+          const auto                 &ids   = boundary_ids[p];
+          double                      force = 0., area = 0.;
           for (unsigned int o = face.first_obstacle(point.node);
                o < face.first_point[point.node + 1];
                ++o)
@@ -511,7 +511,7 @@ namespace Viscoplastic
   Vector<double>
   ContactFace<dim>::foundation_step(const double t_old, const double t) const
   {
-    const FrictionFace &face = layout();
+    const ContactLayout &face = layout();
     if (!space.scene.has_moving_foundation())
       return {};
     const std::vector<double> weights = bounds_by_id(t);
@@ -543,8 +543,8 @@ namespace Viscoplastic
               const double weight = weights[k++];
               if (weight == 0. || face.points[p].is_obstacle)
                 continue;
-              const FrictionFace::Point &point = face.points[p];
-              const Tensor<1, 3>         w     = motion(id);
+              const ContactLayout::Point &point = face.points[p];
+              const Tensor<1, 3>          w     = motion(id);
               if (n_motions++ == 0)
                 first_motion = w;
               right_side += weight * node_force(point, slip(point, w));

@@ -14,10 +14,10 @@ namespace Viscoplastic
   ContactFace<dim>::cartesian(const unsigned int  point,
                               const Tensor<1, 2> &multiplier) const
   {
-    const FrictionFace &face  = layout();
-    const Node         &node  = nodes[face.points[point].node];
-    const Tensor<1, 3>  force = node_force(face.points[point], multiplier);
-    Tensor<1, dim>      in_frame;
+    const ContactLayout &face  = layout();
+    const Node          &node  = nodes[face.points[point].node];
+    const Tensor<1, 3>   force = node_force(face.points[point], multiplier);
+    Tensor<1, dim>       in_frame;
     for (unsigned int i = 0; i < face.n_node_dofs(face.points[point].node); ++i)
       in_frame[node.components[i]] = force[i];
     return node.directions * in_frame;
@@ -27,11 +27,11 @@ namespace Viscoplastic
 
   template <int dim>
   Tensor<1, dim>
-  ContactFace<dim>::resultant(const FrictionState &state,
-                              const bool           of_obstacles) const
+  ContactFace<dim>::resultant(const ContactState &state,
+                              const bool          of_obstacles) const
   {
-    const FrictionFace &face = layout();
-    Tensor<1, dim>      sum;
+    const ContactLayout &face = layout();
+    Tensor<1, dim>       sum;
     for (unsigned int p = 0; p < face.points.size(); ++p)
       if (face.points[p].is_obstacle == of_obstacles)
         sum += cartesian(p, state.multiplier[p]);
@@ -44,7 +44,7 @@ namespace Viscoplastic
   std::vector<Tensor<1, 2>>
   ContactFace<dim>::slips(const Vector<double> &change) const
   {
-    const FrictionFace       &face = layout();
+    const ContactLayout      &face = layout();
     std::vector<Tensor<1, 2>> result;
     for (const auto &point : face.points)
       result.push_back(slip(point, face.node_values(change, point.node)));
@@ -91,12 +91,12 @@ namespace Viscoplastic
 
   template <int dim>
   DistributedVector
-  ContactFace<dim>::density(const FrictionState &state,
-                            const bool           of_friction_alone) const
+  ContactFace<dim>::density(const ContactState &state,
+                            const bool          of_friction_alone) const
   {
-    const FrictionFace &face   = layout();
-    DistributedVector   values = space.owned_vector(),
-                      ghosted  = space.ghosted_vector();
+    const ContactLayout &face   = layout();
+    DistributedVector    values = space.owned_vector(),
+                      ghosted   = space.ghosted_vector();
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const auto dof = nodes[face.points[p].node].first_dof;
@@ -127,7 +127,7 @@ namespace Viscoplastic
   std::vector<Tensor<1, 2>>
   ContactFace<dim>::multipliers(const DistributedVector &ghosted_density) const
   {
-    const FrictionFace       &face = layout();
+    const ContactLayout      &face = layout();
     std::vector<Tensor<1, 2>> result(face.points.size());
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
@@ -159,9 +159,9 @@ namespace Viscoplastic
   ContactFace<dim>::nodal_field(const std::vector<double> &point_values,
                                 const bool                 of_obstacles) const
   {
-    const FrictionFace &face   = layout();
-    DistributedVector   values = space.owned_vector(),
-                      ghosted  = space.ghosted_vector();
+    const ContactLayout &face   = layout();
+    DistributedVector    values = space.owned_vector(),
+                      ghosted   = space.ghosted_vector();
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const unsigned int n = face.points[p].node;
@@ -180,23 +180,23 @@ namespace Viscoplastic
 
 
 
-#define INSTANTIATE(dim)                                                      \
-  template Tensor<1, dim> ContactFace<dim>::cartesian(const unsigned int,     \
-                                                      const Tensor<1, 2> &)   \
-    const;                                                                    \
-  template Tensor<1, dim> ContactFace<dim>::resultant(const FrictionState &,  \
-                                                      const bool) const;      \
-  template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                 \
-    const Vector<double> &) const;                                            \
-  template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                 \
-    const DistributedVector &, const Vector<double> &) const;                 \
-  template std::vector<double> ContactFace<dim>::slip_rates(                  \
-    const DistributedVector &, const double, const double) const;             \
-  template DistributedVector ContactFace<dim>::density(const FrictionState &, \
-                                                       const bool) const;     \
-  template std::vector<Tensor<1, 2>> ContactFace<dim>::multipliers(           \
-    const DistributedVector &) const;                                         \
-  template DistributedVector ContactFace<dim>::nodal_field(                   \
+#define INSTANTIATE(dim)                                                     \
+  template Tensor<1, dim> ContactFace<dim>::cartesian(const unsigned int,    \
+                                                      const Tensor<1, 2> &)  \
+    const;                                                                   \
+  template Tensor<1, dim> ContactFace<dim>::resultant(const ContactState &,  \
+                                                      const bool) const;     \
+  template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                \
+    const Vector<double> &) const;                                           \
+  template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                \
+    const DistributedVector &, const Vector<double> &) const;                \
+  template std::vector<double> ContactFace<dim>::slip_rates(                 \
+    const DistributedVector &, const double, const double) const;            \
+  template DistributedVector ContactFace<dim>::density(const ContactState &, \
+                                                       const bool) const;    \
+  template std::vector<Tensor<1, 2>> ContactFace<dim>::multipliers(          \
+    const DistributedVector &) const;                                        \
+  template DistributedVector ContactFace<dim>::nodal_field(                  \
     const std::vector<double> &, const bool) const;
 
   INSTANTIATE(2)

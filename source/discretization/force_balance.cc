@@ -125,8 +125,8 @@ namespace Viscoplastic
   template <int dim>
   FrictionIdentities
   check_friction(const ContactFace<dim>  &face,
-                 const FrictionState     &old_state,
-                 const FrictionState     &state,
+                 const ContactState      &old_state,
+                 const ContactState      &state,
                  const DistributedVector &change,
                  const Vector<double>    &foundation_step,
                  const double             max_displacement)
@@ -144,11 +144,11 @@ namespace Viscoplastic
       }
     for (unsigned int p = 0; p < slips.size(); ++p)
       {
-        const FrictionFace &layout = face.layout();
-        const unsigned int  node   = layout.points[p].node;
-        const unsigned int  first  = layout.first_obstacle(node),
-                           end     = layout.first_point[node + 1];
-        bool is_open               = first < end;
+        const ContactLayout &layout = face.layout();
+        const unsigned int   node   = layout.points[p].node;
+        const unsigned int   first  = layout.first_obstacle(node),
+                           end      = layout.first_point[node + 1];
+        bool is_open                = first < end;
         for (unsigned int o = first; o < end; ++o)
           is_open &= state.multiplier[o][0] == 0.;
         // Where nothing touches there is neither stick nor slip.
@@ -196,12 +196,12 @@ namespace Viscoplastic
   template <int dim>
   NormalContact<dim>
   summarize_contact(const ContactFace<dim>  &face,
-                    const FrictionState     &old_state,
-                    const FrictionState     &state,
+                    const ContactState      &old_state,
+                    const ContactState      &state,
                     const DistributedVector &change)
   {
     NormalContact<dim>              result;
-    const FrictionFace             &layout  = face.layout();
+    const ContactLayout            &layout  = face.layout();
     const std::vector<Tensor<1, 2>> motions = face.slips(change, {});
     for (unsigned int p = 0; p < layout.points.size(); ++p)
       {
@@ -211,7 +211,7 @@ namespace Viscoplastic
         result.area += weight;
         if (force > 0.)
           result.contact_area += weight;
-        if (const FrictionFace::Point &point = layout.points[p];
+        if (const ContactLayout::Point &point = layout.points[p];
             point.gives_way())
           {
             const double w         = state.penetration(p);
@@ -251,12 +251,12 @@ namespace Viscoplastic
                                      const Forces<dim> &);         \
   template NormalContact<dim> summarize_contact<dim>(                          \
     const ContactFace<dim> &,                                                  \
-    const FrictionState &,                                                     \
-    const FrictionState &,                                                     \
+    const ContactState &,                                                      \
+    const ContactState &,                                                      \
     const DistributedVector &);                                                \
   template FrictionIdentities check_friction<dim>(const ContactFace<dim> &,    \
-                                                  const FrictionState &,       \
-                                                  const FrictionState &,       \
+                                                  const ContactState &,        \
+                                                  const ContactState &,        \
                                                   const DistributedVector &,   \
                                                   const Vector<double> &,      \
                                                   const double);

@@ -387,24 +387,24 @@ namespace Viscoplastic
     touch_obstacles(const AdmissibleSpace<dim> &space,
                     const ContactFace<dim>     &face,
                     const DistributedVector    &u,
-                    FrictionState              &friction)
+                    ContactState               &contact)
     {
       DistributedVector in_frames = space.owned_vector();
       space.to_frames(u, in_frames);
       double size = u.linfty_norm(), deepest = 0.;
-      for (unsigned int p = 0; p < friction.n_points(); ++p)
+      for (unsigned int p = 0; p < contact.n_points(); ++p)
         if (face.layout().points[p].is_obstacle)
-          size = std::max(size, std::abs(friction.bound[p]));
+          size = std::max(size, std::abs(contact.bound[p]));
       size = Utilities::MPI::max(size, space.communicator);
 
-      friction.bound = face.step_bounds(0., in_frames, {});
-      for (unsigned int p = 0; p < friction.n_points(); ++p)
+      contact.bound = face.step_bounds(0., in_frames, {});
+      for (unsigned int p = 0; p < contact.n_points(); ++p)
         if (face.layout().points[p].gives_way())
-          friction.sticks[p] = friction.bound[p] < 0.;
+          contact.sticks[p] = contact.bound[p] < 0.;
         else if (face.layout().points[p].is_obstacle)
           {
-            friction.sticks[p] = friction.bound[p] <= 1e-10 * size;
-            deepest            = std::max(deepest, -friction.bound[p]);
+            contact.sticks[p] = contact.bound[p] <= 1e-10 * size;
+            deepest           = std::max(deepest, -contact.bound[p]);
           }
       deepest = Utilities::MPI::max(deepest, space.communicator);
       std::ostringstream message;
@@ -427,7 +427,7 @@ namespace Viscoplastic
                           const Load<dim>            &load,
                           const ContactFace<dim>     *face,
                           const DistributedVector    &u,
-                          FrictionState              &friction)
+                          ContactState               &contact)
   {
     DistributedVector residual = load.values;
     space.restrict_to_unknowns(residual);
@@ -453,14 +453,14 @@ namespace Viscoplastic
         // within the friction bounds, contains L(0).
         const Vector<double> on_face = face->restriction().gather(residual);
         Vector<double>       force(on_face.size());
-        friction = FrictionState(face->bounds(0.));
+        contact = ContactState(face->bounds(0.));
         if (face->has_obstacles())
-          touch_obstacles(space, *face, u, friction);
-        fit_multipliers(face->layout(), on_face, friction, force);
+          touch_obstacles(space, *face, u, contact);
+        fit_multipliers(face->layout(), on_face, contact, force);
         if (face->has_computed_pressure())
           {
-            face->add_computed_bounds(0., friction, friction.bound);
-            fit_multipliers(face->layout(), on_face, friction, force);
+            face->add_computed_bounds(0., contact, contact.bound);
+            fit_multipliers(face->layout(), on_face, contact, force);
           }
         face->restriction().add(-1., force, residual);
       }
@@ -519,11 +519,11 @@ namespace Viscoplastic
                              const Load<2> &,
                              const ContactFace<2> *,
                              const DistributedVector &,
-                             FrictionState &);
+                             ContactState &);
   template CompatibilityViolation<3>
   compatibility_violation<3>(const AdmissibleSpace<3> &,
                              const Load<3> &,
                              const ContactFace<3> *,
                              const DistributedVector &,
-                             FrictionState &);
+                             ContactState &);
 } // namespace Viscoplastic

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <viscoplastic_contact/contact/friction_points.h>
+#include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/error/dual_problem.h>
 
 #include <cmath>
@@ -41,15 +41,15 @@ namespace Viscoplastic
     switch (quantity.kind)
       {
         case QuantityOfInterest::Kind::friction_force:
-          return discretization.face->resultant(state.friction)[d];
+          return discretization.face->resultant(state.contact)[d];
         case QuantityOfInterest::Kind::friction_dissipation:
           {
-            const FrictionState &friction = state.friction;
-            double               work     = 0.;
-            const FrictionFace  &face     = discretization.face->layout();
-            for (unsigned int p = 0; p < friction.n_points(); ++p)
-              if (!face.points[p].is_obstacle && !friction.sticks[p])
-                work += friction.multiplier[p] * friction.slip[p];
+            const ContactState  &contact = state.contact;
+            double               work    = 0.;
+            const ContactLayout &face    = discretization.face->layout();
+            for (unsigned int p = 0; p < contact.n_points(); ++p)
+              if (!face.points[p].is_obstacle && !contact.sticks[p])
+                work += contact.multiplier[p] * contact.slip[p];
             return face.sum(work);
           }
         case QuantityOfInterest::Kind::reaction:
@@ -68,22 +68,21 @@ namespace Viscoplastic
 
   template <int dim>
   DistributedVector
-  DualProblem<dim>::right_side(const FrictionState &friction) const
+  DualProblem<dim>::right_side(const ContactState &contact) const
   {
     DistributedVector       result = point_load;
     const ContactFace<dim> *face   = discretization.slipping_face();
     if (quantity.kind == QuantityOfInterest::Kind::friction_dissipation &&
         face != nullptr)
       {
-        const FrictionFace &layout = face->layout();
-        Vector<double>      force(layout.n_dofs());
-        for (unsigned int p = 0; p < friction.n_points(); ++p)
-          if (!layout.points[p].is_obstacle && !friction.sticks[p])
+        const ContactLayout &layout = face->layout();
+        Vector<double>       force(layout.n_dofs());
+        for (unsigned int p = 0; p < contact.n_points(); ++p)
+          if (!layout.points[p].is_obstacle && !contact.sticks[p])
             {
-              const FrictionFace::Point &point = layout.points[p];
+              const ContactLayout::Point &point = layout.points[p];
               layout.set_node_values(layout.node_values(force, point.node) +
-                                       node_force(point,
-                                                  friction.multiplier[p]),
+                                       node_force(point, contact.multiplier[p]),
                                      point.node,
                                      force);
             }
@@ -133,7 +132,7 @@ namespace Viscoplastic
         space.to_frames(ghosted, everywhere);
         Vector<double> on_face = face->restriction().gather(everywhere);
         // Along obstacles there is no friction.
-        const FrictionFace &layout = face->layout();
+        const ContactLayout &layout = face->layout();
         for (unsigned int n = 0; n < layout.n_nodes(); ++n)
           for (unsigned int p = layout.first_obstacle(n);
                p < layout.first_point[n + 1];
@@ -157,11 +156,11 @@ namespace Viscoplastic
   DistributedVector
   DualProblem<dim>::density(const Vector<double> &force) const
   {
-    const FrictionFace &face = discretization.face->layout();
-    FrictionState       held(std::vector<double>(face.points.size(), 0.));
+    const ContactLayout &face = discretization.face->layout();
+    ContactState         held(std::vector<double>(face.points.size(), 0.));
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
-        const FrictionFace::Point &point  = face.points[p];
+        const ContactLayout::Point &point = face.points[p];
         const unsigned int first_obstacle = face.first_obstacle(point.node);
         held.multiplier[p] =
           slip(point, face.node_values(force, point.node)) /
@@ -177,14 +176,13 @@ namespace Viscoplastic
 
   template <int dim>
   DualSolution<dim>
-  DualProblem<dim>::solve(BulkSolver          &solver,
-                          const FrictionState &friction) const
+  DualProblem<dim>::solve(BulkSolver &solver, const ContactState &contact) const
   {
     const Discretization<dim>  &d     = discretization;
     const AdmissibleSpace<dim> &space = d.space;
     DualSolution<dim>           dual;
     dual.w                       = prescribed();
-    const DistributedVector load = right_side(friction);
+    const DistributedVector load = right_side(contact);
     const bool is_zero = load.l2_norm() == 0. && dual.w.l2_norm() == 0.;
     // Rounding of the step that has been solved is not that of w.
     solver.set_rounding_error(0.);
@@ -192,8 +190,8 @@ namespace Viscoplastic
       solver.solve(load, dual.w, dual_tolerance);
     else if (!is_zero)
       {
-        const FrictionFace &face   = d.face->layout();
-        FrictionState       linear = friction;
+        const ContactLayout &face   = d.face->layout();
+        ContactState         linear = contact;
         for (unsigned int p = 0; p < linear.n_points(); ++p)
           // Nothing holds a point without friction, or off the foundation.
           linear.sticks[p] =

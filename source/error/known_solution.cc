@@ -20,7 +20,7 @@ namespace Viscoplastic
     {
       if (!discretization.face)
         return {};
-      return discretization.face->density(state.friction,
+      return discretization.face->density(state.contact,
                                           /* of_friction_alone = */ true);
     }
   } // namespace

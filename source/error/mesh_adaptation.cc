@@ -449,25 +449,25 @@ namespace Viscoplastic
 
 
   template <int dim>
-  FrictionState
-  friction_on_new_mesh(const Discretization<dim> &discretization,
-                       const State<dim>          &state,
-                       const DistributedVector   &multiplier_density)
+  ContactState
+  contact_on_new_mesh(const Discretization<dim> &discretization,
+                      const State<dim>          &state,
+                      const DistributedVector   &multiplier_density)
   {
     const ContactFace<dim>   &face = *discretization.face;
     const std::vector<double> rates =
       face.slip_rates(state.velocity, state.t - state.k, state.t);
-    FrictionState friction(face.bounds(state.t, rates));
-    friction.multiplier          = face.multipliers(multiplier_density);
-    const FrictionFace &layout   = face.layout();
-    DistributedVector   velocity = discretization.space.owned_vector();
+    ContactState contact(face.bounds(state.t, rates));
+    contact.multiplier            = face.multipliers(multiplier_density);
+    const ContactLayout &layout   = face.layout();
+    DistributedVector    velocity = discretization.space.owned_vector();
     if (face.has_obstacles())
       {
         discretization.space.to_frames(state.u, velocity);
-        const std::vector<Tensor<1, 2>> carried_over = friction.multiplier;
-        face.set_obstacles(state.t, velocity, friction);
-        for (unsigned int p = 0; p < friction.n_points(); ++p)
-          if (const FrictionFace::Point &point = layout.points[p];
+        const std::vector<Tensor<1, 2>> carried_over = contact.multiplier;
+        face.set_obstacles(state.t, velocity, contact);
+        for (unsigned int p = 0; p < contact.n_points(); ++p)
+          if (const ContactLayout::Point &point = layout.points[p];
               point.is_obstacle)
             {
               const double force = std::max(0., carried_over[p][0]);
@@ -477,13 +477,13 @@ namespace Viscoplastic
                                            layout.first_obstacle(point.node) >
                                          1)
                 continue;
-              friction.multiplier[p][0] = force;
+              contact.multiplier[p][0] = force;
               if (point.gives_way())
-                friction.bound[p] = force > 0. ?
-                                      -point.compliance.penetration(force) :
-                                      std::max(0., friction.bound[p]);
+                contact.bound[p] = force > 0. ?
+                                     -point.compliance.penetration(force) :
+                                     std::max(0., contact.bound[p]);
             }
-        face.add_computed_bounds(state.t, friction, friction.bound, rates);
+        face.add_computed_bounds(state.t, contact, contact.bound, rates);
       }
     discretization.space.to_frames(state.velocity, velocity);
     Vector<double> carried = face.foundation_step(state.t - state.k, state.t);
@@ -491,23 +491,23 @@ namespace Viscoplastic
       carried /= state.k;
     const auto   slip_rates = face.slips(velocity, carried);
     const double max_speed  = velocity.linfty_norm();
-    for (unsigned int p = 0; p < friction.n_points(); ++p)
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
-        const double bound      = friction.bound[p];
-        auto        &multiplier = friction.multiplier[p];
+        const double bound      = contact.bound[p];
+        auto        &multiplier = contact.multiplier[p];
         const double size       = stable_norm(multiplier);
         if (layout.points[p].is_obstacle)
           {
-            friction.sticks[p] = size > 0.;
+            contact.sticks[p] = size > 0.;
             continue;
           }
         if (size > bound)
           multiplier *= bound / size;
         // A bound of the slip rate is that of the next step.
-        friction.sticks[p] = (rates.empty() && size < (1. - 1e-6) * bound) ||
-                             stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
+        contact.sticks[p] = (rates.empty() && size < (1. - 1e-6) * bound) ||
+                            stable_norm(slip_rates[p]) <= 1e-12 * max_speed;
       }
-    return friction;
+    return contact;
   }
 
 
@@ -536,12 +536,12 @@ namespace Viscoplastic
                              const std::function<void()> &);
   template class StateTransfer<2>;
   template class StateTransfer<3>;
-  template FrictionState
-  friction_on_new_mesh<2>(const Discretization<2> &,
-                          const State<2> &,
-                          const DistributedVector &);
-  template FrictionState
-  friction_on_new_mesh<3>(const Discretization<3> &,
-                          const State<3> &,
-                          const DistributedVector &);
+  template ContactState
+  contact_on_new_mesh<2>(const Discretization<2> &,
+                         const State<2> &,
+                         const DistributedVector &);
+  template ContactState
+  contact_on_new_mesh<3>(const Discretization<3> &,
+                         const State<3> &,
+                         const DistributedVector &);
 } // namespace Viscoplastic

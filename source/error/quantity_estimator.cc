@@ -23,27 +23,27 @@ namespace Viscoplastic
   template <int dim>
   void
   QuantityEstimator<dim>::settle(const EvaluatedState<dim> &accepted,
-                                 const FrictionState       &friction,
+                                 const ContactState        &contact,
                                  QuantityEstimate          &estimate) const
   {
-    const FrictionState &old = accepted.state.friction;
+    const ContactState &old = accepted.state.contact;
     // Bounds of what has slipped and of what of it does no more, and the
     // quadrature.
     std::vector<double> sums(3, 0.);
-    for (unsigned int p = 0; p < friction.n_points(); ++p)
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
         if (discretization.face->layout().points[p].is_obstacle)
           continue;
         if (!old.sticks[p])
           {
             sums[0] += old.bound[p];
-            if (friction.sticks[p] ||
-                friction.multiplier[p] * old.multiplier[p] < 0.)
+            if (contact.sticks[p] ||
+                contact.multiplier[p] * old.multiplier[p] < 0.)
               sums[1] += old.bound[p];
           }
-        if (!friction.sticks[p])
+        if (!contact.sticks[p])
           sums[2] -=
-            0.5 * (friction.bound[p] - old.bound[p]) * friction.slip[p].norm();
+            0.5 * (contact.bound[p] - old.bound[p]) * contact.slip[p].norm();
       }
     Utilities::MPI::sum(sums, discretization.space.communicator, sums);
     const QuantityEstimate &before = accepted.errors.quantity;
@@ -78,10 +78,10 @@ namespace Viscoplastic
         // judged by the last slip.
         estimate.dual_norm  = before.dual_norm;
         estimate.dual_error = before.dual_error;
-        settle(accepted, state.friction, estimate);
+        settle(accepted, state.contact, estimate);
       }
 
-    const DualSolution<dim> dual = dual_problem.solve(solver, state.friction);
+    const DualSolution<dim> dual = dual_problem.solve(solver, state.contact);
     double                  mesh = 0., time = 0.;
     if (dual.norm > 0.)
       {

@@ -43,7 +43,7 @@ namespace Viscoplastic
       return result;
     DistributedVector density;
     if (d.face)
-      density = d.face->density(state.friction);
+      density = d.face->density(state.contact);
     Vector<double> squared = residual_estimator->estimate(
       {state.u, state.z, state.t, d.face ? &density : nullptr});
     result.residual =
@@ -63,7 +63,7 @@ namespace Viscoplastic
     const ContactFace<dim> *face = discretization.face.get();
     DistributedVector       density;
     if (face != nullptr)
-      density = face->density(state.friction);
+      density = face->density(state.contact);
     const IrreversibleStress none;
     return residual_estimator->multiply(
       {state.u, state.z, state.t, face != nullptr ? &density : nullptr},

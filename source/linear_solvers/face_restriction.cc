@@ -8,14 +8,14 @@
 
 namespace Viscoplastic
 {
-  FaceRestriction::FaceRestriction(FrictionFace                         face,
+  FaceRestriction::FaceRestriction(ContactLayout                        face,
                                    std::vector<types::global_dof_index> dofs,
                                    const IndexSet                      &owned)
-    : friction_face(std::move(face))
+    : contact_layout(std::move(face))
     , global_dofs(std::move(dofs))
   {
-    const MPI_Comm communicator = friction_face.communicator;
-    AssertDimension(global_dofs.size(), friction_face.n_dofs());
+    const MPI_Comm communicator = contact_layout.communicator;
+    AssertDimension(global_dofs.size(), contact_layout.n_dofs());
     for (const types::global_dof_index dof : global_dofs)
       owned_positions.push_back(owned.index_within_set(dof));
     numbers = Utilities::MPI::create_ascending_partitioning(
@@ -62,11 +62,11 @@ namespace Viscoplastic
   {
     if (truncation.projector.empty())
       return;
-    for (unsigned int n = 0; n < friction_face.n_nodes(); ++n)
+    for (unsigned int n = 0; n < contact_layout.n_nodes(); ++n)
       {
         const unsigned int *const position =
-          &owned_positions[friction_face.first_dof[n]];
-        const unsigned int n_dofs = friction_face.n_node_dofs(n);
+          &owned_positions[contact_layout.first_dof[n]];
+        const unsigned int n_dofs = contact_layout.n_node_dofs(n);
         Tensor<1, 3>       values;
         for (unsigned int i = 0; i < n_dofs; ++i)
           values[i] = v.begin()[position[i]];
@@ -83,11 +83,11 @@ namespace Viscoplastic
                                const DistributedVector &x,
                                DistributedVector       &y) const
   {
-    for (unsigned int n = 0; n < friction_face.n_nodes(); ++n)
+    for (unsigned int n = 0; n < contact_layout.n_nodes(); ++n)
       {
         const unsigned int *const position =
-          &owned_positions[friction_face.first_dof[n]];
-        const unsigned int n_dofs = friction_face.n_node_dofs(n);
+          &owned_positions[contact_layout.first_dof[n]];
+        const unsigned int n_dofs = contact_layout.n_node_dofs(n);
         for (unsigned int i = 0; i < n_dofs; ++i)
           for (unsigned int j = 0; j < n_dofs; ++j)
             y.begin()[position[i]] +=

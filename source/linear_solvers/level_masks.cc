@@ -57,7 +57,7 @@ namespace Viscoplastic
     , hierarchy(hierarchy)
     , restriction(restriction)
   {
-    const FrictionFace &face = restriction.face();
+    const ContactLayout &face = restriction.face();
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       {
         const unsigned int first = face.first_dof[n];

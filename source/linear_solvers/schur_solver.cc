@@ -17,7 +17,7 @@ namespace Viscoplastic
     struct TruncatedFace
     {
       const FullMatrix<double> &S;
-      const FrictionFace       &face;
+      const ContactLayout      &face;
       const FaceTruncation     &truncation;
 
       void
@@ -40,7 +40,7 @@ namespace Viscoplastic
     /// Inverse diagonal blocks of that, as a preconditioner.
     struct NodalBlocks
     {
-      const FrictionFace       &face;
+      const ContactLayout      &face;
       std::vector<Tensor<2, 3>> inverse;
 
       void

@@ -24,17 +24,17 @@ namespace Viscoplastic
     };
     if (!has_bound)
       {
-        const auto         &bounds = step.end.state.friction.bound;
-        const FrictionFace &face   = discretization.face->layout();
-        bool                here   = false;
+        const auto          &bounds = step.end.state.contact.bound;
+        const ContactLayout &face   = discretization.face->layout();
+        bool                 here   = false;
         for (unsigned int p = 0; p < bounds.size(); ++p)
           here |= !face.points[p].is_obstacle && bounds[p] > 0.;
         has_bound = is_so(here);
       }
     if (discretization.face->has_obstacles() && step.time_step.n > 0)
       {
-        const FrictionState &state   = step.end.state.friction;
-        bool                 touches = false, is_open = false;
+        const ContactState &state   = step.end.state.contact;
+        bool                touches = false, is_open = false;
         for (unsigned int p = 0; p < state.n_points(); ++p)
           if (discretization.face->layout().points[p].is_obstacle)
             (state.multiplier[p][0] > 0. ? touches : is_open) = true;

@@ -19,11 +19,11 @@ namespace Viscoplastic
         fields.insert(field);
     if (face == nullptr)
       return;
-    const FrictionState       &friction = state.friction;
-    const std::vector<double> &bounds   = friction.bound;
+    const ContactState        &contact = state.contact;
+    const std::vector<double> &bounds  = contact.bound;
     std::vector<double>        values(bounds.size());
     if (has(RecordedField::traction))
-      density = face->density(friction, /* of_friction_alone = */ true);
+      density = face->density(contact, /* of_friction_alone = */ true);
     if (has(RecordedField::bound))
       {
         for (unsigned int p = 0; p < values.size(); ++p)
@@ -34,26 +34,26 @@ namespace Viscoplastic
       {
         for (unsigned int p = 0; p < values.size(); ++p)
           values[p] = bounds[p] > 0. ?
-                        stable_norm(friction.multiplier[p]) / bounds[p] :
+                        stable_norm(contact.multiplier[p]) / bounds[p] :
                         0.;
         utilization = face->nodal_field(values);
       }
     if (has(RecordedField::stick))
       {
         for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = friction.sticks[p] ? 0. : 1.;
+          values[p] = contact.sticks[p] ? 0. : 1.;
         slipping = face->nodal_field(values);
       }
     if (has(RecordedField::contact_pressure))
       {
         for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = friction.multiplier[p][0] / face->weights()[p];
+          values[p] = contact.multiplier[p][0] / face->weights()[p];
         pressure = face->nodal_field(values, /* of_obstacles = */ true);
       }
     if (has(RecordedField::gap))
       {
         for (unsigned int p = 0; p < values.size(); ++p)
-          values[p] = bounds[p] - friction.slip[p][0];
+          values[p] = bounds[p] - contact.slip[p][0];
         gap = face->nodal_field(values, /* of_obstacles = */ true);
       }
   }

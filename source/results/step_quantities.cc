@@ -79,12 +79,11 @@ namespace Viscoplastic
     {
       if (!d.face || !d.face->gives_way())
         return 0.;
-      const FrictionFace &face = d.face->layout();
-      double              sum  = 0.;
-      for (unsigned int p = 0; p < state.friction.n_points(); ++p)
+      const ContactLayout &face = d.face->layout();
+      double               sum  = 0.;
+      for (unsigned int p = 0; p < state.contact.n_points(); ++p)
         if (face.points[p].gives_way())
-          sum +=
-            face.points[p].compliance.energy(state.friction.penetration(p));
+          sum += face.points[p].compliance.energy(state.contact.penetration(p));
       return face.sum(sum);
     }
   } // namespace
@@ -115,16 +114,16 @@ namespace Viscoplastic
         DistributedVector change = forces.u;
         change -= old.forces.u;
         result.friction       = check_friction(*d.face,
-                                         old.state.friction,
-                                         state.friction,
+                                         old.state.contact,
+                                         state.contact,
                                          change,
                                          step.foundation_step,
                                          result.max_displacement);
-        result.friction_force = d.face->resultant(state.friction);
+        result.friction_force = d.face->resultant(state.contact);
         if (d.face->has_obstacles())
           result.contact = summarize_contact(*d.face,
-                                             old.state.friction,
-                                             state.friction,
+                                             old.state.contact,
+                                             state.contact,
                                              change);
       }
     if (d.tension)

@@ -165,7 +165,7 @@ namespace Viscoplastic
     State<dim>       &state = accepted.state;
     DistributedVector density;
     if (discretization->face)
-      density = discretization->face->density(state.friction);
+      density = discretization->face->density(state.contact);
     const double loss =
       error_estimator ?
         memory_loss(triangulation, discretization->stress_space, state.z) :
@@ -182,8 +182,7 @@ namespace Viscoplastic
     auto                       result = transfer.unpack(d.stress_space);
     state                             = std::move(result.state);
     if (d.face)
-      state.friction =
-        friction_on_new_mesh(d, state, result.multiplier_density);
+      state.contact = contact_on_new_mesh(d, state, result.multiplier_density);
     const bool keeps_displacement =
       parameters.initial_state.reset_displacement && state.initial_u.size() > 0;
     if (keeps_displacement)

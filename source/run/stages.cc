@@ -37,13 +37,13 @@ namespace Viscoplastic
     DistributedVector density;
     const bool        opens = scene.has_unilateral_contact();
     if (opens)
-      density = discretization->face->density(state.friction);
+      density = discretization->face->density(state.contact);
     scene.enter_stage(scene.stage() + 1);
     set_up();
 
     const Discretization<dim> &d = *discretization;
     if (opens)
-      state.friction = friction_on_new_mesh(d, state, density);
+      state.contact = contact_on_new_mesh(d, state, density);
     enter_stage(d.stress_space, was_present, state);
     time_stepper->settle(accepted);
     accepted.rate.reset();

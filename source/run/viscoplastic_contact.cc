@@ -322,7 +322,7 @@ namespace Viscoplastic
     const Discretization<dim> &d = *discretization;
     const double tolerance = parameters.initial_state.compatibility_tolerance;
     const CompatibilityViolation<dim> violation = compatibility_violation(
-      d.space, load, d.face.get(), accepted.state.u, accepted.state.friction);
+      d.space, load, d.face.get(), accepted.state.u, accepted.state.contact);
     // Data that a solution makes are compatible up to quadrature.
     if (scene.exact_solution && scene.exact_solution->makes_data)
       return;

@@ -147,9 +147,9 @@ namespace Viscoplastic
       add_irreversible_load(d.stress_space, state.z, right_side);
 
     // (3.20): u_n for the z_n that (3.19) has given.
-    DistributedVector u = solver.initial_guess(problem, guess, state.friction);
+    DistributedVector u = solver.initial_guess(problem, guess, state.contact);
     ContactReport     report =
-      solver.solve(problem, right_side, problem.tolerance, u, state.friction);
+      solver.solve(problem, right_side, problem.tolerance, u, state.contact);
     report.add_earlier(solution.report);
     solution.report = report;
     solver.set_displacement(problem, u, state);

@@ -249,7 +249,7 @@ namespace Viscoplastic
   ImplicitStep<dim>::Newton::predict()
   {
     const State<dim> &old = problem.old.state;
-    u = method.solver.initial_guess(problem, old, solution.state.friction);
+    u = method.solver.initial_guess(problem, old, solution.state.contact);
     DistributedVector ahead(problem.old_u());
     d.space.to_frames(old.velocity, ahead);
     ahead.sadd(std::min(problem.time_step.k, old.k), 1., problem.old_u());
@@ -275,7 +275,7 @@ namespace Viscoplastic
                             method.tangent.extrapolate(z, at, zero),
                             right_side);
       ContactReport report = method.solver.solve(
-        problem, right_side, tolerance, u, solution.state.friction);
+        problem, right_side, tolerance, u, solution.state.contact);
       report.add_earlier(solution.report);
       solution.report = report;
       method.solver.set_displacement(problem, u, solution.state);
@@ -351,7 +351,7 @@ namespace Viscoplastic
   ImplicitStep<dim>::Newton::correct()
   {
     State<dim>        &state = solution.state;
-    NewtonIterate<dim> iterate{u, state.u, state.z, state.friction};
+    NewtonIterate<dim> iterate{u, state.u, state.z, state.contact};
     const NonsymmetricCorrection<dim> newton(d, problem, method.solver.bulk());
     const auto                        correction = newton.correct(
       std::max(0.1 * tolerance * size / error, std::min(1e-2, error / size)),
@@ -363,10 +363,10 @@ namespace Viscoplastic
     solution.report.linear_iterations += correction.iterations;
     if (correction.share > 0.)
       {
-        u = base       = iterate.u;
-        at             = iterate.ghosted_u;
-        z              = iterate.z;
-        state.friction = iterate.friction;
+        u = base      = iterate.u;
+        at            = iterate.ghosted_u;
+        z             = iterate.z;
+        state.contact = iterate.contact;
       }
     return correction.share;
   }
@@ -388,7 +388,7 @@ namespace Viscoplastic
 
     DistributedVector ghosted_change = d.space.ghosted_vector();
     d.space.to_cartesian(change, ghosted_change);
-    const std::vector<double> &bounds = solution.state.friction.bound;
+    const std::vector<double> &bounds = solution.state.contact.bound;
     std::vector<Tensor<1, 2>>  slips, slip_changes;
     if (d.face)
       {
@@ -402,8 +402,8 @@ namespace Viscoplastic
       double friction = 0.;
       for (unsigned int p = 0; p < slips.size(); ++p)
         {
-          const FrictionFace::Point &point = d.face->layout().points[p];
-          const Tensor<1, 2>         slip  = slips[p] + s * slip_changes[p];
+          const ContactLayout::Point &point = d.face->layout().points[p];
+          const Tensor<1, 2>          slip  = slips[p] + s * slip_changes[p];
           const double norm = slip.norm(), rest = slip_changes[p].norm();
           if (point.gives_way())
             friction +=
@@ -540,9 +540,9 @@ namespace Viscoplastic
     DistributedVector right_side(problem.load.values);
     add_irreversible_load(discretization.stress_space, state.z, right_side);
     DistributedVector u =
-      solver.initial_guess(problem, problem.old.state, state.friction);
+      solver.initial_guess(problem, problem.old.state, state.contact);
     solution.report =
-      solver.solve(problem, right_side, problem.tolerance, u, state.friction);
+      solver.solve(problem, right_side, problem.tolerance, u, state.contact);
     solver.set_displacement(problem, u, state);
     return solution;
   }

@@ -3,7 +3,7 @@
 #include <deal.II/lac/solver_gmres.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/contact/friction_points.h>
+#include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/laws/backward_euler.h>
 #include <viscoplastic_contact/time_stepping/nonsymmetric_correction.h>
 
@@ -153,15 +153,15 @@ namespace Viscoplastic
 
   template <int dim>
   FaceTruncation
-  NonsymmetricCorrection<dim>::truncation(const FrictionState &friction) const
+  NonsymmetricCorrection<dim>::truncation(const ContactState &contact) const
   {
     if (!face)
       return {};
-    const FrictionFace       &layout = face->layout();
+    const ContactLayout      &layout = face->layout();
     std::vector<Tensor<2, 3>> inverse(layout.n_nodes());
     for (unsigned int node = 0; node < layout.n_nodes(); ++node)
       inverse[node] = invert(solver.face_matrix().diagonal_block(node));
-    return make_truncation(layout, friction, inverse);
+    return make_truncation(layout, contact, inverse);
   }
 
 
@@ -180,7 +180,7 @@ namespace Viscoplastic
         Vector<double> force(face->layout().n_dofs());
         fit_multipliers(face->layout(),
                         face->restriction().gather(r),
-                        iterate.friction,
+                        iterate.contact,
                         force);
         face->restriction().add(-1., force, r);
       }
@@ -219,8 +219,8 @@ namespace Viscoplastic
     to.u.add(share, w);
     if (face)
       {
-        const FrictionFace &layout = face->layout();
-        DistributedVector   change(to.u);
+        const ContactLayout &layout = face->layout();
+        DistributedVector    change(to.u);
         change -= problem.old_u();
         Vector<double> x = face->restriction().gather(change);
         if (problem.foundation_step.size() > 0)
@@ -228,10 +228,10 @@ namespace Viscoplastic
         Vector<double> stop(x.size());
         for (unsigned int p = 0; p < layout.points.size(); ++p)
           {
-            const FrictionFace::Point &point = layout.points[p];
-            Tensor<1, 2>              &s     = to.friction.slip[p];
+            const ContactLayout::Point &point = layout.points[p];
+            Tensor<1, 2>               &s     = to.contact.slip[p];
             const Tensor<1, 3> values = layout.node_values(x, point.node);
-            if (to.friction.sticks[p] || point.gives_way())
+            if (to.contact.sticks[p] || point.gives_way())
               continue;
             const Tensor<1, 2> before = s;
             s                         = slip(point, values);
@@ -243,15 +243,15 @@ namespace Viscoplastic
             };
             if (point.is_obstacle)
               {
-                const double beyond = s[0] - to.friction.bound[p];
+                const double beyond = s[0] - to.contact.bound[p];
                 if (beyond <= 0.)
                   continue;
                 stop_by(-beyond / point.map[0].norm_square() * point.map[0]);
-                s[0]                  = to.friction.bound[p];
-                to.friction.sticks[p] = true;
+                s[0]                 = to.contact.bound[p];
+                to.contact.sticks[p] = true;
                 continue;
               }
-            if (to.friction.bound[p] == 0.)
+            if (to.contact.bound[p] == 0.)
               continue;
             if (before * s <= 0. && layout.has_plain_friction(point.node))
               {
@@ -260,17 +260,16 @@ namespace Viscoplastic
                           -1. * node_force(point, s));
                 s = Tensor<1, 2>();
               }
-            to.friction.sticks[p] = s.norm() == 0.;
+            to.contact.sticks[p] = s.norm() == 0.;
           }
         for (unsigned int p = 0; p < layout.points.size(); ++p)
-          if (const FrictionFace::Point &point = layout.points[p];
+          if (const ContactLayout::Point &point = layout.points[p];
               point.gives_way())
             {
-              to.friction.slip[p] =
-                slip(point,
-                     layout.node_values(x, point.node) +
-                       layout.node_values(stop, point.node));
-              to.friction.sticks[p] = to.friction.penetration(p) > 0.;
+              to.contact.slip[p]   = slip(point,
+                                        layout.node_values(x, point.node) +
+                                          layout.node_values(stop, point.node));
+              to.contact.sticks[p] = to.contact.penetration(p) > 0.;
             }
         face->restriction().add(1., stop, to.u);
       }
@@ -290,7 +289,7 @@ namespace Viscoplastic
     const double rounding = solver.rounding_error();
     solver.set_rounding_error(0.);
 
-    const FaceTruncation    truncation = this->truncation(iterate.friction);
+    const FaceTruncation    truncation = this->truncation(iterate.contact);
     const DistributedVector r          = residual(iterate);
     const double            before     = dual_norm(r);
     DistributedVector       w(r), right_side(r);

@@ -84,7 +84,7 @@ namespace Viscoplastic
   template <int dim>
   double
   ProximalSprings<dim>::way_to_obstacles(const StepProblem<dim>  &problem,
-                                         const FrictionState     &friction,
+                                         const ContactState      &contact,
                                          const DistributedVector &u,
                                          const DistributedVector &motion) const
   {
@@ -95,10 +95,10 @@ namespace Viscoplastic
     const auto steps  = face.slips(motion, {});
     double     result = std::numeric_limits<double>::max();
     for (unsigned int p = 0; p < here.size(); ++p)
-      if (const FrictionFace::Point &point = face.layout().points[p];
+      if (const ContactLayout::Point &point = face.layout().points[p];
           point.is_obstacle && steps[p][0] > 0.)
         {
-          const double left = friction.bound[p] - here[p][0];
+          const double left = contact.bound[p] - here[p][0];
           // One that gives way ends nothing once it presses.
           if (!point.gives_way() || left > 0.)
             result = std::min(result, std::max(0., left) / steps[p][0]);
@@ -116,7 +116,7 @@ namespace Viscoplastic
                               const BulkSolver        &bulk,
                               const Solve             &solve,
                               DistributedVector       &u,
-                              FrictionState           &friction) const
+                              ContactState            &contact) const
   {
     // The error of the solver is measured with the springs, relative to a norm
     // in which the body's way to the foundation counts, too.
@@ -182,7 +182,7 @@ namespace Viscoplastic
           break;
         center = u;
         center.add(std::min(reach,
-                            way_to_obstacles(problem, friction, u, motion)),
+                            way_to_obstacles(problem, contact, u, motion)),
                    motion);
       }
     AssertThrow(false,

@@ -16,7 +16,7 @@ namespace Viscoplastic
     template <int dim>
     bool
     holds_at_rest(const ContactFace<dim>    &face,
-                  const FrictionState       &old,
+                  const ContactState        &old,
                   const std::vector<double> &bounds)
     {
       if (old.n_points() != bounds.size() ||
@@ -104,25 +104,25 @@ namespace Viscoplastic
                           const AdmissibleSpace<dim> &space,
                           const ContactFace<dim>     *face)
   {
-    const State<dim> &old   = problem.old.state;
-    state.u                 = old.u;
-    state.velocity          = space.ghosted_vector();
-    state.friction          = old.friction;
-    FrictionState &friction = state.friction;
-    friction.bound          = problem.bounds;
+    const State<dim> &old = problem.old.state;
+    state.u               = old.u;
+    state.velocity        = space.ghosted_vector();
+    state.contact         = old.contact;
+    ContactState &contact = state.contact;
+    contact.bound         = problem.bounds;
     if (problem.bounds_follow_pressure)
       {
-        friction.bound = problem.given_bounds;
+        contact.bound = problem.given_bounds;
         face->add_computed_bounds(problem.time_step.t,
-                                  old.friction,
-                                  friction.bound,
+                                  old.contact,
+                                  contact.bound,
                                   problem.slip_rates);
       }
-    for (unsigned int p = 0; p < friction.n_points(); ++p)
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
-        friction.slip[p] = Tensor<1, 2>();
+        contact.slip[p] = Tensor<1, 2>();
         if (!face->layout().points[p].is_obstacle)
-          friction.sticks[p] = friction.bound[p] > 0.;
+          contact.sticks[p] = contact.bound[p] > 0.;
       }
     // The bound on the error is that of the solve.
     report            = problem.old.report;
@@ -159,7 +159,7 @@ namespace Viscoplastic
     if (discretization.face)
       unchanged = unchanged &&
                   holds_at_rest(*discretization.face,
-                                old.state.friction,
+                                old.state.contact,
                                 problem.bounds) &&
                   (problem.foundation_step.size() == 0 ||
                    problem.foundation_step.all_zero());

@@ -69,7 +69,7 @@ namespace Viscoplastic
   DistributedVector
   StepSolver<dim>::initial_guess(const StepProblem<dim> &problem,
                                  const State<dim>       &guess,
-                                 FrictionState          &friction) const
+                                 ContactState           &contact) const
   {
     const Discretization<dim>  &d     = discretization;
     const AdmissibleSpace<dim> &space = d.space;
@@ -82,15 +82,15 @@ namespace Viscoplastic
     u.add(std::min(problem.time_step.k, guess.k), velocity);
     if (d.face)
       {
-        const FrictionFace   &face            = d.face->layout();
+        const ContactLayout  &face            = d.face->layout();
         const Vector<double> &foundation_step = problem.foundation_step;
-        if (guess.friction.n_points() == problem.bounds.size())
+        if (guess.contact.n_points() == problem.bounds.size())
           {
-            friction       = guess.friction;
-            friction.bound = problem.bounds;
+            contact       = guess.contact;
+            contact.bound = problem.bounds;
           }
         else
-          friction = FrictionState(problem.bounds);
+          contact = ContactState(problem.bounds);
         const auto &positions = d.face->restriction().positions();
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
           {
@@ -106,7 +106,7 @@ namespace Viscoplastic
                 const unsigned int dof = positions[begin + i];
                 x[i] = u.begin()[dof] - old_u.begin()[dof] - carried[i];
               }
-            const bool sticks = p < obstacle && friction.sticks[p];
+            const bool sticks = p < obstacle && contact.sticks[p];
             if (sticks && obstacle == face.first_point[node + 1])
               x = 0.;
             else if (sticks && face.has_plain_friction(node))
@@ -116,10 +116,10 @@ namespace Viscoplastic
                 const Tensor<1, 3> &normal = face.points[o].map[0];
                 if (face.points[o].gives_way())
                   continue;
-                friction.sticks[o] =
-                  friction.sticks[o] && friction.multiplier[o][0] > 0.;
-                const double left = friction.bound[o] - normal * x;
-                if (friction.sticks[o] || left < 0.)
+                contact.sticks[o] =
+                  contact.sticks[o] && contact.multiplier[o][0] > 0.;
+                const double left = contact.bound[o] - normal * x;
+                if (contact.sticks[o] || left < 0.)
                   x += left / normal.norm_square() * normal;
               }
             if (sticks || obstacle < face.first_point[node + 1])
@@ -200,12 +200,12 @@ namespace Viscoplastic
                          const DistributedVector &right_side,
                          const double             tolerance,
                          DistributedVector       &u,
-                         FrictionState           &friction)
+                         ContactState            &contact)
   {
     const SolverParameters &parameters =
       discretization.scene().parameters.solver;
     ContactReport report =
-      solve_with_given_bounds(problem, right_side, tolerance, u, friction);
+      solve_with_given_bounds(problem, right_side, tolerance, u, contact);
     if (!problem.bounds_follow_pressure || !discretization.slipping_face())
       return report;
 
@@ -215,14 +215,14 @@ namespace Viscoplastic
       {
         std::vector<double> bounds = problem.given_bounds;
         face.add_computed_bounds(problem.time_step.t,
-                                 friction,
+                                 contact,
                                  bounds,
                                  problem.slip_rates);
         double change = 0., sum = 0.;
         for (unsigned int p = 0; p < bounds.size(); ++p)
           if (!face.layout().points[p].is_obstacle)
             {
-              change += std::abs(bounds[p] - friction.bound[p]);
+              change += std::abs(bounds[p] - contact.bound[p]);
               sum += bounds[p];
             }
         change = face.layout().sum(change);
@@ -247,10 +247,10 @@ namespace Viscoplastic
                    "lagged takes the pressure of the step before.";
         AssertThrow(report.bound_iterations < parameters.maximal_iterations,
                     ExcMessage(message.str()));
-        last_change    = change;
-        friction.bound = bounds;
+        last_change   = change;
+        contact.bound = bounds;
         ContactReport again =
-          solve_with_given_bounds(problem, right_side, tolerance, u, friction);
+          solve_with_given_bounds(problem, right_side, tolerance, u, contact);
         ++again.bound_iterations;
         again.add_earlier(report);
         report = again;
@@ -265,20 +265,20 @@ namespace Viscoplastic
                                            const DistributedVector &right_side,
                                            const double             tolerance,
                                            DistributedVector       &u,
-                                           FrictionState           &friction)
+                                           ContactState            &contact)
   {
     if (!springs)
-      return solve_regular(problem, right_side, tolerance, u, friction);
+      return solve_regular(problem, right_side, tolerance, u, contact);
     return springs->solve(
       problem,
       right_side,
       tolerance,
       *bulk_solver,
       [&](const DistributedVector &right, const double inner_tolerance) {
-        return solve_regular(problem, right, inner_tolerance, u, friction);
+        return solve_regular(problem, right, inner_tolerance, u, contact);
       },
       u,
-      friction);
+      contact);
   }
 
 
@@ -289,7 +289,7 @@ namespace Viscoplastic
                                  const DistributedVector &right_side,
                                  const double             tolerance,
                                  DistributedVector       &u,
-                                 FrictionState           &friction)
+                                 ContactState            &contact)
   {
     // All of it in proportion gives the solution in proportion: where squares
     // would leave the range of numbers, another unit does. In a ramp that
@@ -313,7 +313,7 @@ namespace Viscoplastic
           return pair.second.gives_way() &&
                  pair.second.compliance_exponent != 1.;
         }))
-      return solve_in_unit(data, tolerance, u, friction);
+      return solve_in_unit(data, tolerance, u, contact);
 
     const double unit    = std::ldexp(1., std::max(std::ilogb(size), -1000));
     const auto   in_unit = [unit](const auto &vector) {
@@ -323,25 +323,25 @@ namespace Viscoplastic
     };
     const auto scale = [&](const double factor) {
       u *= factor;
-      for (unsigned int p = 0; p < friction.n_points(); ++p)
+      for (unsigned int p = 0; p < contact.n_points(); ++p)
         {
-          friction.bound[p] *= factor;
-          friction.slip[p] *= factor;
-          friction.multiplier[p] *= factor;
+          contact.bound[p] *= factor;
+          contact.slip[p] *= factor;
+          contact.multiplier[p] *= factor;
         }
     };
     const DistributedVector old_u            = in_unit(data.old_u),
                             load             = in_unit(data.load),
                             other_right_side = in_unit(right_side);
-    const std::vector<double> bounds         = friction.bound;
+    const std::vector<double> bounds         = contact.bound;
     Vector<double>            foundation_step(data.foundation_step);
     if (foundation_step.size() > 0)
       foundation_step /= unit;
     scale(1. / unit);
     ContactReport report = solve_in_unit(
-      {old_u, load, other_right_side, foundation_step}, tolerance, u, friction);
+      {old_u, load, other_right_side, foundation_step}, tolerance, u, contact);
     scale(unit);
-    friction.bound = bounds;
+    contact.bound = bounds;
     report.duality_gap *= unit * unit;
     report.error *= unit;
     bulk_solver->set_rounding_error(unit * bulk_solver->rounding_error());
@@ -355,7 +355,7 @@ namespace Viscoplastic
   StepSolver<dim>::solve_in_unit(const Data        &data,
                                  const double       tolerance,
                                  DistributedVector &u,
-                                 FrictionState     &friction)
+                                 ContactState      &contact)
   {
     const Discretization<dim> &d = discretization;
     const Timer                timer;
@@ -372,7 +372,7 @@ namespace Viscoplastic
         bulk_solver->begin(data.right_side, u);
         const double seconds_to_begin = timer.wall_time();
         report                        = contact_solver.solve(
-          *bulk_solver, d.face->layout(), tolerance, increment, friction);
+          *bulk_solver, d.face->layout(), tolerance, increment, contact);
         report.seconds = timer.wall_time();
         report.plain_seconds =
           std::min(report.seconds, seconds_to_begin + report.plain_seconds);
@@ -398,7 +398,7 @@ namespace Viscoplastic
   void
   StepSolver<dim>::solve_with_held_friction(const DistributedVector &right_side,
                                             const double             tolerance,
-                                            FrictionState            friction,
+                                            ContactState             contact,
                                             DistributedVector       &u)
   {
     const Discretization<dim> &d = discretization;
@@ -416,18 +416,17 @@ namespace Viscoplastic
         bulk_solver->solve(right_side, u, tolerance);
         return;
       }
-    const FrictionFace &face = d.face->layout();
-    Vector<double>      force(face.n_dofs()), change(face.n_dofs());
-    for (unsigned int p = 0; p < friction.n_points(); ++p)
+    const ContactLayout &face = d.face->layout();
+    Vector<double>       force(face.n_dofs()), change(face.n_dofs());
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
-        const FrictionFace::Point &point = face.points[p];
+        const ContactLayout::Point &point = face.points[p];
         // Nothing holds a point without friction, or off the foundation.
-        friction.sticks[p] = point.is_obstacle ?
-                               friction.multiplier[p][0] > 0. :
-                               friction.bound[p] > 0.;
+        contact.sticks[p] = point.is_obstacle ? contact.multiplier[p][0] > 0. :
+                                                contact.bound[p] > 0.;
         if (point.gives_way())
           face.set_node_values(face.node_values(force, point.node) +
-                                 node_force(point, friction.multiplier[p]),
+                                 node_force(point, contact.multiplier[p]),
                                point.node,
                                force);
       }
@@ -436,7 +435,7 @@ namespace Viscoplastic
       // From where the body is, springs carry nothing.
       springs->add_load(u, right);
     bulk_solver->begin(right, u);
-    bulk_solver->set_truncation(make_truncation(face, friction, {}));
+    bulk_solver->set_truncation(make_truncation(face, contact, {}));
     // As a rule the change is less than a hundredth of u.
     bulk_solver->correct(force,
                          std::clamp(100. * tolerance, 1e-10, 1e-4),

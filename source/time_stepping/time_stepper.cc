@@ -73,13 +73,12 @@ namespace Viscoplastic
                       const State<dim>          &old,
                       State<dim>                &state)
     {
-      const ContactFace<dim> &face     = *discretization.face;
-      const FrictionState    &friction = state.friction;
-      std::vector<double>     work(friction.n_points());
+      const ContactFace<dim> &face    = *discretization.face;
+      const ContactState     &contact = state.contact;
+      std::vector<double>     work(contact.n_points());
       for (unsigned int p = 0; p < work.size(); ++p)
         if (face.weights()[p] > 0. && !face.layout().points[p].is_obstacle)
-          work[p] =
-            friction.multiplier[p] * friction.slip[p] / face.weights()[p];
+          work[p] = contact.multiplier[p] * contact.slip[p] / face.weights()[p];
       state.friction_work = face.nodal_field(work);
       if (old.friction_work.size() > 0)
         for (std::size_t i = 0; i < discretization.space.relevant.n_elements();
@@ -97,7 +96,7 @@ namespace Viscoplastic
     template <int dim>
     bool
     has_computed_bounds(const Discretization<dim> &d,
-                        const FrictionState       &state,
+                        const ContactState        &state,
                         const double               t,
                         const std::vector<double> &slip_rates)
     {
@@ -155,8 +154,8 @@ namespace Viscoplastic
             const bool        has_event =
               control.is_on && discretization.face &&
               has_contact_event(discretization.face->layout(),
-                                state.friction,
-                                step.end.state.friction,
+                                state.contact,
+                                step.end.state.contact,
                                 control.is_kink(time_step.t_old));
             if (control.accepts(time_step, errors, has_event))
               {
@@ -220,11 +219,11 @@ namespace Viscoplastic
             problem.given_bounds           = problem.bounds;
           }
         // Without a pressure before, a fixed point is looked for from stick.
-        const FrictionState &old = accepted.state.friction;
+        const ContactState &old = accepted.state.contact;
         if (problem.bounds_follow_pressure &&
             !has_computed_bounds(d, old, time_step.t, problem.slip_rates))
           {
-            FrictionState pressed(problem.bounds);
+            ContactState pressed(problem.bounds);
             for (auto &multiplier : pressed.multiplier)
               multiplier[0] = std::numeric_limits<double>::infinity();
             d.face->add_computed_bounds(time_step.t,
@@ -316,8 +315,8 @@ namespace Viscoplastic
         change -= accepted.forces.u;
         turning =
           turning_work(discretization.face->layout(),
-                       accepted.state.friction,
-                       state.friction,
+                       accepted.state.contact,
+                       state.contact,
                        discretization.face->slips(change,
                                                   step.foundation_step));
       }
@@ -383,13 +382,13 @@ namespace Viscoplastic
   {
     const Discretization<dim> &d = discretization;
     if (d.face)
-      initial.state.friction = FrictionState(d.face->bounds(0.));
+      initial.state.contact = ContactState(d.face->bounds(0.));
     const StepProblem<dim> problem =
       make_problem(initial, nullptr, {0, 0., 0., 0.});
     initial.forces =
       evaluate_forces(d.stress_space, d.matrix, problem.load, initial.state);
     StepSolution<dim> solution = step_method->equilibrate(problem);
-    initial.state.friction     = std::move(solution.state.friction);
+    initial.state.contact      = std::move(solution.state.contact);
     initial.state.velocity     = std::move(solution.state.velocity);
     initial.state.u            = std::move(solution.state.u);
     initial.state.initial_u    = initial.state.u;
@@ -417,7 +416,7 @@ namespace Viscoplastic
     as_part_of_step(state.n + 1, state.t, [&] {
       solver_of_elasticity().solve_with_held_friction(right_side,
                                                       tolerance(carried),
-                                                      state.friction,
+                                                      state.contact,
                                                       u);
       return 0;
     });

@@ -134,7 +134,7 @@ namespace
     EXPECT_TRUE(end.state.z.empty());
     EXPECT_TRUE(end.state.time_error.empty());
     EXPECT_TRUE(end.state.rate_slope.empty());
-    EXPECT_EQ(end.state.friction.n_points(), 0u);
+    EXPECT_EQ(end.state.contact.n_points(), 0u);
     EXPECT_EQ(end.state.initial_u.size(), 0u);
     EXPECT_FALSE(end.rate.has_value());
     EXPECT_EQ(end.space_estimate.squared_indicators.size(), 0u);

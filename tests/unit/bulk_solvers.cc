@@ -163,8 +163,8 @@ namespace
     FullMatrix<double>
     from_blocks(const std::vector<Tensor<2, 3>> &blocks) const
     {
-      const FrictionFace &face = restriction.face();
-      FullMatrix<double>  result(face_dofs.size(), face_dofs.size());
+      const ContactLayout &face = restriction.face();
+      FullMatrix<double>   result(face_dofs.size(), face_dofs.size());
       for (unsigned int node = 0; node < face.n_nodes(); ++node)
         for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
           for (unsigned int j = 0; j < face.n_node_dofs(node); ++j)
@@ -254,7 +254,7 @@ namespace
 
   /// A mixture of free, sticking and slipping points with springs.
   FaceTruncation
-  some_truncation(const FrictionFace &face)
+  some_truncation(const ContactLayout &face)
   {
     FaceTruncation truncation;
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
@@ -265,7 +265,7 @@ namespace
         else
           {
             // One direction is blocked in rotated components, one has a spring.
-            const FrictionFace::Point &point =
+            const ContactLayout::Point &point =
               face.points[face.first_point[node]];
             Tensor<1, 3> q = point.map[0];
             q /= q.norm();
@@ -293,7 +293,7 @@ namespace
     constexpr int           dim = TypeParam::value;
     const BulkScenario<dim> scenario(1, 1, true);
     const Dense             dense(scenario);
-    const FrictionFace     &face = scenario.face->layout();
+    const ContactLayout    &face = scenario.face->layout();
     const unsigned int      m = face.n_dofs(), n = dense.face_dofs.size();
     Vector<double>          force(m), change(m);
     for (unsigned int k = 0; k < m; ++k)
@@ -429,7 +429,7 @@ namespace
     constexpr int           dim = TypeParam::value;
     const BulkScenario<dim> scenario(1, 1, true);
     const Dense             dense(scenario);
-    const FrictionFace     &face   = scenario.face->layout();
+    const ContactLayout    &face   = scenario.face->layout();
     const auto              solver = scenario.geometric();
     const auto             &stages = solver->face_matrix().stages();
     const unsigned int rank = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);

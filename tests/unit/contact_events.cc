@@ -17,11 +17,11 @@ namespace
   using namespace Viscoplastic;
 
   /// Points with sticking given by '.', slip to the right or left by '>', '<'.
-  FrictionState
+  ContactState
   points(const std::string &signs, const std::vector<double> &bounds = {})
   {
-    FrictionState state(bounds.empty() ? std::vector<double>(signs.size(), 1.) :
-                                         bounds);
+    ContactState state(bounds.empty() ? std::vector<double>(signs.size(), 1.) :
+                                        bounds);
     for (unsigned int p = 0; p < signs.size(); ++p)
       {
         state.sticks[p] = signs[p] == '.';
@@ -35,7 +35,7 @@ namespace
 
   TEST(ContactEvent, BeginCoverEndTurn)
   {
-    FrictionFace face;
+    ContactLayout face;
     face.points.resize(3); // of friction
     const auto event = [&](const std::string &from, const std::string &to) {
       return has_contact_event(face, points(from), points(to), false);
@@ -72,13 +72,13 @@ namespace
   TEST(ContactEvent, TouchCoverLiftOff)
   {
     // Obstacles that are touched, '|', or not.
-    FrictionFace face;
+    ContactLayout face;
     face.has_obstacles = true;
     face.points.resize(3);
     for (auto &point : face.points)
       point.is_obstacle = true;
     const auto obstacles = [](const std::string &signs) {
-      FrictionState state(std::vector<double>(signs.size(), 0.1));
+      ContactState state(std::vector<double>(signs.size(), 0.1));
       for (unsigned int p = 0; p < signs.size(); ++p)
         {
           state.sticks[p]        = signs[p] == '|';
@@ -111,7 +111,7 @@ namespace
     // Points with the bound 2 whose multiplier turns by an angle while they
     // slip by 3.
     const auto state = [](const std::vector<double> &angles) {
-      FrictionState result(std::vector<double>(angles.size(), 2.));
+      ContactState result(std::vector<double>(angles.size(), 2.));
       for (unsigned int p = 0; p < angles.size(); ++p)
         {
           result.sticks[p]        = false;
@@ -120,9 +120,9 @@ namespace
         }
       return result;
     };
-    FrictionFace face;
+    ContactLayout face;
     face.points.resize(3); // of friction
-    const auto work = [&](const FrictionState &from, const FrictionState &to) {
+    const auto work = [&](const ContactState &from, const ContactState &to) {
       std::vector<Tensor<1, 2>> slips(to.multiplier);
       for (Tensor<1, 2> &slip : slips)
         slip *= 1.5;
@@ -136,8 +136,8 @@ namespace
     // Slip that turns back counts as a right angle, slip that begins or ends
     // not.
     EXPECT_NEAR(work(state({0.}), state({numbers::PI})), n_ranks * 6., 1e-13);
-    FrictionState at_rest = state({0.});
-    at_rest.sticks[0]     = true;
+    ContactState at_rest = state({0.});
+    at_rest.sticks[0]    = true;
     EXPECT_EQ(work(at_rest, state({0.5})), 0.);
     EXPECT_EQ(work(state({0.5}), at_rest), 0.);
   }

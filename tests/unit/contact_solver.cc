@@ -368,7 +368,7 @@ namespace
               for (unsigned int i = 0; i < 3; ++i)
                 residual[i] += f[i];
             }
-          FrictionState state(problem.bounds);
+          ContactState state(problem.bounds);
           fit_multipliers(problem.face, residual, state, force);
           force -= residual;
           EXPECT_LT(force.l2_norm(), 1e-9);
@@ -422,7 +422,7 @@ namespace
             [&] {
               Vector<double> u(start.u_prev);
               u[u.size() - 1] = nan;
-              solve(start, condensed, 1e-8, FrictionState(start.bounds), u);
+              solve(start, condensed, 1e-8, ContactState(start.bounds), u);
             },
             "not finite");
         }
@@ -442,7 +442,7 @@ namespace
               solve(problem,
                     false,
                     1e-12,
-                    FrictionState(problem.bounds),
+                    ContactState(problem.bounds),
                     problem.u_prev,
                     max_iterations);
             },

@@ -39,7 +39,7 @@ namespace Viscoplastic::Testing
   {
     FullMatrix<double>  A;
     Vector<double>      load, u_prev;
-    FrictionFace        face;
+    ContactLayout       face;
     std::vector<double> bounds;
 
     unsigned int
@@ -107,7 +107,7 @@ namespace Viscoplastic::Testing
              const std::vector<std::vector<Tensor<1, 3>>> &planes,
              const std::vector<Tensor<1, 3>>              &normals = {})
     {
-      FrictionFace::Point point;
+      ContactLayout::Point point;
       point.node = face.n_nodes();
       for (const auto &rows : planes)
         {

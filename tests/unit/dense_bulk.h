@@ -152,7 +152,7 @@ namespace Viscoplastic::Testing
         vmult(Vector<double> &y, const Vector<double> &x) const
         {
           bulk.problem.A.vmult(y, x);
-          const FrictionFace &face = bulk.problem.face;
+          const ContactLayout &face = bulk.problem.face;
           for (unsigned int n = 0; n < face.n_nodes(); ++n)
             for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
               for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
@@ -169,8 +169,8 @@ namespace Viscoplastic::Testing
         void
         vmult(Vector<double> &y, const Vector<double> &x) const
         {
-          y                        = x;
-          const FrictionFace &face = bulk.problem.face;
+          y                         = x;
+          const ContactLayout &face = bulk.problem.face;
           for (unsigned int n = 0; n < face.n_nodes(); ++n)
             {
               Tensor<2, 3> block = Tensor<2, 3>(unit_symmetric_tensor<3>()) +
@@ -287,7 +287,7 @@ namespace Viscoplastic::Testing
   struct Result
   {
     Vector<double> u;
-    FrictionState  state;
+    ContactState   state;
     ContactReport  report;
   };
 
@@ -297,7 +297,7 @@ namespace Viscoplastic::Testing
   solve(const Problem        &problem,
         const bool            condensed,
         const double          tolerance,
-        FrictionState         state,
+        ContactState          state,
         const Vector<double> &start,
         const unsigned int    max_iterations = 60)
   {
@@ -328,7 +328,7 @@ namespace Viscoplastic::Testing
     return solve(problem,
                  condensed,
                  tolerance,
-                 FrictionState(problem.bounds),
+                 ContactState(problem.bounds),
                  problem.u_prev);
   }
 

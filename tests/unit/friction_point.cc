@@ -4,7 +4,7 @@
 
 #include "random.h"
 #include <viscoplastic_contact/base/number_range.h>
-#include <viscoplastic_contact/contact/friction_points.h>
+#include <viscoplastic_contact/contact/contact_points.h>
 
 #include <gtest/gtest.h>
 

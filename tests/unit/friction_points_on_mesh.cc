@@ -162,7 +162,7 @@ namespace
         const Tensor<1, dim>    normal = body->scene.boundary.at(2).normal;
         const unsigned int      n      = face.layout().points.size();
 
-        FrictionState     state(face.bounds(0.));
+        ContactState      state(face.bounds(0.));
         Tensor<1, dim>    sum;
         DistributedVector in_frames = body->space->owned_vector();
         body->space->to_frames(body->rough_vector(), in_frames);

@@ -27,19 +27,19 @@ namespace
     constexpr int           dim       = TypeParam::value;
     constexpr double        tolerance = 1e-9;
     const BulkScenario<dim> scenario(dim == 2 ? 8 : 3, true);
-    const FrictionFace     &face = scenario.face->layout();
+    const ContactLayout    &face = scenario.face->layout();
     // The load is a rough one of size 1 a node; so are these bounds.
     auto bounds = scenario.face->bounds(0.5);
     for (double &bound : bounds)
       bound *= dim == 2 ? 20. : 60.;
 
     std::vector<DistributedVector> solutions;
-    std::vector<FrictionState>     states;
+    std::vector<ContactState>      states;
     for (const auto &solver : scenario.solvers())
       {
         DistributedVector u(scenario.start);
         Vector<double>    increment(face.n_dofs());
-        FrictionState     state(bounds);
+        ContactState      state(bounds);
         solver->begin(scenario.load, u);
         const ContactReport report =
           ContactSolver(50).solve(*solver, face, tolerance, increment, state);
@@ -135,13 +135,13 @@ namespace
     for (const std::string law : {"bilateral", "unilateral"})
       {
         const BulkScenario<dim> scenario(dim == 2 ? 7 : 2, 2, false, law);
-        const FrictionFace     &face = scenario.face->layout();
+        const ContactLayout    &face = scenario.face->layout();
         EXPECT_EQ(face.has_obstacles, law == "unilateral");
         FaceTruncation truncation;
         truncation.spring.resize(face.n_nodes());
         truncation.projector.assign(face.n_nodes(),
                                     Tensor<2, 3>(unit_symmetric_tensor<3>()));
-        for (const FrictionFace::Point &point : face.points)
+        for (const ContactLayout::Point &point : face.points)
           if (point.is_obstacle)
             {
               const Tensor<1, 3> n = point.map[0] / point.map[0].norm();

@@ -33,7 +33,7 @@ namespace
                                          scenario.dof_handler,
                                          position);
     const FaceRestriction &restriction = scenario.face->restriction();
-    const FrictionFace    &face        = restriction.face();
+    const ContactLayout   &face        = restriction.face();
     const Point<dim>       vertex = scenario.triangulation.begin(0)->vertex(0);
     FaceTruncation         truncation;
     truncation.spring.resize(face.n_nodes());
@@ -173,7 +173,7 @@ namespace
         Vector<double> exact = correction(*direct, radius, 1e-8, n_direct);
         Vector<double> w = correction(*algebraic, radius, 1e-8, n_algebraic);
         EXPECT_LE(n_algebraic, (3 * n_direct) / 2 + 3);
-        const FrictionFace &face = scenario.face->layout();
+        const ContactLayout &face = scenario.face->layout();
         face.add(-1., exact, w);
         EXPECT_LE(std::sqrt(face.dot(w, w)),
                   1e-6 * std::sqrt(face.dot(exact, exact)));

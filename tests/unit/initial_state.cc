@@ -201,13 +201,13 @@ namespace
 
   template <int dim>
   double
-  violation(const Body<dim> &body, FrictionState &friction)
+  violation(const Body<dim> &body, ContactState &contact)
   {
     return compatibility_violation(*body.space,
                                    body.loads->assemble(0.),
                                    body.face.get(),
                                    body.space->ghosted_vector(),
-                                   friction)
+                                   contact)
       .relative;
   }
 
@@ -252,8 +252,8 @@ namespace
         Body<dim> body(airy<dim>(n, 1.));
         body.refine_where([](const Point<dim> &x) { return x[0] > 1.; });
         body.set_up();
-        FrictionState friction;
-        found.push_back(violation(body, friction));
+        ContactState contact;
+        found.push_back(violation(body, contact));
       }
     // The projection P0 sigma0 would be wrong by O(h) = 10 %.
     EXPECT_LT(found[0], 2e-4);
@@ -262,8 +262,8 @@ namespace
     // Wrong by 3 % all over, to the same accuracy.
     Body<dim> body(airy<dim>(4, 1.03));
     body.set_up();
-    FrictionState friction;
-    EXPECT_NEAR(violation(body, friction), 0.03 / 1.03, 1e-3);
+    ContactState contact;
+    EXPECT_NEAR(violation(body, contact), 0.03 / 1.03, 1e-3);
   }
 
 
@@ -277,13 +277,13 @@ namespace
                                          "set Body force = " + force + "; 0" +
                                            std::string(dim == 3 ? "; 0" : ""));
     };
-    FrictionState friction;
-    Body<dim>     loaded(text("1 + t"));
+    ContactState contact;
+    Body<dim>    loaded(text("1 + t"));
     loaded.set_up();
-    EXPECT_NEAR(violation(loaded, friction), 1., 1e-14);
+    EXPECT_NEAR(violation(loaded, contact), 1., 1e-14);
     Body<dim> later(text("t"));
     later.set_up();
-    EXPECT_EQ(violation(later, friction), 0.);
+    EXPECT_EQ(violation(later, contact), 0.);
   }
 
 
@@ -334,11 +334,11 @@ namespace
               body.refine_where(
                 [](const Point<dim> &x) { return x[0] < 1. && x[1] < 0.5; });
               body.set_up();
-              FrictionState friction;
-              found.push_back(violation(body, friction));
+              ContactState contact;
+              found.push_back(violation(body, contact));
               // The body is pulled to the left where sigma_xy > 0, since nu
               // points down: lambda points to the right.
-              const Tensor<1, dim> sum = body.face->resultant(friction);
+              const Tensor<1, dim> sum = body.face->resultant(contact);
               const double         expected =
                 std::copysign(std::min(std::abs(tau), bound) * 2., tau);
               EXPECT_NEAR(sum[0], expected, 1e-12);
@@ -360,8 +360,8 @@ namespace
     constexpr int dim = TypeParam::value;
     Body<dim>     body(shear<dim>(0.25, 0.1, false));
     body.set_up();
-    FrictionState friction;
-    const double  found = violation(body, friction);
+    ContactState contact;
+    const double found = violation(body, contact);
     // At each point 0.15 m_c is left, relative to (sigma0, eps(v)): the loads
     // and, on the face, 0.25 m_c.
     const Load<dim>   load     = body.loads->assemble(0.);

@@ -73,8 +73,8 @@ namespace
           FlowRate                   rate = body.rate();
           const auto end = body.stepper->try_step(body.accepted, &rate, step);
           const State<dim> &state    = end.end.state;
-          const auto        slipping = std::count(state.friction.sticks.begin(),
-                                           state.friction.sticks.end(),
+          const auto        slipping = std::count(state.contact.sticks.begin(),
+                                           state.contact.sticks.end(),
                                            false);
           EXPECT_GT(Utilities::MPI::sum<unsigned int>(slipping, MPI_COMM_WORLD),
                     0u);
@@ -82,7 +82,7 @@ namespace
           const DualProblem<dim> dual(d, *body.scene.quantity);
           const auto             w =
             dual.solve(body.stepper->method().elastic_solver()->bulk(),
-                       state.friction);
+                       state.contact);
           // Not the same everywhere, or nothing would move.
           IrreversibleStress dz(state.z.size());
           std::size_t        i = 0;
@@ -96,7 +96,7 @@ namespace
             rate.rate[i] += dz[i] / step.k;
           const auto changed =
             body.stepper->try_step(body.accepted, &rate, step);
-          EXPECT_EQ(changed.end.state.friction.sticks, state.friction.sticks);
+          EXPECT_EQ(changed.end.state.contact.sticks, state.contact.sticks);
           DistributedVector residual = d.space.owned_vector();
           add_irreversible_load(d.stress_space, dz, residual);
           const double told = dual.sign() * (residual * w.w),

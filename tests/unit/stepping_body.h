@@ -54,8 +54,7 @@ namespace Viscoplastic::Testing
                                                    timer);
       accepted.state = make_initial_state(discretization->stress_space, false);
       if (discretization->face)
-        accepted.state.friction =
-          FrictionState(discretization->face->bounds(0.));
+        accepted.state.contact = ContactState(discretization->face->bounds(0.));
       if (error_estimator)
         error_estimator->begin(discretization->stress_space, accepted);
       accepted.forces = evaluate_forces(discretization->stress_space,

@@ -47,9 +47,9 @@ namespace
     EXPECT_EQ(difference(a.state.velocity, b.state.velocity), 0.);
     EXPECT_EQ(a.state.z, b.state.z);
     EXPECT_EQ(a.state.time_error, b.state.time_error);
-    EXPECT_EQ(a.state.friction.slip, b.state.friction.slip);
-    EXPECT_EQ(a.state.friction.multiplier, b.state.friction.multiplier);
-    EXPECT_EQ(a.state.friction.sticks, b.state.friction.sticks);
+    EXPECT_EQ(a.state.contact.slip, b.state.contact.slip);
+    EXPECT_EQ(a.state.contact.multiplier, b.state.contact.multiplier);
+    EXPECT_EQ(a.state.contact.sticks, b.state.contact.sticks);
     EXPECT_EQ(difference(a.forces.u, b.forces.u), 0.);
     EXPECT_EQ(a.forces.strain_energy, b.forces.strain_energy);
     EXPECT_EQ(a.errors.total(), b.errors.total());
@@ -161,10 +161,10 @@ namespace
               by_hand.stepper->try_step(by_hand.accepted,
                                         &rate,
                                         by_hand.scene.schedule.step(n));
-            EXPECT_EQ(step.end.state.friction.bound,
+            EXPECT_EQ(step.end.state.contact.bound,
                       by_hand.discretization->face->bounds(step.end.state.t));
             by_hand.accepted = step.end;
-            for (const bool sticks : step.end.state.friction.sticks)
+            for (const bool sticks : step.end.state.contact.sticks)
               any_slips |= !sticks;
           }
         EXPECT_TRUE(by_hand.discretization->face->layout().any(any_slips));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/contact/contact_layout.h>
 
 #include <vector>
 
@@ -19,9 +19,9 @@ namespace Viscoplastic
    * beginning is a known kink of the data. Collective.
    */
   bool
-  has_contact_event(const FrictionFace  &face,
-                    const FrictionState &old_state,
-                    const FrictionState &state,
+  has_contact_event(const ContactLayout &face,
+                    const ContactState  &old_state,
+                    const ContactState  &state,
                     const bool           from_kink);
 
   /**
@@ -31,8 +31,8 @@ namespace Viscoplastic
    * asked for. @p slips: of the step. Collective.
    */
   double
-  turning_work(const FrictionFace              &face,
-               const FrictionState             &old_state,
-               const FrictionState             &state,
+  turning_work(const ContactLayout             &face,
+               const ContactState              &old_state,
+               const ContactState              &state,
                const std::vector<Tensor<1, 2>> &slips);
 } // namespace Viscoplastic

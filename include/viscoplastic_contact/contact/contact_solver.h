@@ -2,7 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
-#include <viscoplastic_contact/contact/friction_points.h>
+#include <viscoplastic_contact/contact/contact_points.h>
 
 #include <algorithm>
 
@@ -93,11 +93,11 @@ namespace Viscoplastic
      * is not finite: there is no unconverged result.
      */
     ContactReport
-    solve(BulkSolver         &bulk,
-          const FrictionFace &face,
-          const double        tolerance,
-          Vector<double>     &increment,
-          FrictionState      &state) const;
+    solve(BulkSolver          &bulk,
+          const ContactLayout &face,
+          const double         tolerance,
+          Vector<double>      &increment,
+          ContactState        &state) const;
 
   private:
     class Iteration;

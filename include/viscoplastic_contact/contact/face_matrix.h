@@ -3,7 +3,7 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/contact/contact_layout.h>
 
 namespace Viscoplastic
 {
@@ -19,7 +19,7 @@ namespace Viscoplastic
   {
   public:
     /// All nodes in one stage.
-    explicit FaceMatrix(const FrictionFace &face);
+    explicit FaceMatrix(const ContactLayout &face);
     virtual ~FaceMatrix() = default;
 
     /// The nodes of this rank in each stage, in the order of a sweep; as many
@@ -49,7 +49,7 @@ namespace Viscoplastic
     {}
 
   protected:
-    const FrictionFace                    &face;
+    const ContactLayout                   &face;
     std::vector<std::vector<unsigned int>> nodes_of_stage;
   };
 
@@ -64,7 +64,7 @@ namespace Viscoplastic
   class DenseFaceMatrix : public FaceMatrix
   {
   public:
-    DenseFaceMatrix(const FrictionFace &face, FullMatrix<double> &&matrix);
+    DenseFaceMatrix(const ContactLayout &face, FullMatrix<double> &&matrix);
 
     Tensor<2, 3>
     diagonal_block(const unsigned int node) const override;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
-#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/contact/contact_layout.h>
 
 namespace Viscoplastic
 {
@@ -24,8 +24,8 @@ namespace Viscoplastic
    */
   SearchResult
   search_along(BulkSolver           &bulk,
-               const FrictionFace   &face,
-               const FrictionState  &state,
+               const ContactLayout  &face,
+               const ContactState   &state,
                const Vector<double> &w);
 
 
@@ -34,8 +34,8 @@ namespace Viscoplastic
   /// where points share a node, the line search alone decides. @p x: the
   /// increment. Returns whether there is such a node.
   bool
-  stop_at_kinks(const FrictionFace   &face,
-                const FrictionState  &state,
+  stop_at_kinks(const ContactLayout  &face,
+                const ContactState   &state,
                 const Vector<double> &x,
                 Vector<double>       &w);
 
@@ -44,9 +44,9 @@ namespace Viscoplastic
   /// there: the increment @p x and the sets of @p state change, @p change is
   /// set to that of the face. Returns the change of j.
   double
-  bring_to_kinks(const FrictionFace   &face,
+  bring_to_kinks(const ContactLayout  &face,
                  const Vector<double> &w,
                  Vector<double>       &x,
-                 FrictionState        &state,
+                 ContactState         &state,
                  Vector<double>       &change);
 } // namespace Viscoplastic

@@ -29,9 +29,9 @@ namespace Viscoplastic
 
     /// @p entries in any order, each pair once; @p numbers: those of this
     /// rank's face entries over all ranks, a range. Collective.
-    SparseFaceMatrix(const FrictionFace &face,
-                     const IndexSet     &numbers,
-                     std::vector<Entry>  entries);
+    SparseFaceMatrix(const ContactLayout &face,
+                     const IndexSet      &numbers,
+                     std::vector<Entry>   entries);
 
     Tensor<2, 3>
     diagonal_block(const unsigned int node) const override;

@@ -14,11 +14,11 @@
 namespace Viscoplastic
 {
   /**
-   * Gamma_3 on the mesh: makes the points of a FrictionFace from the nodes with
-   * friction or unilateral contact, the bounds rho_c(t) = int rho(x,t) phi_c,
-   * and the gaps g_c = g(x_c), with phi_c the basis functions
-   * that hanging nodes leave. Each rank has the
-   * points of the nodes that it owns, in the order of their positions.
+   * Gamma_3 on the mesh: makes the points of a ContactLayout from the nodes
+   * with friction or unilateral contact, the bounds rho_c(t) = int rho(x,t)
+   * phi_c, and the gaps g_c = g(x_c), with phi_c the basis functions that
+   * hanging nodes leave. Each rank has the points of the nodes that it owns, in
+   * the order of their positions.
    */
   template <int dim>
   class ContactFace
@@ -27,7 +27,7 @@ namespace Viscoplastic
     /// Collective.
     explicit ContactFace(const AdmissibleSpace<dim> &space);
 
-    const FrictionFace &
+    const ContactLayout &
     layout() const
     {
       return face_restriction.face();
@@ -81,7 +81,7 @@ namespace Viscoplastic
     /// Collective.
     void
     add_computed_bounds(const double               t,
-                        const FrictionState       &state,
+                        const ContactState        &state,
                         std::vector<double>       &bounds,
                         const std::vector<double> &slip_rates = {}) const;
 
@@ -113,7 +113,7 @@ namespace Viscoplastic
     void
     set_obstacles(const double             t,
                   const DistributedVector &u,
-                  FrictionState           &state) const;
+                  ContactState            &state) const;
 
     /// Whether bounds() depends on time.
     bool
@@ -147,8 +147,7 @@ namespace Viscoplastic
 
     /// sum_c lambda_c of friction, or of obstacles. Collective.
     Tensor<1, dim>
-    resultant(const FrictionState &state,
-              const bool           of_obstacles = false) const;
+    resultant(const ContactState &state, const bool of_obstacles = false) const;
 
     /**
      * How far the foundation slides between two times, as a face vector. At a
@@ -175,8 +174,8 @@ namespace Viscoplastic
      * of_friction_alone. Collective.
      */
     DistributedVector
-    density(const FrictionState &state,
-            const bool           of_friction_alone = false) const;
+    density(const ContactState &state,
+            const bool          of_friction_alone = false) const;
 
     /// The inverse where a node has one point, for a face on a new mesh; at
     /// corners, where the density is that of all points, zero.

@@ -92,8 +92,8 @@ namespace Viscoplastic
   template <int dim>
   NormalContact<dim>
   summarize_contact(const ContactFace<dim>  &face,
-                    const FrictionState     &old_state,
-                    const FrictionState     &state,
+                    const ContactState      &old_state,
+                    const ContactState      &state,
                     const DistributedVector &change);
 
   /// @p change of the displacement in the step, in frames, and what the
@@ -101,8 +101,8 @@ namespace Viscoplastic
   template <int dim>
   FrictionIdentities
   check_friction(const ContactFace<dim>  &face,
-                 const FrictionState     &old_state,
-                 const FrictionState     &state,
+                 const ContactState      &old_state,
+                 const ContactState      &state,
                  const DistributedVector &change,
                  const Vector<double>    &foundation_step,
                  const double             max_displacement);

@@ -106,5 +106,5 @@ namespace Viscoplastic
                           const Load<dim>            &load,
                           const ContactFace<dim>     *face,
                           const DistributedVector    &u,
-                          FrictionState              &friction);
+                          ContactState               &contact);
 } // namespace Viscoplastic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/contact/contact_layout.h>
 #include <viscoplastic_contact/discretization/stress_space.h>
 
 #include <array>
@@ -31,9 +31,9 @@ namespace Viscoplastic
     /// second order needs (see ErrorEstimator).
     IrreversibleStress time_error, rate_slope;
 
-    /// What friction has done in the step that led here; no points without
-    /// friction.
-    FrictionState friction;
+    /// What contact has done in the step that led here; no points without
+    /// Gamma_3.
+    ContactState contact;
 
     /// u_0, Cartesian with ghosts; empty where zero.
     DistributedVector initial_u;

@@ -65,7 +65,7 @@ namespace Viscoplastic
     /// Solve with a solver for the matrix of a(.,.). Zero for the work of
     /// friction where nothing slips. Collective. Throws ExcMessage.
     DualSolution<dim>
-    solve(BulkSolver &solver, const FrictionState &friction) const;
+    solve(BulkSolver &solver, const ContactState &contact) const;
 
     double
     sign() const
@@ -76,7 +76,7 @@ namespace Viscoplastic
   private:
     /// l, in frames.
     DistributedVector
-    right_side(const FrictionState &friction) const;
+    right_side(const ContactState &contact) const;
 
     /// The prescribed values of w, in frames.
     DistributedVector

@@ -149,8 +149,8 @@ namespace Viscoplastic
    * multipliers and velocities say. Collective.
    */
   template <int dim>
-  FrictionState
-  friction_on_new_mesh(const Discretization<dim> &discretization,
-                       const State<dim>          &state,
-                       const DistributedVector   &multiplier_density);
+  ContactState
+  contact_on_new_mesh(const Discretization<dim> &discretization,
+                      const State<dim>          &state,
+                      const DistributedVector   &multiplier_density);
 } // namespace Viscoplastic

@@ -57,7 +57,7 @@ namespace Viscoplastic
     /// Settle what later steps will not change in the error of a sum.
     void
     settle(const EvaluatedState<dim> &accepted,
-           const FrictionState       &friction,
+           const ContactState        &contact,
            QuantityEstimate          &estimate) const;
 
     const Discretization<dim> &discretization;

@@ -73,7 +73,7 @@ namespace Viscoplastic
     const std::vector<bool>       &excluded;
     std::vector<DistributedVector> rigid_body_modes;
     const FaceRestriction         &restriction;
-    const FrictionFace            &face;
+    const ContactLayout           &face;
     const unsigned int             dim;
 
     FaceTruncation truncation;

@@ -4,7 +4,7 @@
 #include <deal.II/base/index_set.h>
 
 #include <viscoplastic_contact/base/types.h>
-#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/contact/contact_layout.h>
 
 #include <vector>
 
@@ -23,14 +23,14 @@ namespace Viscoplastic
 
     /// @p dofs: the global degree of freedom of each entry of a face vector;
     /// @p owned: all of this rank. Collective.
-    FaceRestriction(FrictionFace                         face,
+    FaceRestriction(ContactLayout                        face,
                     std::vector<types::global_dof_index> dofs,
                     const IndexSet                      &owned);
 
-    const FrictionFace &
+    const ContactLayout &
     face() const
     {
-      return friction_face;
+      return contact_layout;
     }
 
     /// Add a piece to how an obstacle gives way.
@@ -39,7 +39,7 @@ namespace Viscoplastic
                    const double       stiffness,
                    const double       exponent)
     {
-      friction_face.points[point].compliance.add(stiffness, exponent);
+      contact_layout.points[point].compliance.add(stiffness, exponent);
     }
 
     /// The entries of face vectors on all ranks.
@@ -97,7 +97,7 @@ namespace Viscoplastic
                 DistributedVector       &y) const;
 
   private:
-    FrictionFace                         friction_face;
+    ContactLayout                        contact_layout;
     std::vector<types::global_dof_index> global_dofs;
     std::vector<unsigned int>            owned_positions;
     IndexSet                             numbers;

@@ -120,7 +120,7 @@ namespace Viscoplastic
     const std::vector<bool> &excluded;
     const NodeHierarchy      hierarchy;
     const MPI_Comm           communicator;
-    const FrictionFace      &face;
+    const ContactLayout     &face;
 
     /// The first node of each rank, and the end.
     std::vector<NodeHierarchy::Node> begins;

@@ -102,7 +102,7 @@ namespace Viscoplastic
     const std::vector<bool>          &excluded;
     std::vector<std::size_t>          excluded_entries;
     const FaceRestriction            &restriction;
-    const FrictionFace               &face;
+    const ContactLayout              &face;
     const MPI_Comm                    communicator;
     std::unique_ptr<SparseFaceMatrix> sparse_face_matrix;
 

@@ -118,7 +118,7 @@ namespace Viscoplastic
     backward(DistributedVector &u);
 
     const DistributedMatrix &matrix;
-    const FrictionFace      &face;
+    const ContactLayout     &face;
     std::unique_ptr<Factor>  factor;
     /// Position in u of each unknown in the order of the factorization.
     std::vector<unsigned int> unknowns;

@@ -22,7 +22,7 @@ namespace Viscoplastic
   {
     DistributedVector  u, ghosted_u;
     IrreversibleStress z;
-    FrictionState      friction;
+    ContactState       contact;
   };
 
 
@@ -94,7 +94,7 @@ namespace Viscoplastic
          const double              share) const;
 
     FaceTruncation
-    truncation(const FrictionState &friction) const;
+    truncation(const ContactState &contact) const;
 
     const Discretization<dim>  &d;
     const StepProblem<dim>     &problem;

@@ -37,7 +37,7 @@ namespace Viscoplastic
 
     /**
      * Solve the step of @p problem by repeated calls of @p solve, which change
-     * @p u and @p friction. Throws ExcMessage where no contact force balances
+     * @p u and @p contact. Throws ExcMessage where no contact force balances
      * the loads. Collective.
      */
     ContactReport
@@ -47,14 +47,14 @@ namespace Viscoplastic
           const BulkSolver        &bulk,
           const Solve             &solve,
           DistributedVector       &u,
-          FrictionState           &friction) const;
+          ContactState            &contact) const;
 
   private:
     /// How far a motion can be repeated from @p u without entering an obstacle.
     /// Collective.
     double
     way_to_obstacles(const StepProblem<dim>  &problem,
-                     const FrictionState     &friction,
+                     const ContactState      &contact,
                      const DistributedVector &u,
                      const DistributedVector &motion) const;
 

@@ -56,15 +56,15 @@ namespace Viscoplastic
 
     /**
      * Where to start: u in frames, from the last displacement and what @p guess
-     * says of velocities and sets, and these sets in @p friction.
+     * says of velocities and sets, and these sets in @p contact.
      */
     DistributedVector
     initial_guess(const StepProblem<dim> &problem,
                   const State<dim>       &guess,
-                  FrictionState          &friction) const;
+                  ContactState           &contact) const;
 
     /**
-     * Solve from @p u and @p friction, which take the solution up.
+     * Solve from @p u and @p contact, which take the solution up.
      * @p right_side is the load of the problem less what does not depend on u;
      * @p tolerance is relative. Where Coulomb's law takes the pressure of the
      * step itself, the fixed point p of p -> p(rho = mu p) is found by solving
@@ -75,7 +75,7 @@ namespace Viscoplastic
           const DistributedVector &right_side,
           const double             tolerance,
           DistributedVector       &u,
-          FrictionState           &friction);
+          ContactState            &contact);
 
     /**
      * Move @p u, in frames, into equilibrium with @p right_side while all
@@ -86,7 +86,7 @@ namespace Viscoplastic
     void
     solve_with_held_friction(const DistributedVector &right_side,
                              const double             tolerance,
-                             FrictionState            friction,
+                             ContactState             contact,
                              DistributedVector       &u);
 
     /// Displacement and velocity of the end of a step from u in frames.
@@ -103,13 +103,13 @@ namespace Viscoplastic
       const Vector<double>    &foundation_step;
     };
 
-    /// solve() with the bounds of @p friction.
+    /// solve() with the bounds of @p contact.
     ContactReport
     solve_with_given_bounds(const StepProblem<dim>  &problem,
                             const DistributedVector &right_side,
                             const double             tolerance,
                             DistributedVector       &u,
-                            FrictionState           &friction);
+                            ContactState            &contact);
 
     /// The same with the matrix of the linear solver.
     ContactReport
@@ -117,13 +117,13 @@ namespace Viscoplastic
                   const DistributedVector &right_side,
                   const double             tolerance,
                   DistributedVector       &u,
-                  FrictionState           &friction);
+                  ContactState            &contact);
 
     /// How far a motion can be repeated from @p u without entering an obstacle.
     /// Collective.
     double
     way_to_obstacles(const StepProblem<dim>  &problem,
-                     const FrictionState     &friction,
+                     const ContactState      &contact,
                      const DistributedVector &u,
                      const DistributedVector &motion) const;
 
@@ -138,7 +138,7 @@ namespace Viscoplastic
     solve_in_unit(const Data        &data,
                   const double       tolerance,
                   DistributedVector &u,
-                  FrictionState     &friction);
+                  ContactState      &contact);
 
     /// The largest of what the data contribute to the energy norm, without
     /// squares. Collective.

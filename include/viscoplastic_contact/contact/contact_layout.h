@@ -26,7 +26,7 @@ namespace Viscoplastic
    * point at the node sees (1 to 3). Blocks of a node are padded to
    * size 3.
    */
-  struct FrictionFace
+  struct ContactLayout
   {
     struct Point
     {
@@ -139,11 +139,11 @@ namespace Viscoplastic
 
   /// slip = map x of one point; the second entry is zero for one tangent.
   Tensor<1, 2>
-  slip(const FrictionFace::Point &point, const Tensor<1, 3> &x);
+  slip(const ContactLayout::Point &point, const Tensor<1, 3> &x);
 
   /// map^T multiplier: the node force that balances a point's multiplier.
   Tensor<1, 3>
-  node_force(const FrictionFace::Point &point, const Tensor<1, 2> &multiplier);
+  node_force(const ContactLayout::Point &point, const Tensor<1, 2> &multiplier);
 
 
   /**
@@ -154,7 +154,7 @@ namespace Viscoplastic
    * and an obstacle s_c <= d_c, lambda_c >= 0, lambda_c (d_c - s_c) = 0, or,
    * where it gives way, lambda_c = p(s_c - d_c).
    */
-  struct FrictionState
+  struct ContactState
   {
     /// The bound rho_c >= 0; infinite for glued points. Of an obstacle the
     /// distance d_c that is left at the beginning of the step.
@@ -169,7 +169,7 @@ namespace Viscoplastic
     std::vector<bool> sticks;
 
     /// All points stick and nothing pulls at them.
-    explicit FrictionState(std::vector<double> bounds = {})
+    explicit ContactState(std::vector<double> bounds = {})
       : bound(std::move(bounds))
       , slip(bound.size())
       , multiplier(bound.size())
@@ -203,20 +203,20 @@ namespace Viscoplastic
 
     /// Whether another one blocks the same. Collective, as the next.
     bool
-    blocks_as(const FaceTruncation &other, const FrictionFace &face) const;
+    blocks_as(const FaceTruncation &other, const ContactLayout &face) const;
 
     bool
-    is_same_as(const FaceTruncation &other, const FrictionFace &face) const;
+    is_same_as(const FaceTruncation &other, const ContactLayout &face) const;
 
     bool
-    has_springs(const FrictionFace &face) const;
+    has_springs(const ContactLayout &face) const;
 
     /// Throw ExcMessage if it is that of another face.
     void
-    check_belongs_to(const FrictionFace &face) const;
+    check_belongs_to(const ContactLayout &face) const;
 
     /// x := projector x, node by node.
     void
-    project(const FrictionFace &face, Vector<double> &x) const;
+    project(const ContactLayout &face, Vector<double> &x) const;
   };
 } // namespace Viscoplastic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/contact/contact_layout.h>
 
 #include <utility>
 #include <vector>
@@ -36,9 +36,9 @@ namespace Viscoplastic
    * of their forces, too.
    */
   void
-  fit_multipliers(const FrictionFace   &face,
+  fit_multipliers(const ContactLayout  &face,
                   const Vector<double> &residual,
-                  FrictionState        &state,
+                  ContactState         &state,
                   Vector<double>       &force);
 
 
@@ -49,11 +49,11 @@ namespace Viscoplastic
    * friction, i.e. away from corners.
    */
   Tensor<1, 3>
-  relax_node(const FrictionFace &face,
-             const unsigned int  node,
-             const Tensor<2, 3> &inverse_diagonal,
-             const Tensor<1, 3> &force, // residual + D x
-             FrictionState      &state);
+  relax_node(const ContactLayout &face,
+             const unsigned int   node,
+             const Tensor<2, 3>  &inverse_diagonal,
+             const Tensor<1, 3>  &force, // residual + D x
+             ContactState        &state);
 
 
   /// Multipliers that bound the error: those of fit_multipliers() but for
@@ -77,10 +77,10 @@ namespace Viscoplastic
    * the latter the stiffer it is. Collective.
    */
   Certificate
-  certify(const FrictionFace              &face,
+  certify(const ContactLayout             &face,
           const Vector<double>            &residual,
           const std::vector<Tensor<2, 3>> &diagonal,
-          const FrictionState             &state,
+          const ContactState              &state,
           const Vector<double>            &force,
           double                           rounding);
 
@@ -92,7 +92,7 @@ namespace Viscoplastic
    * of the face matrix, beyond which a spring is as good as stick.
    */
   FaceTruncation
-  make_truncation(const FrictionFace              &face,
-                  const FrictionState             &state,
+  make_truncation(const ContactLayout             &face,
+                  const ContactState              &state,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal);
 } // namespace Viscoplastic

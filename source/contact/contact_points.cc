@@ -2,7 +2,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/number_range.h>
-#include <viscoplastic_contact/contact/friction_points.h>
+#include <viscoplastic_contact/contact/contact_points.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,9 +55,9 @@ namespace Viscoplastic
     /// The nearest admissible multiplier: in the ball of friction, pressure at
     /// an obstacle.
     Tensor<1, 2>
-    clip(const FrictionFace::Point &point,
-         const Tensor<1, 2>        &multiplier,
-         const double               bound)
+    clip(const ContactLayout::Point &point,
+         const Tensor<1, 2>         &multiplier,
+         const double                bound)
     {
       if (!point.is_obstacle)
         return clip(multiplier, bound);
@@ -70,9 +70,9 @@ namespace Viscoplastic
 
     /// Whether a point blocks its directions.
     bool
-    holds(const FrictionFace::Point &point,
-          const FrictionState       &state,
-          const unsigned int         p)
+    holds(const ContactLayout::Point &point,
+          const ContactState         &state,
+          const unsigned int          p)
     {
       return state.sticks[p] && !point.gives_way();
     }
@@ -83,11 +83,11 @@ namespace Viscoplastic
     /// points whose forces make up for @p missing, as far as they are
     /// admissible.
     void
-    fit_node(const FrictionFace &face,
-             const unsigned int  begin,
-             const unsigned int  end,
-             Tensor<1, 3>       &missing,
-             FrictionState      &state)
+    fit_node(const ContactLayout &face,
+             const unsigned int   begin,
+             const unsigned int   end,
+             Tensor<1, 3>        &missing,
+             ContactState        &state)
     {
       // lambda = B (B^T B)^+ missing.
       SymmetricTensor<2, 3> gram;
@@ -211,10 +211,10 @@ namespace Viscoplastic
     /// The same for an obstacle: the smallest multiplier that keeps the free
     /// motion within its distance, or the force at which compliance stops it.
     PointSolution
-    solve_obstacle(const FrictionFace::Point &obstacle,
-                   const double               flexibility,
-                   const double               free_motion,
-                   const double               distance)
+    solve_obstacle(const ContactLayout::Point &obstacle,
+                   const double                flexibility,
+                   const double                free_motion,
+                   const double                distance)
     {
       const double  free_w = free_motion - distance;
       PointSolution solution;
@@ -237,13 +237,13 @@ namespace Viscoplastic
      * a single point.
      */
     Tensor<1, 3>
-    relax_points(const FrictionFace &face,
-                 const unsigned int  begin,
-                 const unsigned int  end,
-                 const Tensor<2, 3> &flexibility,
-                 const Tensor<1, 3> &start,
-                 const Tensor<1, 3> &force,
-                 FrictionState      &state)
+    relax_points(const ContactLayout &face,
+                 const unsigned int   begin,
+                 const unsigned int   end,
+                 const Tensor<2, 3>  &flexibility,
+                 const Tensor<1, 3>  &start,
+                 const Tensor<1, 3>  &force,
+                 ContactState        &state)
     {
       constexpr unsigned int max_sweeps = 1000;
       Tensor<1, 3>           remaining  = force;
@@ -254,7 +254,7 @@ namespace Viscoplastic
           double change = 0., size = 0.;
           for (unsigned int p = begin; p < end; ++p)
             {
-              const FrictionFace::Point &point = face.points[p];
+              const ContactLayout::Point &point = face.points[p];
               remaining += node_force(point, state.multiplier[p]);
               Tensor<2, 2> of_point;
               for (unsigned int i = 0; i < point.n_tangents; ++i)
@@ -287,11 +287,11 @@ namespace Viscoplastic
 
 
   Tensor<1, 3>
-  relax_node(const FrictionFace &face,
-             const unsigned int  node,
-             const Tensor<2, 3> &inverse_diagonal,
-             const Tensor<1, 3> &force, // residual + D x
-             FrictionState      &state)
+  relax_node(const ContactLayout &face,
+             const unsigned int   node,
+             const Tensor<2, 3>  &inverse_diagonal,
+             const Tensor<1, 3>  &force, // residual + D x
+             ContactState        &state)
   {
     const unsigned int begin    = face.first_point[node];
     const unsigned int end      = face.first_point[node + 1];
@@ -306,8 +306,8 @@ namespace Viscoplastic
       {
         // J is convex, so that the obstacle is met if the node alone would pass
         // it, and has no influence otherwise.
-        const FrictionFace::Point &point = face.points[obstacle];
-        x                                = relax_points(
+        const ContactLayout::Point &point = face.points[obstacle];
+        x                                 = relax_points(
           face, begin, obstacle, inverse_diagonal, nothing, force, state);
         state.multiplier[obstacle] = Tensor<1, 2>();
         state.sticks[obstacle]     = slip(point, x)[0] > state.bound[obstacle];
@@ -343,8 +343,8 @@ namespace Viscoplastic
         if (end - obstacle == 1 && (is_plain || begin == obstacle) &&
             state.multiplier[obstacle][0] > 0.)
           {
-            const FrictionFace::Point &point = face.points[obstacle];
-            const double               end_of_way =
+            const ContactLayout::Point &point = face.points[obstacle];
+            const double                end_of_way =
               state.bound[obstacle] +
               point.compliance.penetration(state.multiplier[obstacle][0]);
             x += (end_of_way - point.map[0] * x) / point.map[0].norm_square() *
@@ -364,9 +364,9 @@ namespace Viscoplastic
 
 
   void
-  fit_multipliers(const FrictionFace   &face,
+  fit_multipliers(const ContactLayout  &face,
                   const Vector<double> &residual,
-                  FrictionState        &state,
+                  ContactState         &state,
                   Vector<double>       &force)
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
@@ -394,7 +394,7 @@ namespace Viscoplastic
              (end - begin == 2 && face.has_plain_friction(node))))
           for (unsigned int p = begin; p < end; ++p)
             {
-              const FrictionFace::Point &point = face.points[p];
+              const ContactLayout::Point &point = face.points[p];
               if (!holds(point, state, p))
                 continue;
               const double scale =
@@ -422,15 +422,15 @@ namespace Viscoplastic
      * which is where the sum of both is least.
      */
     void
-    share_misfit(const FrictionFace              &face,
+    share_misfit(const ContactLayout             &face,
                  const Vector<double>            &residual,
                  const std::vector<Tensor<2, 3>> &diagonal,
-                 const FrictionState             &state,
+                 const ContactState              &state,
                  const unsigned int               p,
                  Certificate                     &certificate)
     {
-      const FrictionFace::Point &point = face.points[p];
-      const double               w     = state.penetration(p);
+      const ContactLayout::Point &point = face.points[p];
+      const double                w     = state.penetration(p);
       if (!point.gives_way() || !(w > 0.))
         return;
       const Tensor<1, 3> &normal = point.map[0];
@@ -458,10 +458,10 @@ namespace Viscoplastic
 
 
   Certificate
-  certify(const FrictionFace              &face,
+  certify(const ContactLayout             &face,
           const Vector<double>            &residual,
           const std::vector<Tensor<2, 3>> &diagonal,
-          const FrictionState             &state,
+          const ContactState              &state,
           const Vector<double>            &force,
           const double                     rounding)
   {
@@ -477,7 +477,7 @@ namespace Viscoplastic
         if (!face.has_plain_friction(node) || face.points[p].n_tangents != 2 ||
             state.sticks[p] || state.bound[p] == 0.)
           continue;
-        const FrictionFace::Point &point = face.points[p];
+        const ContactLayout::Point &point = face.points[p];
         const Tensor<1, 2> here = slip(point, face.node_values(residual, node));
         const double       misses    = (here - state.multiplier[p]).norm();
         const double       stiffness = diagonal[node].norm();
@@ -504,8 +504,8 @@ namespace Viscoplastic
 
 
   FaceTruncation
-  make_truncation(const FrictionFace              &face,
-                  const FrictionState             &state,
+  make_truncation(const ContactLayout             &face,
+                  const ContactState              &state,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal)
   {
     FaceTruncation truncation;
@@ -520,10 +520,10 @@ namespace Viscoplastic
              p < face.first_point[node + 1];
              ++p)
           {
-            const FrictionFace::Point &point    = face.points[p];
-            const double               stiffest = inverse_diagonal.empty() ?
-                                                    std::numeric_limits<double>::max() :
-                                                    1e10 / inverse_diagonal[node].norm();
+            const ContactLayout::Point &point    = face.points[p];
+            const double                stiffest = inverse_diagonal.empty() ?
+                                                     std::numeric_limits<double>::max() :
+                                                     1e10 / inverse_diagonal[node].norm();
             if (point.gives_way())
               truncation.spring[node] +=
                 std::min(point.compliance.slope(state.penetration(p)),

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/contact/friction_face.h>
+#include <viscoplastic_contact/contact/contact_layout.h>
 
 namespace Viscoplastic
 {
   void
-  FrictionFace::add(const double          factor,
-                    const Vector<double> &x,
-                    Vector<double>       &y) const
+  ContactLayout::add(const double          factor,
+                     const Vector<double> &x,
+                     Vector<double>       &y) const
   {
     for (unsigned int k = 0; k < n_dofs(); ++k)
       y[k] += factor * x[k];
@@ -17,7 +17,7 @@ namespace Viscoplastic
 
 
   double
-  FrictionFace::sum(const double part) const
+  ContactLayout::sum(const double part) const
   {
     return Utilities::MPI::sum(part, communicator);
   }
@@ -25,7 +25,7 @@ namespace Viscoplastic
 
 
   bool
-  FrictionFace::any(const bool here) const
+  ContactLayout::any(const bool here) const
   {
     return Utilities::MPI::max(here ? 1 : 0, communicator) == 1;
   }
@@ -33,7 +33,7 @@ namespace Viscoplastic
 
 
   double
-  FrictionFace::dot(const Vector<double> &x, const Vector<double> &y) const
+  ContactLayout::dot(const Vector<double> &x, const Vector<double> &y) const
   {
     return sum(x.size() > 0 ? x * y : 0.);
   }
@@ -41,7 +41,7 @@ namespace Viscoplastic
 
 
   bool
-  FrictionFace::has_plain_friction(const unsigned int node) const
+  ContactLayout::has_plain_friction(const unsigned int node) const
   {
     const unsigned int begin = first_point[node], end = first_point[node + 1];
     if (begin == end || points[begin].is_obstacle)
@@ -60,7 +60,7 @@ namespace Viscoplastic
 
 
   Tensor<1, 2>
-  slip(const FrictionFace::Point &point, const Tensor<1, 3> &x)
+  slip(const ContactLayout::Point &point, const Tensor<1, 3> &x)
   {
     Tensor<1, 2> s;
     for (unsigned int i = 0; i < point.n_tangents; ++i)
@@ -71,7 +71,7 @@ namespace Viscoplastic
 
 
   Tensor<1, 3>
-  node_force(const FrictionFace::Point &point, const Tensor<1, 2> &multiplier)
+  node_force(const ContactLayout::Point &point, const Tensor<1, 2> &multiplier)
   {
     Tensor<1, 3> f;
     for (unsigned int i = 0; i < point.n_tangents; ++i)
@@ -83,7 +83,7 @@ namespace Viscoplastic
 
   bool
   FaceTruncation::blocks_as(const FaceTruncation &other,
-                            const FrictionFace   &face) const
+                            const ContactLayout  &face) const
   {
     return !face.any(projector != other.projector);
   }
@@ -92,7 +92,7 @@ namespace Viscoplastic
 
   bool
   FaceTruncation::is_same_as(const FaceTruncation &other,
-                             const FrictionFace   &face) const
+                             const ContactLayout  &face) const
   {
     return !face.any(projector != other.projector || spring != other.spring);
   }
@@ -100,7 +100,7 @@ namespace Viscoplastic
 
 
   void
-  FaceTruncation::check_belongs_to(const FrictionFace &face) const
+  FaceTruncation::check_belongs_to(const ContactLayout &face) const
   {
     AssertThrow(!face.any(projector.size() != face.n_nodes() ||
                           spring.size() != face.n_nodes()),
@@ -111,7 +111,7 @@ namespace Viscoplastic
 
 
   bool
-  FaceTruncation::has_springs(const FrictionFace &face) const
+  FaceTruncation::has_springs(const ContactLayout &face) const
   {
     bool here = false;
     for (const Tensor<2, 3> &block : spring)
@@ -122,7 +122,7 @@ namespace Viscoplastic
 
 
   void
-  FaceTruncation::project(const FrictionFace &face, Vector<double> &x) const
+  FaceTruncation::project(const ContactLayout &face, Vector<double> &x) const
   {
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       face.set_node_values(projector[n] * face.node_values(x, n), n, x);

@@ -279,7 +279,7 @@ class Scenes(SameOnAllRanks):
         self.check_group("manufactured", ranks=(1, 3))
 
     def test_demos(self):
-        self.check_group("demos")
+        self.check_group("demos", ranks=(1, 3))
 
 
 # Two cells, and one, of the slab and the pad.

@@ -74,7 +74,7 @@ namespace Viscoplastic
 
 
 
-    /// Call act(value), a reference, for all that friction and a truncation, if
+    /// Call act(value), a reference, for all that contact and a truncation, if
     /// there is one, know of a node.
     template <typename StateType, typename TruncationType, typename Action>
     void
@@ -104,10 +104,10 @@ namespace Viscoplastic
 
 
 
-    /// Friction at the nodes of some cells' vertices.
+    /// Contact at the nodes of some cells' vertices.
     struct PackedContact
     {
-      /// A bit a vertex with friction, and how many points its node has.
+      /// A bit a vertex with points, and how many points its node has.
       std::vector<std::uint8_t> vertices, n_points;
       std::vector<double>       values;
       std::vector<bool>         sticks;
@@ -206,7 +206,7 @@ namespace Viscoplastic
     std::size_t                 owned_cell = 0;
     for (const auto &cell : space.cells)
       {
-        std::uint8_t with_values = 0, with_friction = 0;
+        std::uint8_t with_values = 0, with_points = 0;
         for (const unsigned int v : cell->vertex_indices())
           {
             const auto dof = cell->vertex_dof_index(v, 0);
@@ -224,7 +224,7 @@ namespace Viscoplastic
             const auto node = face_nodes.find(dof);
             if (node == face_nodes.end())
               continue;
-            with_friction |= 1 << v;
+            with_points |= 1 << v;
             const ContactLayout &layout = face->layout();
             for_each_value(layout,
                            node->second,
@@ -241,7 +241,7 @@ namespace Viscoplastic
           }
         vertices.push_back(with_values);
         if (face != nullptr)
-          points.vertices.push_back(with_friction);
+          points.vertices.push_back(with_points);
         for (const IrreversibleStress *field : sample_fields(state))
           if (!field->empty())
             for (unsigned int s = 0; s < stress_space.n_samples; ++s)

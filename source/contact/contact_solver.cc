@@ -227,7 +227,7 @@ namespace Viscoplastic
     BulkSolver          &bulk;
     const ContactLayout &face;
     const double         tolerance;
-    /// The increment of the face, and what friction does there.
+    /// The increment of the face, and what contact does there.
     Vector<double> &x;
     ContactState   &state;
 

@@ -274,7 +274,7 @@ namespace Viscoplastic
                opens       = condition.is_unilateral(),
                bounds_vary = condition.bound_depends_on_time();
     Assert(!has_multipliers || fields.multiplier_density != nullptr,
-           ExcMessage("A scene with friction has multipliers."));
+           ExcMessage("A scene with contact points has multipliers."));
     Residuals result;
     for (unsigned int q = 0; q < n_face_points; ++q)
       {

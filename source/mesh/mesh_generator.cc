@@ -2,6 +2,7 @@
 #include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold_lib.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
@@ -193,7 +194,8 @@ namespace Viscoplastic
 
     /**
      * Turn the cells of a coarse mesh so that each line runs the same way in
-     * all of them, where that is possible. Where lines run against each other
+     * all of them; what that is not possible for (a Moebius strip) stays. Where
+     * lines run against each other
      * (in a quarter of a ball), p4est keeps the balance of refined meshes in 3D
      * differently from deal.II, whose cells are then no longer those of p4est:
      * some refinements end in a crash.
@@ -204,7 +206,10 @@ namespace Viscoplastic
       bool are_oriented = true;
       for (const auto &cell : triangulation.active_cell_iterators())
         for (const unsigned int l : cell->line_indices())
-          are_oriented = are_oriented && cell->line_orientation(l);
+          are_oriented =
+            are_oriented &&
+            cell->line(l)->vertex_index(0) ==
+              cell->vertex_index(GeometryInfo<3>::line_to_cell_vertices(l, 0));
       if (are_oriented)
         return;
       auto [vertices, cells, faces] =
@@ -223,8 +228,18 @@ namespace Viscoplastic
           manifolds[id] = triangulation.get_manifold(id).clone();
       triangulation.clear();
       triangulation.create_triangulation(vertices, cells, faces);
-      for (const auto &[id, manifold] : manifolds)
-        triangulation.set_manifold(id, *manifold);
+      // Those that interpolate others belong to the mesh that was cleared.
+      using Interpolation = TransfiniteInterpolationManifold<3>;
+      for (const bool interpolates : {false, true})
+        for (const auto &[id, manifold] : manifolds)
+          {
+            auto *interpolation = dynamic_cast<Interpolation *>(manifold.get());
+            if ((interpolation != nullptr) != interpolates)
+              continue;
+            if (interpolates)
+              interpolation->initialize(triangulation);
+            triangulation.set_manifold(id, *manifold);
+          }
     }
   } // namespace
 

@@ -220,7 +220,7 @@ namespace Viscoplastic
                "Strategy",
                strategy,
                "`none' keeps the mesh; `residual' refines by the "
-               "residual estimator of the friction inequality, `kelly' "
+               "residual estimator of the inequality of a step, `kelly' "
                "by jumps of the displacement gradient. `automatic': "
                "`residual' in runs to `Error control/Tolerance', which "
                "choose by themselves when and how much to refine, `none' in "

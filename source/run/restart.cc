@@ -11,6 +11,7 @@
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
@@ -328,8 +329,14 @@ namespace Viscoplastic
     output.emplace(scene, communicator);
     output->resume(output_times);
     lines.resume(output->directory(), state.n);
+    // A run without checkpoints of its own keeps those that there are.
+    const auto        &wanted = parameters.checkpoint;
+    const unsigned int n_kept =
+      wanted.every_n_steps > 0 || wanted.wall_time_interval > 0. ?
+        wanted.keep :
+        std::numeric_limits<unsigned int>::max();
     for (const std::string &remark :
-         store.remove_others(state.n, parameters.checkpoint.keep).remarks)
+         store.remove_others(state.n, n_kept).remarks)
       console.remark(remark);
 
     out << "Restart after step " << state.n << " (t = " << state.t

@@ -278,6 +278,8 @@ class Scenes(SameOnAllRanks):
     def test_manufactured(self):
         self.check_group("manufactured", ranks=(1, 3))
 
+    # These take the longest.
+
     def test_demos(self):
         self.check_group("demos", ranks=(1, 3))
 

@@ -41,8 +41,8 @@ namespace Viscoplastic
 
   /**
    * What is attached to the cells of this rank and to their vertices:
-   * displacements, fields at samples, friction on @p face (null without
-   * friction), a truncation of it (null if there is none), and
+   * displacements, fields at samples, the contact points of @p face (null
+   * without), a truncation of it (null if there is none), and
    * @p squared_estimate of active cells (empty without an estimator).
    */
   template <int dim>
@@ -67,7 +67,7 @@ namespace Viscoplastic
   };
 
   /**
-   * The inverse, on the same mesh. Sets the fields at nodes, friction and
+   * The inverse, on the same mesh. Sets the fields at nodes, contact and
    * those at samples of @p state. Returns whether that was all that this
    * rank needs. Throws ExcMessage for bytes that make no sense. Not collective
    * but for the exchange of ghost values at its end.

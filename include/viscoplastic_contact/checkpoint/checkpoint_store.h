@@ -95,8 +95,9 @@ namespace Viscoplastic
 
     /**
      * Remove checkpoints after step @p n, what has been left of unfinished
-     * ones, and all but the newest @p n_kept up to step @p n: a run may have
-     * been killed after it had written one, before it removed the oldest.
+     * ones, and all but the newest @p n_kept (0: no one stays) up to step
+     * @p n: a run may have been killed after it had written one, before it
+     * removed the oldest. These are not in the number of checkpoints.
      */
     Removal
     remove_others(const unsigned int n, const unsigned int n_kept) const;

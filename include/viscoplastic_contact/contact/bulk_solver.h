@@ -76,7 +76,7 @@ namespace Viscoplastic
     name() const = 0;
 
     /**
-     * Solve a(u,v) = l(v) without friction. @p u brings the prescribed values
+     * Solve a(u,v) = l(v) without contact. @p u brings the prescribed values
      * and a start, and takes the solution up; @p load and @p u are in frames.
      * Stops at the relative energy error @p tolerance. Returns the number of
      * linear iterations (1 for a direct solver). Throws ExcMessage.

@@ -24,12 +24,12 @@ namespace Viscoplastic
     /// The bound on the energy error that follows from the duality gap, over
     /// the energy norm of the solution.
     double relative_error = 0.;
-    /// The same bound, absolute; without friction that of the linear solver.
+    /// The same bound, absolute; without contact that of the linear solver.
     double error = 0.;
     /// The relative tolerance of the solve; zero where nothing was solved.
     double tolerance = 0.;
     /// Wall time of the solve, and what of it the same solve would have taken
-    /// without friction.
+    /// without contact.
     double seconds = 0., plain_seconds = 0.;
 
     /// Count an earlier solve of the same step, too.
@@ -83,7 +83,7 @@ namespace Viscoplastic
      * the sets and multipliers to start from, which become those of the
      * solution; @p tolerance: the relative error at which to stop.
      *
-     * The report tells what a solve without friction would have taken from the
+     * The report tells what a solve without contact would have taken from the
      * same start, from what this one has shown: of an exact solver, the
      * completion of the displacement, to which the caller adds bulk.begin();
      * of an iterative one the seconds a decade of its corrections, times the

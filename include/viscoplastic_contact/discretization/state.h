@@ -32,7 +32,7 @@ namespace Viscoplastic
     IrreversibleStress time_error, rate_slope;
 
     /// What contact has done in the step that led here; no points without
-    /// Gamma_3.
+    /// friction and contact that opens.
     ContactState contact;
 
     /// u_0, Cartesian with ghosts; empty where zero.

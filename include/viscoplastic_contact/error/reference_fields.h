@@ -39,7 +39,7 @@ namespace Viscoplastic
 
   /// Sample the owned cells at their centers, where gradients are more accurate
   /// than elsewhere; more points would cost time. @p multiplier_density is null
-  /// without friction.
+  /// without contact points.
   template <int dim>
   FieldSamples<dim>
   sample_fields(const StressSpace<dim>  &stress_space,

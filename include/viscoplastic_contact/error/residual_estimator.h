@@ -32,7 +32,7 @@ namespace Viscoplastic
    * residual of the others counts with F = 0 (symmetry: the tangential ones).
    *
    * The terms of complementarity and of violated bounds are zero at the nodes:
-   * the contact solver's multipliers satisfy the friction law to rounding.
+   * the contact solver's multipliers satisfy the laws of contact to rounding.
    * Between nodes the density exceeds a bound that jumps, which counts.
    *
    * Where contact opens, the whole traction is compared with the density, and

@@ -32,8 +32,8 @@ namespace Viscoplastic
   /**
    * The errors by quadrature with three points in each direction, without the
    * recovery's. Norms of stress, multiplier and memory stay zero where the
-   * solution has no stress. @p multiplier_density is null without friction.
-   * Collective.
+   * solution has no stress. @p multiplier_density is null without contact
+   * points. Collective.
    */
   template <int dim>
   SolutionErrors

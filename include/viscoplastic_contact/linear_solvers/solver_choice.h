@@ -32,7 +32,7 @@ namespace Viscoplastic
     double max_poissons_ratio = 0.;
     /// How often the solver will be used at least, and how often in a step.
     unsigned int n_solves = 1, solves_per_step = 1;
-    /// Degrees of freedom in all, and of these on the friction face. Prices are
+    /// Degrees of freedom in all, and of these on the contact face. Prices are
     /// those of systems beyond dealii::types::global_dof_index, too.
     std::uint64_t n_dofs = 0, n_face_dofs = 0;
     /// Those of the mesh that the present one is refined from; 0 where it is

@@ -16,7 +16,7 @@ namespace Viscoplastic
 
 
   /// A place where Newton's method for a step is: u in frames, the same
-  /// Cartesian and with ghosts, z(eps(u)), and what friction does there.
+  /// Cartesian and with ghosts, z(eps(u)), and what contact does there.
   template <int dim>
   struct NewtonIterate
   {

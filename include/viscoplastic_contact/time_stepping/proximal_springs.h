@@ -30,7 +30,7 @@ namespace Viscoplastic
     void
     add_load(const DistributedVector &u, DistributedVector &load) const;
 
-    /// Solves the step with the springs from u and friction, for a right side
+    /// Solves the step with the springs from u and contact, for a right side
     /// and a tolerance.
     using Solve =
       std::function<ContactReport(const DistributedVector &, const double)>;

@@ -91,9 +91,9 @@ TEST(BoundaryRefinements, RefineWhatTouches)
 
 
 
-/// The cells of deal.II's quarter of a ball see common faces turned, which
-/// p4est balances differently from deal.II: the third round would crash.
-TEST(BoundaryRefinements, OfMeshesWithTurnedFaces)
+/// In deal.II's quarter of a ball cells see common lines run different ways;
+/// p4est would refine other cells than deal.II, which ends in a crash.
+TEST(BoundaryRefinements, OfMeshesWithTurnedLines)
 {
   GeometryParameters geometry;
   geometry.generator            = "quarter_hyper_ball";

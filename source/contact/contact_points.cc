@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/contact_points.h>
+#include <viscoplastic_contact/contact/node_minimum.h>
 
 #include <algorithm>
 #include <cmath>
@@ -234,22 +235,25 @@ namespace Viscoplastic
      * Minimize J over x = start + y, with y in the range of the symmetric @p
      * flexibility, its response to forces: by duality, block by block over the
      * points from @p begin to @p end, which may be obstacles. Exact at once for
-     * a single point.
+     * a single point; returns whether the sweeps have ended. They hardly move
+     * where points pull against each other along one direction.
      */
-    Tensor<1, 3>
+    bool
     relax_points(const ContactLayout &face,
                  const unsigned int   begin,
                  const unsigned int   end,
                  const Tensor<2, 3>  &flexibility,
                  const Tensor<1, 3>  &start,
                  const Tensor<1, 3>  &force,
-                 ContactState        &state)
+                 ContactState        &state,
+                 Tensor<1, 3>        &x)
     {
-      constexpr unsigned int max_sweeps = 1000;
+      constexpr unsigned int max_sweeps = 100;
+      bool                   has_ended  = false;
       Tensor<1, 3>           remaining  = force;
       for (unsigned int p = begin; p < end; ++p)
         remaining -= node_force(face.points[p], state.multiplier[p]);
-      for (unsigned int sweep = 0; sweep < max_sweeps; ++sweep)
+      for (unsigned int sweep = 0; sweep < max_sweeps && !has_ended; ++sweep)
         {
           double change = 0., size = 0.;
           for (unsigned int p = begin; p < end; ++p)
@@ -277,10 +281,10 @@ namespace Viscoplastic
               state.sticks[p]     = solution.sticks;
               remaining -= node_force(point, solution.multiplier);
             }
-          if (end - begin <= 1 || change <= 1e-14 * size)
-            break;
+          has_ended = end - begin <= 1 || change <= 1e-14 * size;
         }
-      return start + flexibility * remaining;
+      x = start + flexibility * remaining;
+      return has_ended;
     }
   } // namespace
 
@@ -307,8 +311,8 @@ namespace Viscoplastic
         // J is convex, so that the obstacle is met if the node alone would pass
         // it, and has no influence otherwise.
         const ContactLayout::Point &point = face.points[obstacle];
-        x                                 = relax_points(
-          face, begin, obstacle, inverse_diagonal, nothing, force, state);
+        relax_points(
+          face, begin, obstacle, inverse_diagonal, nothing, force, state, x);
         state.multiplier[obstacle] = Tensor<1, 2>();
         state.sticks[obstacle]     = slip(point, x)[0] > state.bound[obstacle];
         if (state.sticks[obstacle])
@@ -317,15 +321,16 @@ namespace Viscoplastic
             const Tensor<1, 3> response = inverse_diagonal * point.map[0];
             const double       size     = point.map[0] * response;
             distance                    = state.bound[obstacle];
-            normal                 = point.map[0] / point.map[0].norm_square();
-            x                      = relax_points(face,
-                             begin,
-                             obstacle,
-                             inverse_diagonal -
-                               outer_product(response, response) / size,
-                             response * (distance / size),
-                             force,
-                             state);
+            normal = point.map[0] / point.map[0].norm_square();
+            relax_points(face,
+                         begin,
+                         obstacle,
+                         inverse_diagonal -
+                           outer_product(response, response) / size,
+                         response * (distance / size),
+                         force,
+                         state,
+                         x);
             Tensor<1, 3> remaining = force;
             for (unsigned int p = begin; p < obstacle; ++p)
               remaining -= node_force(face.points[p], state.multiplier[p]);
@@ -336,8 +341,11 @@ namespace Viscoplastic
       }
     else
       {
-        x = relax_points(
-          face, begin, end, inverse_diagonal, nothing, force, state);
+        if (!relax_points(
+              face, begin, end, inverse_diagonal, nothing, force, state, x))
+          if (const auto minimum = minimize_at_node(
+                face, node, invert(inverse_diagonal), force, state))
+            x = *minimum;
         // The penetration of what hardly gives way is known better from its
         // force.
         if (end - obstacle == 1 && (is_plain || begin == obstacle) &&
@@ -397,10 +405,8 @@ namespace Viscoplastic
               const ContactLayout::Point &point = face.points[p];
               if (!holds(point, state, p))
                 continue;
-              const double scale =
-                point.is_obstacle ? 1. / point.map[0].norm_square() : 1.;
               state.multiplier[p] =
-                clip(point, scale * slip(point, missing), state.bound[p]);
+                clip(point, nearest_multiplier(point, missing), state.bound[p]);
               missing -= node_force(point, state.multiplier[p]);
             }
         else if (n_stick > 0)
@@ -471,30 +477,49 @@ namespace Viscoplastic
     if (face.has_obstacles)
       for (unsigned int p = 0; p < face.points.size(); ++p)
         share_misfit(face, residual, diagonal, state, p, result);
-    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+    for (unsigned int p = 0; p < face.points.size(); ++p)
       {
-        const unsigned int p = face.first_point[node];
-        if (!face.has_plain_friction(node) || face.points[p].n_tangents != 2 ||
-            state.sticks[p] || state.bound[p] == 0.)
-          continue;
         const ContactLayout::Point &point = face.points[p];
-        const Tensor<1, 2> here = slip(point, face.node_values(residual, node));
-        const double       misses    = (here - state.multiplier[p]).norm();
-        const double       stiffness = diagonal[node].norm();
-        const double       size      = state.slip[p].norm();
-        const double       blur      = rounding / (std::sqrt(stiffness) * size);
-        if (misses > std::max(1e-5, blur) * state.bound[p] ||
-            misses <= stiffness * size)
+        if (point.is_obstacle || point.n_tangents != 2 || state.sticks[p] ||
+            state.bound[p] == 0.)
           continue;
-        const Tensor<1, 2> multiplier = clip(here, state.bound[p]);
-        result.defect += std::max(0.,
-                                  state.bound[p] * state.slip[p].norm() -
-                                    multiplier * state.slip[p]);
+        const Tensor<1, 3> here = face.node_values(result.force, point.node);
+        const Tensor<1, 2> missing =
+          nearest_multiplier(point,
+                             face.node_values(residual, point.node) - here);
+        const double bound = state.bound[p], size = state.slip[p].norm(),
+                     stiffness = diagonal[point.node].norm();
+        Tensor<1, 2> multiplier;
+        if (face.has_plain_friction(point.node))
+          {
+            const double misses = missing.norm();
+            const double blur   = rounding / (std::sqrt(stiffness) * size);
+            if (misses > std::max(1e-5, blur) * bound ||
+                misses <= stiffness * size)
+              continue;
+            multiplier = clip(state.multiplier[p] + missing, bound);
+            result.defect +=
+              std::max(0., bound * size - multiplier * state.slip[p]);
+          }
+        else
+          {
+            const Tensor<1, 2> direction = state.slip[p] / size,
+                               across =
+                                 missing - (missing * direction) * direction;
+            // The body itself needs little of what these forces are.
+            if (bound < 10. * face.node_values(residual, point.node).norm() ||
+                across.norm() > 1e-9 * bound || stiffness * size >= bound)
+              continue;
+            multiplier = state.multiplier[p] + across;
+            multiplier *= bound / multiplier.norm();
+            // 1 - cos of the turn
+            result.defect += 0.51 * size * across.norm_square() / bound;
+          }
         result.replaced.emplace_back(p, multiplier);
-        face.set_node_values(face.node_values(result.force, node) +
+        face.set_node_values(here +
                                node_force(point,
                                           multiplier - state.multiplier[p]),
-                             node,
+                             point.node,
                              result.force);
       }
     result.defect = face.sum(result.defect);

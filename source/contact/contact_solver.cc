@@ -80,7 +80,7 @@ namespace Viscoplastic
             continue;
           const Tensor<1, 3> here = face.node_values(x, node);
           const Tensor<1, 3> part =
-            node_force(face.points[p], slip(face.points[p], here));
+            motion_with_slip(face.points[p], slip(face.points[p], here));
           if (part * (diagonal[node] * part) >
               Utilities::fixed_power<2>(rounding))
             continue;

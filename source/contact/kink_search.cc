@@ -192,7 +192,8 @@ namespace Viscoplastic
           if (first_obstacle == end)
             here = -1. * face.node_values(x, node);
           else
-            here -= node_force(face.points[p],
+            here -=
+              motion_with_slip(face.points[p],
                                state.slip[p] + slip(face.points[p], here));
           stops = true;
         }

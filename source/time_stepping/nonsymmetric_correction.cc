@@ -257,7 +257,7 @@ namespace Viscoplastic
               {
                 stop_by(layout.n_node_points(point.node) == 1 ?
                           -1. * values :
-                          -1. * node_force(point, s));
+                          -1. * motion_with_slip(point, s));
                 s = Tensor<1, 2>();
               }
             to.contact.sticks[p] = s.norm() == 0.;

@@ -223,9 +223,13 @@ namespace Viscoplastic
         if (problem.bounds_follow_pressure &&
             !has_computed_bounds(d, old, time_step.t, problem.slip_rates))
           {
-            ContactState pressed(problem.bounds);
-            for (auto &multiplier : pressed.multiplier)
-              multiplier[0] = std::numeric_limits<double>::infinity();
+            // (Not where pieces meet: one may push along what another holds.)
+            ContactState         pressed(problem.bounds);
+            const ContactLayout &face = d.face->layout();
+            for (unsigned int p = 0; p < pressed.n_points(); ++p)
+              if (face.has_plain_friction(face.points[p].node))
+                pressed.multiplier[p][0] =
+                  std::numeric_limits<double>::infinity();
             d.face->add_computed_bounds(time_step.t,
                                         pressed,
                                         problem.bounds,

@@ -300,6 +300,45 @@ namespace
 
 
 
+  TEST(ContactSolver, SlipsThatAreAPartOfTheMotion)
+  {
+    // Where another condition holds the node along a direction that is oblique
+    // to the piece: rows of other lengths than 1, not at a right angle.
+    constexpr double tolerance = 1e-9;
+    for (const unsigned int n_tangents : {1, 2})
+      {
+        unsigned int n_stick = 0, n_slip = 0;
+        for (unsigned int seed = 900; seed < 930; ++seed)
+          {
+            Problem problem = random_problem(seed, n_tangents);
+            Random  random(seed);
+            for (auto &point : problem.face.points)
+              {
+                point.map[1] =
+                  0.7 * point.map[1] + random.uniform(-0.5, 0.5) * point.map[0];
+                point.map[0] *= random.uniform(0.1, 1.);
+              }
+            if (n_tangents == 1)
+              for (auto &point : problem.face.points)
+                point.map[1] = Tensor<1, 3>();
+            const Solution reference = reference_solution(problem);
+            for (const bool condensed : {true, false})
+              {
+                SCOPED_TRACE("seed " + std::to_string(seed) + ", tangents " +
+                             std::to_string(n_tangents) +
+                             (condensed ? ", condensed" : ", frozen bulk"));
+                const Result result = solve(problem, condensed, tolerance);
+                expect_solution(problem, result, reference, tolerance);
+                count_sets(result, n_stick, n_slip);
+              }
+          }
+        EXPECT_GT(n_stick, 20u);
+        EXPECT_GT(n_slip, 50u);
+      }
+  }
+
+
+
   TEST(ContactSolver, GluedPlanesAtANode)
   {
     constexpr double tolerance = 1e-9;

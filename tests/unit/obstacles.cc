@@ -140,6 +140,85 @@ namespace
 
 
 
+  /// Two pieces in unilateral contact with friction meet at an angle at each
+  /// node, and their foundations have come nearer or gone. In 3D at an edge.
+  Problem
+  pushed_corners(const unsigned int seed,
+                 const unsigned int dim,
+                 const double       degrees)
+  {
+    Random       random(seed);
+    Problem      problem;
+    const double angle = degrees * numbers::PI / 180.;
+    const double c = std::cos(angle), s = std::sin(angle);
+    for (unsigned int n = 0; n < 3; ++n)
+      if (dim == 2)
+        problem.add_node(2,
+                         {{vector(1, 0)}, {vector(c, s)}},
+                         {vector(0, -1), vector(-s, c)});
+      else
+        problem.add_node(3,
+                         {{vector(1, 0, 0), vector(0, 0, 1)},
+                          {vector(c, s, 0), vector(0, 0, 1)}},
+                         {vector(0, -1, 0), vector(-s, c, 0)});
+    fill_at_random(problem, random, 4, 0., 1.);
+    for (unsigned int p = 0; p < problem.bounds.size(); ++p)
+      problem.bounds[p] = problem.face.points[p].is_obstacle ?
+                            random.integer(0, 2) * random.uniform(-0.3, 0.2) :
+                            random.logarithmic(1e-3, 1e2);
+    return problem;
+  }
+
+
+
+  TEST(Obstacles, FoundationsThatPushAgainstFriction)
+  {
+    // What one piece holds, the foundation of the other moves. Judged by the
+    // duality gap with the slips of all points, those that shall stick as well.
+    constexpr double tolerance = 1e-9;
+    for (const unsigned int dim : {2, 3})
+      {
+        unsigned int n_pushed = 0, n_stick = 0;
+        for (const double degrees : {90., 60., 120.})
+          for (unsigned int seed = 0; seed < 30; ++seed)
+            for (const bool condensed : {true, false})
+              {
+                SCOPED_TRACE("dim " + std::to_string(dim) + ", seed " +
+                             std::to_string(seed) + ", degrees " +
+                             std::to_string(degrees) +
+                             (condensed ? ", condensed" : ", frozen bulk"));
+                const Problem problem = pushed_corners(seed, dim, degrees);
+                const Result  result  = solve(problem, condensed, tolerance);
+                const double  size    = problem.energy_norm(result.u);
+                const auto    slips   = problem.slips(result.u);
+                double        work    = 1.;
+                for (unsigned int p = 0; p < slips.size(); ++p)
+                  work += result.state.multiplier[p].norm() * slips[p].norm();
+                EXPECT_LE(duality_gap(problem, result),
+                          0.5 * std::pow(tolerance * size, 2) + 1e-11 * work);
+                EXPECT_GE(duality_gap(problem, result), -1e-11 * work);
+                for (unsigned int p = 0; p < slips.size(); ++p)
+                  if (problem.face.points[p].is_obstacle)
+                    {
+                      EXPECT_LE(slips[p][0], problem.bounds[p] + 1e-11);
+                      EXPECT_GE(result.state.multiplier[p][0], 0.);
+                    }
+                  else
+                    {
+                      EXPECT_LE(result.state.multiplier[p].norm(),
+                                problem.bounds[p] * (1. + 1e-14));
+                      n_stick += result.state.sticks[p];
+                      n_pushed +=
+                        !result.state.sticks[p] && problem.bounds[p] > 10.;
+                    }
+              }
+        EXPECT_GT(n_stick, 50u);
+        EXPECT_GT(n_pushed, 30u);
+      }
+  }
+
+
+
   TEST(Obstacles, WholeFaceClosesOrOpensAtOnce)
   {
     // The force on the obstacles is the excess times the load, down to none.

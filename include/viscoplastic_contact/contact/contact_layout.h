@@ -145,6 +145,16 @@ namespace Viscoplastic
   Tensor<1, 3>
   node_force(const ContactLayout::Point &point, const Tensor<1, 2> &multiplier);
 
+  /// The multiplier whose node force is the nearest to @p force.
+  Tensor<1, 2>
+  nearest_multiplier(const ContactLayout::Point &point,
+                     const Tensor<1, 3>         &force);
+
+  /// The smallest motion of the node with this slip. (Rows of a map are not of
+  /// length 1 where pieces meet at an angle other than a right one.)
+  Tensor<1, 3>
+  motion_with_slip(const ContactLayout::Point &point, const Tensor<1, 2> &slip);
+
 
   /**
    * What contact does in a step, point by point. Friction satisfies

@@ -72,7 +72,9 @@ namespace Viscoplastic
    * than its slip is worth. There the clipped residual is the better
    * multiplier, at the price of a small defect of complementarity. A miss of
    * more than 1e-5 of the bound is not rounding, unless the slip is as small as
-   * @p rounding, an error in the energy norm, makes it. An obstacle that gives
+   * @p rounding, an error in the energy norm, makes it. Where pieces meet, one
+   * may push along what the other holds with forces far above those of the
+   * body: multipliers are turned by up to 1e-9 there. An obstacle that gives
    * way gets a multiplier between its force and the residual, the nearer to
    * the latter the stiffer it is. Collective.
    */

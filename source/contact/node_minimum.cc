@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/contact/node_minimum.h>
+
+#include <cmath>
+#include <vector>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// A slip or a violation below this part of the motion of a node is
+    /// rounding.
+    constexpr double rounding = 1e-14;
+
+
+
+    /// J of one node with some of its points held.
+    class NodeProblem
+    {
+    public:
+      /// Where J may be least, and which points are held there.
+      struct Candidate
+      {
+        Tensor<1, 3>      x;
+        std::vector<bool> is_held;
+      };
+
+      NodeProblem(const ContactLayout &face,
+                  const unsigned int   node,
+                  const Tensor<2, 3>  &stiffness,
+                  const Tensor<1, 3>  &force,
+                  const ContactState  &state);
+
+      /// The points that can be held: friction, and obstacles that are rigid.
+      std::vector<unsigned int> holders;
+
+      /// Hold the holders @p i with held[i]. Returns whether all can be at
+      /// once.
+      bool
+      hold(const std::vector<bool> &held);
+
+      /// The minimum with these held, unless it is where others are held, too,
+      /// or beyond an obstacle.
+      std::optional<Candidate>
+      minimum() const;
+
+      /// J(to) - J(from), without the loss of digits of a difference.
+      double
+      difference(const Candidate &from, const Candidate &to) const;
+
+    private:
+      /// The gradient of J, the norm of slip replaced by a parabola in the
+      /// range of rounding, and the matrix of second derivatives.
+      Tensor<1, 3>
+      gradient(const Tensor<1, 3> &x, Tensor<2, 3> *hessian = nullptr) const;
+
+      /// How far J decreases from @p x along a direction of descent.
+      double
+      step_length(const Tensor<1, 3> &x, const Tensor<1, 3> &direction) const;
+
+      bool
+      has_friction(const unsigned int p) const
+      {
+        return !face.points[p].is_obstacle && state.bound[p] > 0.;
+      }
+
+      const ContactLayout &face;
+      const unsigned int   begin, end;
+      const Tensor<2, 3>  &stiffness;
+      const Tensor<1, 3>  &force;
+      const ContactState  &state;
+      /// Of motions at this node, below which there is rounding.
+      double negligible;
+
+      std::vector<bool> is_held; // point by point
+      /// What is held is at `start`, and moves in the range of a projector.
+      Tensor<1, 3> start;
+      Tensor<2, 3> projector;
+    };
+
+
+
+    NodeProblem::NodeProblem(const ContactLayout &face,
+                             const unsigned int   node,
+                             const Tensor<2, 3>  &stiffness,
+                             const Tensor<1, 3>  &force,
+                             const ContactState  &state)
+      : face(face)
+      , begin(face.first_point[node])
+      , end(face.first_point[node + 1])
+      , stiffness(stiffness)
+      , force(force)
+      , state(state)
+      , is_held(end - begin)
+    {
+      double size = (invert(stiffness) * force).norm();
+      for (unsigned int p = begin; p < end; ++p)
+        {
+          const ContactLayout::Point &point = face.points[p];
+          if (point.is_obstacle)
+            size = std::max(size, -state.bound[p] / point.map[0].norm());
+          if (has_friction(p) || (point.is_obstacle && !point.gives_way()))
+            holders.push_back(p);
+        }
+      negligible = std::max(rounding * size, 1e-100);
+    }
+
+
+
+    bool
+    NodeProblem::hold(const std::vector<bool> &held)
+    {
+      is_held.assign(end - begin, false);
+      start     = Tensor<1, 3>();
+      projector = Tensor<2, 3>();
+      for (unsigned int d = 0; d < face.n_node_dofs(face.points[begin].node);
+           ++d)
+        projector[d][d] = 1.;
+      for (unsigned int i = 0; i < held.size(); ++i)
+        if (held[i])
+          {
+            const unsigned int          p     = holders[i];
+            const ContactLayout::Point &point = face.points[p];
+            is_held[p - begin]                = true;
+            for (unsigned int row = 0; row < point.n_tangents; ++row)
+              {
+                const Tensor<1, 3> &map = point.map[row];
+                const double        missing =
+                  (point.is_obstacle ? state.bound[p] : 0.) - map * start;
+                // What is left of this direction.
+                Tensor<1, 3> q    = projector * map;
+                const double size = q.norm();
+                if (size > 1e-8 * map.norm())
+                  {
+                    q /= size;
+                    start += missing / size * q;
+                    projector -= outer_product(q, q);
+                  }
+                else if (std::abs(missing) > negligible * map.norm())
+                  return false;
+              }
+          }
+        else if (!face.points[holders[i]].is_obstacle &&
+                 state.bound[holders[i]] > 1e300)
+          return false; // it is glued
+      return true;
+    }
+
+
+
+    Tensor<1, 3>
+    NodeProblem::gradient(const Tensor<1, 3> &x, Tensor<2, 3> *hessian) const
+    {
+      Tensor<1, 3> result = stiffness * x - force;
+      if (hessian != nullptr)
+        *hessian = stiffness;
+      for (unsigned int p = begin; p < end; ++p)
+        {
+          const ContactLayout::Point &point = face.points[p];
+          const Tensor<1, 2>          s     = slip(point, x);
+          if (point.gives_way())
+            {
+              const double w = s[0] - state.bound[p];
+              result += point.compliance.force(w) * point.map[0];
+              if (hessian != nullptr)
+                *hessian += point.compliance.slope(w) *
+                            outer_product(point.map[0], point.map[0]);
+            }
+          else if (has_friction(p) && !is_held[p - begin])
+            {
+              const double size   = s.norm();
+              const double spring = state.bound[p] / std::max(size, negligible);
+              result += spring * node_force(point, s);
+              if (hessian == nullptr)
+                continue;
+              if (size <= negligible)
+                for (unsigned int i = 0; i < point.n_tangents; ++i)
+                  *hessian +=
+                    spring * outer_product(point.map[i], point.map[i]);
+              else if (point.n_tangents == 2)
+                {
+                  const Tensor<1, 3> across =
+                    (s[0] * point.map[1] - s[1] * point.map[0]) / size;
+                  *hessian += spring * outer_product(across, across);
+                }
+            }
+        }
+      return result;
+    }
+
+
+
+    double
+    NodeProblem::step_length(const Tensor<1, 3> &x,
+                             const Tensor<1, 3> &direction) const
+    {
+      const auto slope = [&](const double step) {
+        return gradient(x + step * direction) * direction;
+      };
+      double left = 0., right = 1.;
+      if (std::abs(slope(1.)) <= 1e-8 * std::abs(slope(0.)))
+        return 1.;
+      while (right < 1e6 && slope(right) < 0.)
+        {
+          left = right;
+          right *= 2.;
+        }
+      for (unsigned int i = 0; i < 60; ++i)
+        {
+          const double middle                 = 0.5 * (left + right);
+          (slope(middle) < 0. ? left : right) = middle;
+        }
+      return left;
+    }
+
+
+
+    std::optional<NodeProblem::Candidate>
+    NodeProblem::minimum() const
+    {
+      // Newton's method from where the node would be without its points.
+      Tensor<1, 3> x = start + projector * (invert(stiffness) * force - start);
+      double       scale = 0.;
+      for (unsigned int d = 0; d < 3; ++d)
+        scale = std::max(scale, stiffness[d][d]);
+      for (unsigned int iteration = 0; iteration < 60 && projector.norm() > 0.5;
+           ++iteration)
+        {
+          Tensor<2, 3>       hessian;
+          const Tensor<1, 3> downhill = -1. * projector * gradient(x, &hessian);
+          hessian                     = projector * hessian * projector;
+          for (unsigned int i = 0; i < 3; ++i)
+            for (unsigned int j = 0; j < 3; ++j)
+              hessian[i][j] += scale * ((i == j) - projector[i][j]);
+          const Tensor<1, 3> direction =
+            projector * (invert(hessian) * downhill);
+          if (!(direction.norm() > 1e-17 * x.norm()) ||
+              !(direction * downhill > 0.))
+            break;
+          const double step = step_length(x, direction);
+          x += step * direction;
+          if (step == 0.)
+            break;
+        }
+
+      Candidate result{x, is_held};
+      for (unsigned int p = begin; p < end; ++p)
+        {
+          const ContactLayout::Point &point = face.points[p];
+          if (is_held[p - begin] || point.gives_way())
+            continue;
+          const Tensor<1, 2> s    = slip(point, x);
+          const double       room = negligible * point.map[0].norm();
+          if (point.is_obstacle ? s[0] > state.bound[p] + room :
+                                  has_friction(p) && !(s.norm() > room))
+            return {};
+          // An obstacle that is met by chance may press, too.
+          result.is_held[p - begin] =
+            point.is_obstacle && s[0] >= state.bound[p] - room;
+        }
+      return result;
+    }
+
+
+
+    double
+    NodeProblem::difference(const Candidate &from, const Candidate &to) const
+    {
+      const Tensor<1, 3> change = to.x - from.x;
+      double             result = change * (stiffness * from.x - force) +
+                      0.5 * change * (stiffness * change);
+      for (unsigned int p = begin; p < end; ++p)
+        {
+          const ContactLayout::Point &point = face.points[p];
+          const auto slip_of                = [&](const Candidate &candidate) {
+            return candidate.is_held[p - begin] && !point.is_obstacle ?
+                                    Tensor<1, 2>() :
+                                    slip(point, candidate.x);
+          };
+          const Tensor<1, 2> s_from = slip_of(from), s_to = slip_of(to);
+          if (point.gives_way())
+            result += point.compliance.energy(s_to[0] - state.bound[p]) -
+                      point.compliance.energy(s_from[0] - state.bound[p]);
+          else if (const double sum = s_from.norm() + s_to.norm();
+                   has_friction(p) && sum > 0.)
+            result +=
+              state.bound[p] * ((s_from + s_to) * (s_to - s_from)) / sum;
+        }
+      return result;
+    }
+  } // namespace
+
+
+
+  std::optional<Tensor<1, 3>>
+  minimize_at_node(const ContactLayout &face,
+                   const unsigned int   node,
+                   const Tensor<2, 3>  &stiffness,
+                   const Tensor<1, 3>  &force,
+                   ContactState        &state)
+  {
+    NodeProblem        problem(face, node, stiffness, force, state);
+    const unsigned int n_sets = 1u << problem.holders.size();
+    std::optional<NodeProblem::Candidate> best;
+    std::vector<bool>                     held(problem.holders.size());
+    for (unsigned int set = 0; set < n_sets; ++set)
+      {
+        for (unsigned int i = 0; i < held.size(); ++i)
+          held[i] = (set >> i & 1) != 0;
+        if (!problem.hold(held))
+          continue;
+        const auto candidate = problem.minimum();
+        if (candidate && (!best || problem.difference(*best, *candidate) < 0.))
+          best = candidate;
+      }
+    if (!best)
+      return {};
+    const unsigned int begin = face.first_point[node];
+    for (unsigned int p = begin; p < face.first_point[node + 1]; ++p)
+      {
+        const ContactLayout::Point &point = face.points[p];
+        const Tensor<1, 2>          s     = slip(point, best->x);
+        state.sticks[p] =
+          point.gives_way() ? s[0] > state.bound[p] : best->is_held[p - begin];
+        state.multiplier[p] = Tensor<1, 2>();
+        if (!point.is_obstacle && !state.sticks[p] && state.bound[p] > 0.)
+          state.multiplier[p] = s * (state.bound[p] / s.norm());
+      }
+    return best->x;
+  }
+} // namespace Viscoplastic

@@ -38,8 +38,11 @@ namespace Viscoplastic
         for (unsigned int p = 0; p < state.n_points(); ++p)
           if (discretization.face->layout().points[p].is_obstacle)
             (state.multiplier[p][0] > 0. ? touches : is_open) = true;
-        has_touched = has_touched || is_so(touches);
-        has_opened  = has_opened || is_so(is_open);
+        // A body that nothing else holds needs it even if no load presses.
+        has_touched = has_touched ||
+                      discretization.space.is_held_by_contact() ||
+                      is_so(touches);
+        has_opened = has_opened || is_so(is_open);
       }
     if (!foundation_has_moved && discretization.scene().has_moving_foundation())
       foundation_has_moved =

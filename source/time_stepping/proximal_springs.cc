@@ -16,9 +16,19 @@ namespace Viscoplastic
     /// the matrix, of up to fifty nodes; more of them share it. What they carry
     /// is reduced by something like this factor each time that the step is
     /// solved.
-    constexpr double spring_stiffness = 1e-3;
+    constexpr double spring_stiffness = 1e-4;
     /// A body that still moves after so many solves is not held.
-    constexpr unsigned int max_proximal_steps = 60;
+    constexpr unsigned int max_proximal_steps = 200;
+
+
+
+    /// The sum of a geometric series without its first term.
+    double
+    geometric_sum(const double ratio)
+    {
+      const double bounded = std::min(ratio, 0.99);
+      return bounded / (1. - bounded);
+    }
   } // namespace
 
 
@@ -45,6 +55,7 @@ namespace Viscoplastic
                             discretization.face->layout().n_nodes()),
                           space.communicator);
     const double stiffness = spring_stiffness * std::min(1., 50. / n_nodes);
+    rounding               = std::numeric_limits<double>::epsilon() / stiffness;
     for (const unsigned int i : discretization.face_restriction().positions())
       {
         const auto   dof      = space.owned.nth_index_in_set(i);
@@ -122,13 +133,14 @@ namespace Viscoplastic
     // in which the body's way to the foundation counts, too.
     ContactReport report;
     double        inner_tolerance = tolerance, last_in_springs = 0., reach = 0.;
+    bool          goes_on = false;
     // Farther away rounding is all that there is.
     const auto box = GridTools::compute_bounding_box(
                        discretization.space.dof_handler.get_triangulation())
                        .get_boundary_points();
     const double longest_way =
       1e6 * box.first.distance(box.second) + 10. * u.linfty_norm();
-    DistributedVector center(u), last_u(u), right(u), change(u);
+    DistributedVector center(u), right(u), change(u);
     for (unsigned int n = 0; n < max_proximal_steps; ++n)
       {
         right = right_side;
@@ -150,7 +162,7 @@ namespace Viscoplastic
         const bool   in_balance =
           force_in_springs <=
             0.01 * std::max(right.l1_norm(), right_side.l1_norm()) ||
-          in_springs <= 1e-13 * norm(center);
+          in_springs <= rounding * norm(center);
         report.error += in_springs;
         if (in_balance &&
             report.error <= std::max(tolerance * size, bulk.rounding_error()))
@@ -163,27 +175,28 @@ namespace Viscoplastic
           inner_tolerance *=
             std::clamp(0.3 * tolerance * size / report.error, 1e-3, 0.5);
         // A body on its way to the foundation goes on as it goes, until it
-        // touches it.
-        DistributedVector motion(u);
-        motion -= last_u;
-        last_u = u;
-        // On ground that gives way it comes to rest like a geometric series,
-        // of which two steps without a reach tell the ratio.
+        // touches it. One that is held comes to rest like a geometric series,
+        // slowly where a soft part of itself or of the ground holds it; two
+        // steps without a reach tell its ratio.
         const double ratio = in_springs / last_in_springs;
-        if (discretization.face->gives_way() && n > 0 && ratio < 0.99)
-          reach = reach > 0. || ratio < 0.5 ? 0. : ratio / (1. - ratio);
-        else
+        if (n > 0 && (goes_on || reach == 0.))
           {
-            const bool goes = in_springs > 0.01 * size && ratio > 0.5 && n > 0;
-            reach           = goes ? 4. * reach + 3. : 0.;
+            goes_on = ratio > 0.99 && ratio < 1.1 && in_springs > 0.01 * size;
+            reach   = goes_on                    ? 4. * reach + 3. :
+                      reach == 0. && ratio > 0.2 ? geometric_sum(ratio) :
+                                                   0.;
           }
+        else
+          reach = 0.;
         last_in_springs = in_springs;
         if (u.linfty_norm() > longest_way)
           break;
         center = u;
-        center.add(std::min(reach,
-                            way_to_obstacles(problem, contact, u, motion)),
-                   motion);
+        center.add(goes_on ?
+                     std::min(reach,
+                              way_to_obstacles(problem, contact, u, change)) :
+                     reach,
+                   change);
       }
     AssertThrow(false,
                 ExcMessage(

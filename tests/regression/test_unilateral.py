@@ -199,6 +199,92 @@ class Held(TestCase):
             self.assertClose(result[f"friction_force_{name}"][-1], value, relative=1e-5)
         self.assertClose(result["contact_force_z"][-1], -0.01 * 4, relative=1e-5)
 
+    def test_lifted_in_its_middle(self):
+        """A long strip on its foundation, so soft in bending that the load lifts
+        a part of it: what holds it is the weight of the ends."""
+        strip = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "40, 2 : -10, 0 : 10, 0.5 : true",
+            "Material/Young's modulus": 1000,
+            "Material/Law": "elastic",
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": 0.3,
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Traction": "0; 0.001*exp(-(x/2)^2)*t",
+            "Loads/Body force": "0; -0.0005*min(1, 10*t)",
+            "Solver/Coulomb pressure": "fixed point",
+            "Time/Phases": "1: 4",
+        }
+        for ranks, solver in ((1, "direct"), (2, "multigrid")):
+            with self.subTest(solver=solver):
+                entries = {**strip, "Solver/Linear solver": solver}
+                result = run("strip", entries, ranks, text="")
+                lift = 0.001 * 2 * np.sqrt(np.pi)  # but for the tails
+                self.assertClose(
+                    result["contact_force_y"][-1], lift - 0.005, relative=1e-3
+                )
+                self.assertGreater(result["max_gap"][-1], 1e-4)
+                self.assertLess(result["contact_area"][-1], 18)
+                gap = result.fields("contact")
+                x, first = np.unique(gap.points[:, 0], return_index=True)
+                opening = gap.point_data["gap"][first]
+                self.assertClose(opening, opening[::-1], absolute=1e-5)
+
+    def test_ground_softer_than_the_body(self):
+        """It sinks in by p/c, to a tenth of its size."""
+        for stiffness, load in ((1e-5, 1e-6), (1, 0.01)):
+            with self.subTest(stiffness=stiffness):
+                result = self.run_block(
+                    {
+                        "Boundary 0/Role": "free",
+                        "Boundary 2/Contact law": "normal compliance",
+                        "Boundary 2/Compliance": stiffness,
+                        "Boundary 2/Gap": 0,
+                        "Material/Poisson's ratio": 0,
+                        "Boundary 3/Traction": f"0; -{load}*t",
+                    }
+                )
+                self.assertClose(
+                    result["max_penetration"][-1], load / stiffness, relative=1e-5
+                )
+
+    def test_nearly_incompressible(self):
+        result = self.run_block(
+            {
+                "Boundary 0/Role": "free",
+                "Boundary 2/Gap": 0,
+                "Boundary 3/Traction": "0; -0.01*t",
+                "Material/Poisson's ratio": 0.49999,
+                "Material/Young's modulus": 1,
+            }
+        )
+        self.assertClose(result["contact_force_y"][-1], -0.02, relative=1e-4)
+
+    def test_belt_below_a_body_without_load(self):
+        """Where nothing presses, nothing is carried along; and the pressure of
+        the step before is told to be that."""
+        result = self.run_block(
+            {
+                "Boundary 0/Role": "free",
+                "Boundary 2/Gap": 0,
+                "Boundary 2/Foundation motion": "t; 0",
+                "Boundary 3/Traction": "0; -0.01*max(0, t - 0.6)",
+            }
+        )
+        still = result["t"] < 0.7
+        self.assertLess(result["max_displacement"][still].max(), 1e-12)
+        # the step in which contact begins has no friction yet
+        self.assertClose(result["max_displacement"][-1], 0.2, relative=0.05)
+        self.assertClose(result["bound_lag"][-2:], [1, 0.5], absolute=1e-6)
+        self.assertRegex(
+            " ".join(result.stdout.split()),
+            "miss those of the pressure of their step by 67 % on average",
+        )
+
     def test_refusals(self):
         for changes, message in (
             ({"Boundary 3/Traction": "0; 0.01*t"}, "No contact force balances"),
@@ -244,6 +330,86 @@ class Held(TestCase):
         self.assertClose(
             result["contact_force_y"][-1], result["reaction_3_y"][-1], relative=1e-6
         )
+
+
+class WherePiecesMeet(TestCase):
+    """What one condition moves at a corner, friction of the other piece holds."""
+
+    WEDGE = {
+        "Geometry/Generator": "general_cell",
+        "Geometry/Arguments": "0, 0; 1, 0; 0.2, 1; 1.2, 1 : true",
+        "Geometry/Global refinements": 2,
+        "Material/Law": "elastic",
+        "Boundary 1/Role": "clamped",
+        "Boundary 2/Role": "free",
+        "Time/Phases": "1: 4",
+    }
+
+    def test_oblique_to_a_moving_plane(self):
+        """At the acute corner the slip is a part of the motion that the plane
+        leaves free."""
+        for foundation in "-0.02*t", "0.02*sin(9*t)":
+            for solver in "direct", "multigrid":
+                with self.subTest(foundation=foundation, solver=solver):
+                    result = run(
+                        "wedge",
+                        {
+                            **self.WEDGE,
+                            "Boundary 0/Role": "contact",
+                            "Boundary 0/Friction law": "coulomb",
+                            "Boundary 0/Friction coefficient": 0.8,
+                            "Boundary 0/Normal stress": "-0.01*t",
+                            "Boundary 3/Role": "contact",
+                            "Boundary 3/Friction law": "none",
+                            "Boundary 3/Foundation displacement": foundation,
+                            "Solver/Contact tolerance": 1e-10,
+                            "Solver/Linear solver": solver,
+                        },
+                        text="",
+                    )
+                    self.check_identities(result, 1e-10, balance=1e-7)
+                    self.assertGreater(result["slip_area"].max(), 0)
+
+    def test_pushed_along_a_piece_that_holds(self):
+        """The foundation below lifts the corner, however much the wall resists:
+        the force there is that of the wall's friction at its node."""
+        bound, push = 500.0, 1e-4
+        for dim in 2, 3:
+            with self.subTest(dim=dim):
+                n = 4
+                sides = ", ".join(["1"] * dim)
+                below, top = 2 * dim - 2, 2 * dim - 1
+                entries = {
+                    "Dimension": dim,
+                    "Geometry/Generator": "subdivided_hyper_rectangle",
+                    "Geometry/Arguments": f"{', '.join([str(n)] * dim)} : "
+                    f"{', '.join(['0'] * dim)} : {sides} : true",
+                    "Material/Law": "elastic",
+                    "Boundary 0/Role": "contact",
+                    "Boundary 0/Friction law": "tresca",
+                    "Boundary 0/Friction bound": bound,
+                    "Boundary 1/Role": "free",
+                    f"Boundary {below}/Role": "contact",
+                    f"Boundary {below}/Contact law": "unilateral",
+                    f"Boundary {below}/Friction law": "none",
+                    f"Boundary {below}/Gap": f"-{push}*t",
+                    f"Boundary {top}/Role": "free",
+                    "Time/Phases": "1: 2",
+                    "Solver/Contact tolerance": 1e-8,
+                }
+                if dim == 3:
+                    entries["Boundary 2/Role"] = "symmetry"
+                    entries["Boundary 3/Role"] = "symmetry"
+                result = run("pushed", entries, text="")
+                self.check_identities(result, 1e-8, balance=1e-6)
+                resists = bound / n / 2  # of the nodes at the corner
+                self.assertClose(
+                    result["friction_dissipation"][-1],
+                    resists * push,
+                    relative=1e-4,
+                )
+                force = -result[f"contact_force_{'xyz'[dim - 1]}"][-1]
+                self.assertClose(force, resists, relative=1e-4)
 
 
 class AtRest(TestCase):

@@ -66,5 +66,7 @@ namespace Viscoplastic
     const DistributedMatrix   *singular_matrix = nullptr;
     DistributedMatrix          regular_matrix;
     DistributedVector          springs; // a diagonal matrix
+    /// What rounding in the matrix leaves in the springs, relative to u.
+    double rounding = 0.;
   };
 } // namespace Viscoplastic

@@ -111,8 +111,17 @@ namespace Viscoplastic
                ++o)
             if (o != p && (face.points[o].map[0] - point.map[0]).norm() < 1e-10)
               area += point_weights[o];
-        const Tensor<1, dim> traction =
-          cartesian(p, state.multiplier[p]) / area;
+        Tensor<1, dim> traction = cartesian(p, state.multiplier[p]) / area;
+        // A pressure is along the normal, also where other conditions hold a
+        // part of it and carry that.
+        if (face.points[p].is_obstacle)
+          {
+            const unsigned int     n     = face.points[p].node;
+            const NodalFrame<dim> &frame = space.frame_at(dof);
+            traction += state.multiplier[p][0] / area *
+                        (nodes[n].directions *
+                         frame.obstacles[p - face.first_obstacle(n)].fixed);
+          }
         for (unsigned int d = 0; d < dim; ++d)
           values.begin()[space.owned.index_within_set(dof) + d] += traction[d];
       }

@@ -289,6 +289,9 @@ namespace Viscoplastic
         Tensor<1, dim> density, given;
         if (has_multipliers)
           density = at_point(fields.multiplier_density->begin());
+        // Where pieces meet, the field has the pressure of all of them.
+        if (opens && !condition.has_friction())
+          density = (density * condition.normal) * condition.normal;
         if (fields.t)
           {
             given =

@@ -209,8 +209,10 @@ namespace Viscoplastic
                         taken.end(),
                       ExcMessage("'" + table->section + "/File': the column '" +
                                  column.name + "' of '" + table->file +
-                                 "' has a name that expressions know already; "
-                                 "give it another one."));
+                                 "' has a name that expressions know already, "
+                                 "as those of places, functions and what laws "
+                                 "are given (x, t, p, id); give it another "
+                                 "one."));
           taken.push_back(column.name);
         }
     current_tables() = tables;

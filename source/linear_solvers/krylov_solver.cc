@@ -366,7 +366,7 @@ namespace Viscoplastic
         AssertThrow(failure.last_residual < 0.5 * size,
                     ExcMessage("The conjugate gradient method does not "
                                "converge; for nearly incompressible bodies use "
-                               "'Solver/Linear solver' = direct."));
+                               "'Solver/Linear solver' = direct, on one rank."));
       }
     face_part = restriction.gather(w);
 

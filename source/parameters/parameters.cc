@@ -63,7 +63,7 @@ namespace Viscoplastic
     prm.add_parameter("Rotation angle",
                       rotation_angle,
                       "Rotation of the generated mesh about the origin, in "
-                      "degrees.");
+                      "degrees; not of meshes with curved edges.");
     prm.add_parameter("Rotation axis",
                       rotation_axis,
                       "Axis of that rotation in 3D; in 2D it is always z.",
@@ -71,7 +71,8 @@ namespace Viscoplastic
     prm.add_parameter("Translation",
                       translation,
                       "Shift of the mesh after the rotation, one number a "
-                      "direction; empty for none. Unit: length.",
+                      "direction; empty for none. Not of meshes with curved "
+                      "edges, whose place is in `Arguments'. Unit: length.",
                       Patterns::List(Patterns::Double()));
     prm.add_parameter("Global refinements",
                       global_refinements,

@@ -97,7 +97,8 @@ namespace Viscoplastic
       "In unilateral contact and normal compliance, the pressure p of the "
       "friction bound mu p. "
       "`lagged': that of the end of the step before, so that each step has one "
-      "solution; the error is of first order in the step. `fixed point': that of "
+      "solution; the error is of first order in the step, and no estimate or "
+      "tolerance counts it. `fixed point': that of "
       "the step itself; the step is solved again with the pressure that has come "
       "out until the bounds stay, and the run ends with a sentence where they "
       "do not, as for large mu.");

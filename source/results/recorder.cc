@@ -133,7 +133,11 @@ namespace Viscoplastic
     const double      defect = balance_defect(quantities);
     const std::string time_unit =
       scene.parameters.units.suffix(Quantity::time, dim);
-    if (step.time_step.n > 0 && !balance_is_doubtful &&
+    // Beside stresses that balance each other the forces may be nothing.
+    const bool is_beside_stresses =
+      quantities.largest_force * quantities.max_displacement <
+      std::min(1., 1e3 * step.report.tolerance) * quantities.stored_energy;
+    if (step.time_step.n > 0 && !balance_is_doubtful && !is_beside_stresses &&
         defect > std::max(1e-8, std::min(1e3 * step.report.tolerance, 1e-2)))
       {
         balance_is_doubtful = true;
@@ -177,6 +181,8 @@ namespace Viscoplastic
     run.max_displacement               = quantities.max_displacement;
     run.point_displacements            = quantities.point_displacements;
     run.tension_area.update(quantities.tension_area, t);
+    run.missed_bounds += step.end.state.k * quantities.missed_bounds;
+    run.computed_bounds += step.end.state.k * quantities.computed_bounds;
     if (run.displacement.update(quantities.max_displacement, t))
       run.displacement_position = quantities.displacement_position;
     run.strain.update(stress.max_strain, t);
@@ -423,6 +429,18 @@ namespace Viscoplastic
              << std::lround(100. * tension)
              << " % of the face in bilateral contact, which does not open; "
                 "'Contact law' = unilateral does.";
+        result.push_back(text.str());
+      }
+
+    if (run.missed_bounds > 0.01 * run.computed_bounds)
+      {
+        std::ostringstream text;
+        text << std::setprecision(2)
+             << "Note: the bounds of Coulomb friction, of the pressure of the "
+                "step before, miss those of the pressure of their step by "
+             << 100. * run.missed_bounds / run.computed_bounds
+             << " % on average, which no error estimate counts; smaller steps "
+                "or 'Solver/Coulomb pressure' = fixed point mend this.";
         result.push_back(text.str());
       }
 

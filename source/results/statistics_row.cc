@@ -121,6 +121,11 @@ namespace Viscoplastic
                 row.add("bound_iterations", step.report.bound_iterations);
                 row.add("contraction", step.report.contraction);
               }
+            else if (d.face->has_computed_pressure())
+              row.add("bound_lag",
+                      quantities.computed_bounds > 0. ?
+                        quantities.missed_bounds / quantities.computed_bounds :
+                        0.);
           }
       }
     for (const auto &[id, force] : quantities.reactions)

@@ -246,7 +246,7 @@ namespace Viscoplastic
                              &run.utilization,
                              &run.stiffness})
       archive & largest->value & largest->t;
-    archive &run.friction_area;
+    archive &run.friction_area &run.missed_bounds &run.computed_bounds;
     for (unsigned int d = 0; d < dim; ++d)
       archive &run.critical_position[d] & run.displacement_position[d] &
         run.von_mises_position[d];

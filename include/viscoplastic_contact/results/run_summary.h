@@ -82,6 +82,9 @@ namespace Viscoplastic
     /// The area of all friction points on the mesh on which slip_area was
     /// reached.
     double friction_area = 0.;
+    /// Of lagged Coulomb friction, sums over the steps of k times what
+    /// StepQuantities has.
+    double missed_bounds = 0., computed_bounds = 0.;
     /// The largest k r, and where r was that large.
     Largest    stiffness;
     Point<dim> critical_position;

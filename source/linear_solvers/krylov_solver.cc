@@ -364,9 +364,10 @@ namespace Viscoplastic
                     ExcMessage("The conjugate gradient method met a value that "
                                "is not finite."));
         AssertThrow(failure.last_residual < 0.5 * size,
-                    ExcMessage("The conjugate gradient method does not "
-                               "converge; for nearly incompressible bodies use "
-                               "'Solver/Linear solver' = direct, on one rank."));
+                    ExcMessage(
+                      "The conjugate gradient method does not "
+                      "converge; for nearly incompressible bodies use "
+                      "'Solver/Linear solver' = direct, on one rank."));
       }
     face_part = restriction.gather(w);
 

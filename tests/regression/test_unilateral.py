@@ -370,6 +370,72 @@ class WherePiecesMeet(TestCase):
                     self.check_identities(result, 1e-10, balance=1e-7)
                     self.assertGreater(result["slip_area"].max(), 0)
 
+    def test_estimate_of_what_is_exact(self):
+        """Pressed into a corner, and into a groove beside a plane of symmetry:
+        uniform stresses, which leave nothing to be estimated."""
+        corner = {
+            "Material/Law": "elastic",
+            **{
+                f"Boundary {id}/{name}": value
+                for id in (0, 2)
+                for name, value in (
+                    ("Role", "contact"),
+                    ("Contact law", "unilateral"),
+                    ("Friction law", "none"),
+                )
+            },
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Pressure": "0.02*t",
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Pressure": "0.01*t",
+            "Time/Phases": "1: 2",
+        }
+        groove = {
+            **corner,
+            "Geometry/Generator": "general_cell",
+            "Geometry/Arguments": "0, 0; 1, 1; 0, 2; 1, 2 : true",
+            "Geometry/Global refinements": 2,
+            "Boundary 0/Role": "symmetry",
+            "Boundary 1/Pressure": "0.02*t",
+            "Boundary 3/Pressure": "0.02*t",
+        }
+        for name in "Contact law", "Friction law":
+            groove.pop(f"Boundary 0/{name}")
+        for scene in corner, groove:
+            result = run("exact", scene, text="")
+            self.assertLess(
+                result["estimate_space"][-1], 1e-9 * result["energy_norm"][-1]
+            )
+
+    def test_fixed_point_at_an_edge(self):
+        """It cannot begin with stick where the foundation of the other piece
+        moves along."""
+        entries = {
+            "Dimension": 3,
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "2, 2, 3 : 0, 0, 0 : 2, 1, 0.5 : true",
+            "Material/Law": "elastic",
+            "Material/Poisson's ratio": 0,
+            "Boundary 0/Role": "contact",
+            "Boundary 0/Contact law": "unilateral",
+            "Boundary 0/Friction law": "coulomb",
+            "Boundary 0/Friction coefficient": 0.3,
+            **{f"Boundary {id}/Role": "free" for id in (1, 2, 3)},
+            "Boundary 4/Role": "contact",
+            "Boundary 4/Contact law": "unilateral",
+            "Boundary 4/Friction law": "tresca",
+            "Boundary 4/Friction bound": 2e-5,
+            "Boundary 4/Foundation displacement": "-2e-4*t",
+            "Boundary 5/Role": "displacement",
+            "Boundary 5/Displacement": "4e-5*t; 1e-4*t; -2e-4*t",
+            "Solver/Coulomb pressure": "fixed point",
+            "Solver/Contact tolerance": 1e-9,
+            "Time/Phases": "1: 3",
+        }
+        result = run("edge", entries, text="")
+        self.check_identities(result, 1e-9, balance=1e-6)
+        self.assertLess(result["contact_force_z"][-1], 0)
+
     def test_pushed_along_a_piece_that_holds(self):
         """The foundation below lifts the corner, however much the wall resists:
         the force there is that of the wall's friction at its node."""

@@ -20,31 +20,46 @@ namespace
   using namespace Viscoplastic;
   using namespace Viscoplastic::Testing;
 
-  TEST(ContactSolver, RandomProblems)
+  /// How points end and what that takes, summed over problems.
+  struct Counts
+  {
+    unsigned int n_stick = 0, n_slip = 0, n_iterations = 0;
+  };
+
+
+
+  /// Both solvers of the bulk against the reference.
+  void
+  expect_solved(const Problem &problem, const std::string &what, Counts &counts)
   {
     constexpr double tolerance = 1e-9;
+    const Solution   reference = reference_solution(problem);
+    for (const bool condensed : {true, false})
+      {
+        SCOPED_TRACE(what + (condensed ? ", condensed" : ", frozen bulk"));
+        const Result result = solve(problem, condensed, tolerance);
+        expect_solution(problem, result, reference, tolerance);
+        count_sets(result, counts.n_stick, counts.n_slip);
+        counts.n_iterations += result.report.iterations;
+      }
+  }
+
+
+
+  TEST(ContactSolver, RandomProblems)
+  {
     for (const unsigned int n_tangents : {1, 2})
       {
-        unsigned int n_stick = 0, n_slip = 0, n_iterations = 0;
+        Counts counts;
         for (unsigned int seed = 0; seed < 40; ++seed)
-          {
-            const Problem  problem   = random_problem(seed, n_tangents);
-            const Solution reference = reference_solution(problem);
-            for (const bool condensed : {true, false})
-              {
-                SCOPED_TRACE("seed " + std::to_string(seed) + ", tangents " +
-                             std::to_string(n_tangents) +
-                             (condensed ? ", condensed" : ", frozen bulk"));
-                const Result result = solve(problem, condensed, tolerance);
-                expect_solution(problem, result, reference, tolerance);
-                count_sets(result, n_stick, n_slip);
-                n_iterations += result.report.iterations;
-              }
-          }
+          expect_solved(random_problem(seed, n_tangents),
+                        "seed " + std::to_string(seed) + ", tangents " +
+                          std::to_string(n_tangents),
+                        counts);
         // Both kinds of points occur, and the iteration is a Newton method.
-        EXPECT_GT(n_stick, 50u);
-        EXPECT_GT(n_slip, 50u);
-        EXPECT_LT(n_iterations / 80., n_tangents == 1 ? 3. : 6.);
+        EXPECT_GT(counts.n_stick, 50u);
+        EXPECT_GT(counts.n_slip, 50u);
+        EXPECT_LT(counts.n_iterations / 80., n_tangents == 1 ? 3. : 6.);
       }
   }
 
@@ -252,17 +267,8 @@ namespace
     Random             random(seed);
     Problem            problem;
     const unsigned int n_corners = random.integer(1, 2);
-    const double       c         = std::cos(degrees * numbers::PI / 180.);
-    const double       s         = std::sin(degrees * numbers::PI / 180.);
     for (unsigned int n = 0; n < n_corners; ++n)
-      {
-        if (dim == 2)
-          problem.add_node(2, {{vector(1, 0)}, {vector(c, s)}});
-        else
-          problem.add_node(3,
-                           {{vector(1, 0, 0), vector(0, 0, 1)},
-                            {vector(c, s, 0), vector(0, 0, 1)}});
-      }
+      problem.add_node(dim, planes_at_an_angle(dim, degrees));
     for (unsigned int n = 0; n < 3; ++n)
       problem.add_node(dim, {random_rows(random, dim - 1, dim)});
     fill_at_random(problem, random, 3, 0.05, 1.);
@@ -273,28 +279,18 @@ namespace
 
   TEST(ContactSolver, TwoPlanesAtANode)
   {
-    constexpr double tolerance = 1e-9;
     for (const unsigned int dim : {2, 3})
       {
-        unsigned int n_stick = 0, n_slip = 0;
+        Counts counts;
         for (const double degrees : {90., 60., 30., 150., 120.})
           for (unsigned int seed = 500; seed < 512; ++seed)
-            {
-              const Problem  problem   = corner_problem(seed, dim, degrees);
-              const Solution reference = reference_solution(problem);
-              for (const bool condensed : {true, false})
-                {
-                  SCOPED_TRACE("dim " + std::to_string(dim) + ", seed " +
-                               std::to_string(seed) + ", degrees " +
-                               std::to_string(degrees) +
-                               (condensed ? ", condensed" : ", frozen bulk"));
-                  const Result result = solve(problem, condensed, tolerance);
-                  expect_solution(problem, result, reference, tolerance);
-                  count_sets(result, n_stick, n_slip);
-                }
-            }
-        EXPECT_GT(n_stick, 50u);
-        EXPECT_GT(n_slip, 50u);
+            expect_solved(corner_problem(seed, dim, degrees),
+                          "dim " + std::to_string(dim) + ", seed " +
+                            std::to_string(seed) + ", degrees " +
+                            std::to_string(degrees),
+                          counts);
+        EXPECT_GT(counts.n_stick, 50u);
+        EXPECT_GT(counts.n_slip, 50u);
       }
   }
 
@@ -304,36 +300,27 @@ namespace
   {
     // Where another condition holds the node along a direction that is oblique
     // to the piece: rows of other lengths than 1, not at a right angle.
-    constexpr double tolerance = 1e-9;
     for (const unsigned int n_tangents : {1, 2})
       {
-        unsigned int n_stick = 0, n_slip = 0;
+        Counts counts;
         for (unsigned int seed = 900; seed < 930; ++seed)
           {
             Problem problem = random_problem(seed, n_tangents);
             Random  random(seed);
             for (auto &point : problem.face.points)
               {
-                point.map[1] =
-                  0.7 * point.map[1] + random.uniform(-0.5, 0.5) * point.map[0];
+                if (n_tangents == 2)
+                  point.map[1] = 0.7 * point.map[1] +
+                                 random.uniform(-0.5, 0.5) * point.map[0];
                 point.map[0] *= random.uniform(0.1, 1.);
               }
-            if (n_tangents == 1)
-              for (auto &point : problem.face.points)
-                point.map[1] = Tensor<1, 3>();
-            const Solution reference = reference_solution(problem);
-            for (const bool condensed : {true, false})
-              {
-                SCOPED_TRACE("seed " + std::to_string(seed) + ", tangents " +
-                             std::to_string(n_tangents) +
-                             (condensed ? ", condensed" : ", frozen bulk"));
-                const Result result = solve(problem, condensed, tolerance);
-                expect_solution(problem, result, reference, tolerance);
-                count_sets(result, n_stick, n_slip);
-              }
+            expect_solved(problem,
+                          "seed " + std::to_string(seed) + ", tangents " +
+                            std::to_string(n_tangents),
+                          counts);
           }
-        EXPECT_GT(n_stick, 20u);
-        EXPECT_GT(n_slip, 50u);
+        EXPECT_GT(counts.n_stick, 20u);
+        EXPECT_GT(counts.n_slip, 50u);
       }
   }
 
@@ -379,12 +366,8 @@ namespace
         {
           SCOPED_TRACE("degrees " + std::to_string(degrees) + ", trial " +
                        std::to_string(trial));
-          Problem      problem;
-          const double c = std::cos(degrees * numbers::PI / 180.);
-          const double s = std::sin(degrees * numbers::PI / 180.);
-          problem.add_node(3,
-                           {{vector(1, 0, 0), vector(0, 0, 1)},
-                            {vector(c, s, 0), vector(0, 0, 1)}});
+          Problem problem;
+          problem.add_node(3, planes_at_an_angle(3, degrees));
           // A residual that bounds allow: the force of known multipliers.
           // Half of the trials without clipping.
           problem.bounds = {1., 1.};

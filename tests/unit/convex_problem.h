@@ -190,6 +190,22 @@ namespace Viscoplastic::Testing
 
 
 
+  /// Two pieces that meet at an angle, in 3D at an edge: the rows of their
+  /// slips.
+  inline std::vector<std::vector<Tensor<1, 3>>>
+  planes_at_an_angle(const unsigned int dim, const double degrees)
+  {
+    const double                           angle = degrees * numbers::PI / 180.;
+    std::vector<std::vector<Tensor<1, 3>>> planes{
+      {vector(1, 0)}, {vector(std::cos(angle), std::sin(angle))}};
+    if (dim == 3)
+      for (auto &rows : planes)
+        rows.push_back(vector(0, 0, 1));
+    return planes;
+  }
+
+
+
   /// The rest of a problem whose nodes are there: with @p n_bulk unknowns
   /// besides those of the face, and bounds in an interval.
   inline void

@@ -147,20 +147,14 @@ namespace
                  const unsigned int dim,
                  const double       degrees)
   {
-    Random       random(seed);
-    Problem      problem;
-    const double angle = degrees * numbers::PI / 180.;
-    const double c = std::cos(angle), s = std::sin(angle);
+    Random      random(seed);
+    Problem     problem;
+    const auto  planes = planes_at_an_angle(dim, degrees);
+    const auto &along  = planes[1][0]; // turned by a right angle: the normal
     for (unsigned int n = 0; n < 3; ++n)
-      if (dim == 2)
-        problem.add_node(2,
-                         {{vector(1, 0)}, {vector(c, s)}},
-                         {vector(0, -1), vector(-s, c)});
-      else
-        problem.add_node(3,
-                         {{vector(1, 0, 0), vector(0, 0, 1)},
-                          {vector(c, s, 0), vector(0, 0, 1)}},
-                         {vector(0, -1, 0), vector(-s, c, 0)});
+      problem.add_node(dim,
+                       planes,
+                       {vector(0, -1), vector(-along[1], along[0])});
     fill_at_random(problem, random, 4, 0., 1.);
     for (unsigned int p = 0; p < problem.bounds.size(); ++p)
       problem.bounds[p] = problem.face.points[p].is_obstacle ?

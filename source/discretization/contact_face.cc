@@ -429,6 +429,29 @@ namespace Viscoplastic
 
 
   template <int dim>
+  typename ContactFace<dim>::MissedBounds
+  ContactFace<dim>::missed_bounds(const State<dim> &state) const
+  {
+    const std::vector<double> rates =
+      slip_rates(state.velocity, state.t - state.k, state.t);
+    std::vector<double> of_step = bounds(state.t, rates);
+    add_computed_bounds(state.t, state.contact, of_step, rates);
+    std::vector<double> sums(3, 0.);
+    for (unsigned int p = 0; p < of_step.size(); ++p)
+      if (!layout().points[p].is_obstacle)
+        {
+          const double missed = std::abs(of_step[p] - state.contact.bound[p]);
+          sums[0] += of_step[p];
+          sums[1] += missed;
+          sums[2] += missed * state.contact.slip[p].norm();
+        }
+    Utilities::MPI::sum(sums, space.communicator, sums);
+    return {sums[0], sums[1], sums[2]};
+  }
+
+
+
+  template <int dim>
   void
   ContactFace<dim>::add_computed_bounds(
     const double               t,

@@ -81,8 +81,7 @@ namespace Viscoplastic
     , stress_space(space,
                    moduli,
                    scene.has_irreversible_stress() &&
-                     scene.parameters.stress.stress_history ==
-                       StressHistory::quadrature_points,
+                     scene.keeps_history_at_points(),
                    mean_dilatation)
     , laws(stress_space)
     , loads(space)

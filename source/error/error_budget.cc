@@ -43,8 +43,8 @@ namespace Viscoplastic
                                                   time_share * all) :
                                          0.;
     return std::max(least_space_share * all,
-                    all - time - errors.transfer - errors.initial -
-                      errors.algebraic);
+                    all - time - errors.history - errors.transfer -
+                      errors.initial - errors.algebraic);
   }
 
 } // namespace Viscoplastic

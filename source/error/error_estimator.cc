@@ -80,8 +80,8 @@ namespace Viscoplastic
                                           EvaluatedState<dim> &initial) const
   {
     initial.errors.energy_norm = energy_norm(initial.forces);
-    initial.errors.space = space_calibration * initial.space_estimate.residual;
-    initial.errors.algebraic = report.error;
+    initial.errors.space       = initial.space_estimate.total;
+    initial.errors.algebraic   = report.error;
   }
 
 
@@ -91,6 +91,7 @@ namespace Viscoplastic
   ErrorEstimator<dim>::change_mesh(const AdmissibleSpace<dim> &space,
                                    const DistributedMatrix    &matrix,
                                    const double                memory_loss,
+                                   const double                history,
                                    EvaluatedState<dim>        &accepted) const
   {
     DistributedVector velocity = space.owned_vector(), force = velocity;
@@ -98,6 +99,8 @@ namespace Viscoplastic
     matrix.vmult(force, velocity);
     accepted.errors.velocity_square = velocity * force;
     accepted.errors.transfer += memory_loss;
+    accepted.errors.history =
+      std::hypot(accepted.errors.history, std::sqrt(history));
   }
 
 
@@ -135,9 +138,10 @@ namespace Viscoplastic
     State<dim>    &state       = end.state;
     ErrorEstimate &estimate    = end.errors;
     const bool     is_second   = n_sample_fields(scene) > 2;
-    const bool     is_measured = scene.parameters.step_control.is_on();
-    const double   k           = state.k;
-    state.time_error           = accepted.time_error;
+    const bool     is_measured = scene.parameters.step_control.is_on() ||
+                             scene.parameters.error_control.has_tolerance();
+    const double k   = state.k;
+    state.time_error = accepted.time_error;
     if (is_second)
       state.rate_slope.resize(accepted.rate_slope.size());
     std::vector<double> sums(4, 0.);
@@ -189,6 +193,7 @@ namespace Viscoplastic
                               const TimeDefect          &defect,
                               const ContactReport       &report,
                               const double               turning,
+                              const double               missed_work,
                               const bool                 is_fresh,
                               const EvaluatedState<dim> &accepted,
                               const FlowRate            *accepted_rate,
@@ -200,11 +205,14 @@ namespace Viscoplastic
     ErrorEstimate              &estimate = end.errors;
     estimate.initial                     = before.initial;
     estimate.transfer                    = before.transfer;
+    estimate.history =
+      before.history + end.state.k * end.space_estimate.rate_defect;
     estimate.friction =
       std::sqrt(Utilities::fixed_power<2>(before.friction) +
-                Utilities::fixed_power<2>(friction_calibration) * turning);
+                Utilities::fixed_power<2>(friction_calibration) * turning +
+                2. * missed_work);
     estimate.energy_norm = energy_norm(forces);
-    estimate.space       = space_calibration * end.space_estimate.residual;
+    estimate.space       = end.space_estimate.total;
     estimate.algebraic   = report.error;
 
     if (scene.has_viscosity())

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/known_solution.h>
-#include <viscoplastic_contact/error/recovery_estimate.h>
 #include <viscoplastic_contact/error/reference_fields.h>
+#include <viscoplastic_contact/error/space_estimator.h>
 
 #include <cmath>
 #include <limits>

@@ -236,6 +236,29 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// sigma_h at all samples.
+    template <int dim>
+    IrreversibleStress
+    sampled_stress(const StressSpace<dim> &stress_space,
+                   const State<dim>       &state)
+    {
+      const unsigned int                 n = stress_space.n_samples;
+      IrreversibleStress                 result(state.z);
+      std::vector<SymmetricTensor<2, 3>> strains(n);
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        {
+          stress_space.strains(c, state.u.begin(), strains.data());
+          for (unsigned int s = 0; s < n; ++s)
+            result[c * n + s] += stress_space.moduli(c).stress(strains[s]);
+        }
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
   StateTransfer<dim>::StateTransfer(
     parallel::distributed::Triangulation<dim> &triangulation,
@@ -275,6 +298,11 @@ namespace Viscoplastic
         }
     if (carried.empty())
       return;
+    if (old_stress_space.space.scene.has_viscosity())
+      {
+        carried.push_back(stress);
+        old_samples.push_back(sampled_stress(old_stress_space, state));
+      }
     old_cell.resize(triangulation.n_active_cells());
     unsigned int index = 0;
     for (const auto &cell : old_stress_space.space.cells)
@@ -379,9 +407,12 @@ namespace Viscoplastic
 
     if (carried.empty())
       return result;
-    const auto sampled = sample_fields(result.state);
+    const auto of_state = sample_fields(result.state);
+    const auto sampled  = [&](const unsigned int f) {
+      return f == stress ? &result.stress : of_state[f];
+    };
     for (const unsigned int f : carried)
-      sampled[f]->resize(new_stress_space.n_cells() * n_samples);
+      sampled(f)->resize(new_stress_space.n_cells() * n_samples);
     std::vector<unsigned int> new_cell(triangulation.n_active_cells());
     unsigned int              index = 0;
     for (const auto &cell : space.cells)
@@ -441,9 +472,43 @@ namespace Viscoplastic
           unpack_field(cell,
                        status,
                        &values[f * (n_samples + 1)],
-                       *sampled[carried[f]]);
+                       *sampled(carried[f]));
       });
     return result;
+  }
+
+
+
+  template <int dim>
+  void
+  share_mismatch(const StressSpace<dim>   &stress_space,
+                 const IrreversibleStress &stress,
+                 State<dim>               &state)
+  {
+    const unsigned int       n       = stress_space.n_samples;
+    const IrreversibleStress present = sampled_stress(stress_space, state);
+    const auto               square  = [&](const IrreversibleStress &field,
+                            const std::size_t         c) {
+      double result = 0.;
+      for (unsigned int s = 0; s < n; ++s)
+        result += stress_space.weight(c, s) *
+                  Utilities::fixed_power<2>(deviator(field[c * n + s]).norm());
+      return result;
+    };
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      {
+        const double of_z = std::sqrt(square(state.z, c)),
+                     size = of_z + std::sqrt(square(stress, c));
+        for (unsigned int s = 0; s < n; ++s)
+          {
+            const SymmetricTensor<2, 3> mismatch =
+              deviator(stress[c * n + s] - present[c * n + s]);
+            // What has not changed stays as it is to the last digit.
+            if (mismatch.norm() >
+                1e-12 * size / std::sqrt(stress_space.volume(c)))
+              state.z[c * n + s] += of_z / size * mismatch;
+          }
+      }
   }
 
 
@@ -534,6 +599,14 @@ namespace Viscoplastic
                              const RefinementParameters &,
                              const double,
                              const std::function<void()> &);
+  template void
+  share_mismatch<2>(const StressSpace<2> &,
+                    const IrreversibleStress &,
+                    State<2> &);
+  template void
+  share_mismatch<3>(const StressSpace<3> &,
+                    const IrreversibleStress &,
+                    State<3> &);
   template class StateTransfer<2>;
   template class StateTransfer<3>;
   template ContactState

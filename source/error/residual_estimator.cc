@@ -75,49 +75,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  const SymmetricTensor<2, 3> *
-  ResidualEstimator<dim>::mean_irreversible_stress(
-    const IrreversibleStress &z,
-    IrreversibleStress       &means) const
-  {
-    const AdmissibleSpace<dim> &space = stress_space.space;
-    // A rank without cells has an empty z in every scene.
-    if (Utilities::MPI::max(z.empty() ? 0 : 1, space.communicator) == 0)
-      return nullptr;
-    const bool is_alone =
-      Utilities::MPI::n_mpi_processes(space.communicator) == 1;
-    if (is_alone && stress_space.n_samples == 1)
-      return z.data();
-    means.resize(cells.size());
-    const std::size_t n_owned = stress_space.n_cells();
-    for (std::size_t c = 0; c < n_owned; ++c)
-      means[c] = stress_space.mean(c, &z[c * stress_space.n_samples]);
-    if (is_alone)
-      return means.data();
-
-    const auto &triangulation =
-      dynamic_cast<const parallel::TriangulationBase<dim> &>(
-        space.dof_handler.get_triangulation());
-    const auto partitioner =
-      triangulation.global_active_cell_index_partitioner().lock();
-    LinearAlgebra::distributed::Vector<double> component(partitioner);
-    for (unsigned int i = 0; i < 6; ++i)
-      {
-        for (std::size_t c = 0; c < n_owned; ++c)
-          component(cells[c].global_active_index) =
-            means[c].access_raw_entry(i);
-        component.update_ghost_values();
-        for (std::size_t c = n_owned; c < cells.size(); ++c)
-          means[c].access_raw_entry(i) =
-            component(cells[c].global_active_index);
-        component.zero_out_ghost_values();
-      }
-    return means.data();
-  }
-
-
-
-  template <int dim>
   typename ResidualEstimator<dim>::StressTerms
   ResidualEstimator<dim>::stress_terms(
     const std::size_t            cell,
@@ -125,9 +82,7 @@ namespace Viscoplastic
     const SymmetricTensor<2, 3> *mean_z) const
   {
     StressTerms terms;
-    for (unsigned int v = 0; v < n_vertices; ++v)
-      for (unsigned int d = 0; d < dim; ++d)
-        terms.u[v][d] = u[cells[cell].nodes[v] + d];
+    terms.u          = local.displacements(cells[cell], u);
     terms.stiffness  = &cells[cell].stiffness;
     terms.dilatation = 0.;
     if (stress_space.mean_dilatation)
@@ -338,7 +293,7 @@ namespace Viscoplastic
     const double                *u       = fields.u.begin();
     IrreversibleStress           means;
     const SymmetricTensor<2, 3> *mean_z =
-      mean_irreversible_stress(fields.z, means);
+      local.mean_irreversible_stress(fields.z, means);
 
     // Tractions on all faces, and what is amiss within the cells.
     std::vector<Tensor<1, dim>> &tractions = traction_buffer;
@@ -369,10 +324,11 @@ namespace Viscoplastic
         if (b && fields.t)
           for (unsigned int q = 0; q < n; ++q)
             residuals[q] +=
-              is_kept ? body_force[c * n_points + q] :
+              is_kept ?
+                body_force[c * n_points + q] :
               uniform_body_force ?
-                        uniform_force :
-                        b->vector(origins[c] + shape.positions[q], *fields.t);
+                uniform_force :
+                b->vector(cells[c].origin + shape.positions[q], *fields.t);
         if (has_initial)
           for (unsigned int q = 0; q < n; ++q)
             residuals[q] += initial_divergence[c * n_points + q];
@@ -446,20 +402,6 @@ namespace Viscoplastic
 
   template <int dim>
   Vector<double>
-  ResidualEstimator<dim>::by_active_index(
-    const std::vector<double> &by_cell) const
-  {
-    Vector<double> result(
-      stress_space.space.dof_handler.get_triangulation().n_active_cells());
-    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-      result[cells[c].active_index] = by_cell[c];
-    return result;
-  }
-
-
-
-  template <int dim>
-  Vector<double>
   ResidualEstimator<dim>::estimate(const Fields &fields) const
   {
     std::vector<double> eta(cells.size()); // squared
@@ -471,7 +413,7 @@ namespace Viscoplastic
     });
     for (std::size_t c = 0; c < eta.size(); ++c)
       eta[c] /= cells[c].stiffness.smallest_deviatoric_eigenvalue();
-    return by_active_index(eta);
+    return local.by_active_index(eta);
   }
 
 
@@ -543,7 +485,7 @@ namespace Viscoplastic
       of_both[r.cell] += factor * both;
       of_dual[r.cell] += factor * squares;
     });
-    return {by_active_index(of_both), by_active_index(of_dual)};
+    return {local.by_active_index(of_both), local.by_active_index(of_dual)};
   }
 
 

@@ -17,30 +17,6 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// Gradients, normals, places and weights at the points of a (sub)face.
-    template <int dim, typename FaceShape>
-    void
-    copy_face(const Point<dim>            &origin,
-              const FEFaceValuesBase<dim> &values,
-              FaceShape                   &face)
-    {
-      for (const unsigned int q : values.quadrature_point_indices())
-        {
-          for (unsigned int v = 0; v < face.gradients[q].size(); ++v)
-            face.gradients[q][v] = values.shape_grad(v * dim, q);
-          face.normals[q]   = values.normal_vector(q);
-          face.positions[q] = values.quadrature_point(q) - origin;
-          face.weights[q]   = values.JxW(q);
-        }
-    }
-
-
-
-    const UpdateFlags on_faces = update_gradients | update_normal_vectors |
-                                 update_quadrature_points | update_JxW_values;
-
-
-
     template <int dim>
     bool
     depends_on_position(const VectorExpression<dim> &expression)
@@ -55,16 +31,16 @@ namespace Viscoplastic
 
 
   template <int dim>
-  ResidualEstimator<dim>::ResidualEstimator(
-    const StressSpace<dim> &stress_space)
-    : stress_space(stress_space)
+  ResidualEstimator<dim>::ResidualEstimator(const LocalCells<dim> &local_cells)
+    : local(local_cells)
+    , stress_space(local_cells.stress_space)
+    , shapes(local_cells.shapes)
+    , cells(local_cells.cells)
     , uniform_body_force(false)
   {
-    make_cells();
     make_faces();
     make_face_values();
     make_initial_stress();
-    shape_of_key.clear();
     subface_shape_of.clear();
 
     const auto &b = stress_space.space.scene.body_force;
@@ -74,99 +50,7 @@ namespace Viscoplastic
     if (!b->depends_on_time() && !uniform_body_force)
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         for (const auto &x : shapes[cells[c].shape].positions)
-          body_force.push_back(b->vector(origins[c] + x, 0.));
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  ResidualEstimator<dim>::find_shape(const Cell        &cell,
-                                     FEValues<dim>     &values,
-                                     FEFaceValues<dim> &on_face)
-  {
-    // Vertices from the first, relative to the diameter and rounded: equal for
-    // translated cells, whatever rounding did to their vertices.
-    constexpr double resolution = 1ll << 36;
-    ShapeKey         key;
-    int              exponent;
-    const double     diameter = cell->diameter();
-    key[0] = std::llround(std::frexp(diameter, &exponent) * resolution);
-    key[1] = exponent;
-    for (unsigned int v = 1, i = 2; v < n_vertices; ++v)
-      for (unsigned int d = 0; d < dim; ++d, ++i)
-        key[i] = std::llround((cell->vertex(v)[d] - cell->vertex(0)[d]) /
-                              diameter * resolution);
-    const auto [entry, is_new] = shape_of_key.emplace(key, shapes.size());
-    if (!is_new)
-      return entry->second;
-
-    values.reinit(cell);
-    shapes.emplace_back();
-    Shape &shape   = shapes.back();
-    shape.diameter = diameter;
-    double volume  = 0.;
-    for (const unsigned int q : values.quadrature_point_indices())
-      {
-        shape.weights[q]   = values.JxW(q);
-        shape.positions[q] = values.quadrature_point(q) - cell->vertex(0);
-        volume += values.JxW(q);
-        for (unsigned int v = 0; v < n_vertices; ++v)
-          {
-            shape.mean_gradients[v] +=
-              values.shape_grad(v * dim, q) * values.JxW(q);
-            shape.hessians[q][v] = values.shape_hessian(v * dim, q);
-          }
-      }
-    for (auto &gradient : shape.mean_gradients)
-      gradient /= volume;
-    shape.volume            = volume;
-    shape.constant_hessians = true;
-    for (unsigned int q = 1; q < n_points; ++q)
-      for (unsigned int v = 0; v < n_vertices; ++v)
-        shape.constant_hessians &=
-          (shape.hessians[q][v] - shape.hessians[0][v]).norm() <=
-          1e-12 * shape.hessians[0][v].norm();
-    for (unsigned int f = 0; f < n_faces; ++f)
-      {
-        on_face.reinit(cell, f);
-        copy_face(cell->vertex(0), on_face, shape.faces[f]);
-      }
-    return entry->second;
-  }
-
-
-
-  template <int dim>
-  void
-  ResidualEstimator<dim>::make_cells()
-  {
-    const AdmissibleSpace<dim> &space = stress_space.space;
-    const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
-    FEValues<dim>               values(fe,
-                         QGauss<dim>(2),
-                         update_gradients | update_hessians |
-                           update_quadrature_points | update_JxW_values);
-    FEFaceValues<dim>           on_face(fe, QGauss<dim - 1>(2), on_faces);
-    const auto add = [&](const Cell &cell, const Stiffness &E) {
-      LocalCell here{find_shape(cell, values, on_face),
-                     cell->active_cell_index(),
-                     cell->global_active_cell_index(),
-                     {},
-                     E,
-                     space.scene.is_present(cell->material_id())};
-      for (unsigned int v = 0; v < n_vertices; ++v)
-        here.nodes[v] =
-          space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
-      cells.push_back(std::move(here));
-      origins.push_back(cell->vertex(0));
-      material_ids.push_back(cell->material_id());
-    };
-    for (const auto &cell : space.cells)
-      add(cell, stress_space.moduli(cells.size()));
-    for (const auto &cell : ghost_cells(space.dof_handler))
-      add(cell,
-          space.scene.material(cell->material_id()).stiffness(cell->center()));
+          body_force.push_back(b->vector(cells[c].origin + x, 0.));
   }
 
 
@@ -188,7 +72,11 @@ namespace Viscoplastic
                                 const unsigned int face) {
       return (cell * n_faces + face) * n_face_points;
     };
-    FESubfaceValues<dim> on_subface(fe, QGauss<dim - 1>(2), on_faces);
+    FESubfaceValues<dim> on_subface(fe,
+                                    QGauss<dim - 1>(2),
+                                    update_gradients | update_normal_vectors |
+                                      update_quadrature_points |
+                                      update_JxW_values);
 
     // @p side: the shape of the second cell's (sub)face.
     const auto add_face = [&](const Cell        &fine,
@@ -234,7 +122,7 @@ namespace Viscoplastic
         {
           on_subface.reinit(coarse, f, subface);
           subface_shapes.emplace_back();
-          copy_face(coarse->vertex(0), on_subface, subface_shapes.back());
+          subface_shapes.back().reinit(coarse->vertex(0), on_subface);
         }
       add_face(fine,
                fine_f,
@@ -351,7 +239,9 @@ namespace Viscoplastic
     if (!scene.initial_stress || scene.initial_displacement)
       return;
     const auto at = [&](const std::size_t c, const Tensor<1, dim> &position) {
-      return initial_stress(scene, origins[c] + position, material_ids[c]);
+      return initial_stress(scene,
+                            cells[c].origin + position,
+                            cells[c].material_id);
     };
     std::vector<SymmetricTensor<2, 3>> means;
     for (std::size_t c = 0; c < cells.size(); ++c)

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/history_error.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/space_estimator.h>
+
+#include <algorithm>
 
 namespace Viscoplastic
 {
@@ -15,8 +18,11 @@ namespace Viscoplastic
   {
     if (discretization.scene().parameters.error_control.error_estimator ||
         refines_by_residual)
-      residual_estimator =
-        std::make_unique<ResidualEstimator<dim>>(discretization.stress_space);
+      {
+        cells = std::make_unique<LocalCells<dim>>(discretization.stress_space);
+        residual_estimator = std::make_unique<ResidualEstimator<dim>>(*cells);
+        recovery_estimator = std::make_unique<RecoveryEstimator<dim>>(*cells);
+      }
   }
 
 
@@ -46,11 +52,31 @@ namespace Viscoplastic
       density = d.face->density(state.contact);
     Vector<double> squared = residual_estimator->estimate(
       {state.u, state.z, state.t, d.face ? &density : nullptr});
-    result.residual =
-      total_estimate(squared, d.space.dof_handler.get_triangulation());
+    squared *= residual_calibration * residual_calibration;
+    const Vector<double> recovery = recovery_estimator->estimate(state.u);
+    for (unsigned int i = 0; i < squared.size(); ++i)
+      squared[i] = std::max(squared[i], recovery[i]);
+    const auto &triangulation = d.space.dof_handler.get_triangulation();
+    result.total              = total_estimate(squared, triangulation);
+    result.recovery           = total_estimate(recovery, triangulation);
+    if (d.scene().has_viscosity() && d.stress_space.n_samples == 1)
+      result.rate_defect = cell_mean_defect(*cells, d.laws, state);
     if (refines_by_residual)
       result.squared_indicators = std::move(squared);
     return result;
+  }
+
+
+
+  template <int dim>
+  double
+  SpaceEstimator<dim>::history_of_marked_cells(const State<dim> &state) const
+  {
+    return discretization.scene().has_viscosity() && recovery_estimator ?
+             refined_history(discretization.stress_space,
+                             state,
+                             recovery_estimator->estimate(state.u)) :
+             0.;
   }
 
 
@@ -72,6 +98,21 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  Vector<double>
+  squared_recovery_estimate(const StressSpace<dim> &stress_space,
+                            const State<dim>       &state)
+  {
+    const LocalCells<dim> cells(stress_space);
+    return RecoveryEstimator<dim>(cells).estimate(state.u);
+  }
+
+
+
   template class SpaceEstimator<2>;
   template class SpaceEstimator<3>;
+  template Vector<double>
+  squared_recovery_estimate<2>(const StressSpace<2> &, const State<2> &);
+  template Vector<double>
+  squared_recovery_estimate<3>(const StressSpace<3> &, const State<3> &);
 } // namespace Viscoplastic

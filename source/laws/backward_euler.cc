@@ -10,7 +10,46 @@
 namespace Viscoplastic
 {
   namespace
-  {} // namespace
+  {
+    /**
+     * Radial return in an isotropic body: with the trial stress E eps + z_old,
+     * whose deviator keeps its direction, sigma_eq solves
+     *
+     *     sigma_eq + 3 mu k f(sigma_eq) = sigma_eq of the trial stress.
+     *
+     * The left side is convex: Newton's method comes from above after its first
+     * step. Nothing where the law has no such flow or no value.
+     */
+    std::optional<SymmetricTensor<2, 3>>
+    radial_return(const BackwardEulerEquation &equation,
+                  const SymmetricTensor<2, 3> &start)
+    {
+      if (!equation.stiffness.is_isotropic() ||
+          !equation.law.radial_flow(0., equation.point))
+        return {};
+      const SymmetricTensor<2, 3> trial =
+        deviator(equation.elastic + equation.old_z);
+      const double trial_size = std::sqrt(1.5) * trial.norm(),
+                   factor =
+                     3. * equation.stiffness.shear_modulus() * equation.k;
+      double sigma = std::min(von_mises(equation.elastic + start), trial_size);
+      for (unsigned int iteration = 0; iteration < 200; ++iteration)
+        {
+          const auto   f    = equation.law.radial_flow(sigma, equation.point);
+          const double step = (trial_size - sigma * (1. + factor * f->secant)) /
+                              (1. + factor * f->tangent);
+          if (!std::isfinite(step))
+            return {};
+          if (std::abs(step) <= 1e-13 * sigma || trial_size == 0.)
+            {
+              const double flow = factor * f->secant;
+              return equation.old_z - flow / (1. + flow) * trial;
+            }
+          sigma = std::min(sigma + step, trial_size);
+        }
+      return {};
+    }
+  } // namespace
 
 
 
@@ -26,6 +65,8 @@ namespace Viscoplastic
     // Where a law is steep, the way from zero stress is shorter.
     const BackwardEulerEquation equation{
       law, strain, old_z, k, stiffness, point};
+    if (const auto z = radial_return(equation, start))
+      return *z;
     for (const auto &from : {start, -1. * equation.elastic})
       if (const auto z = equation.solve(from))
         return *z;
@@ -71,6 +112,22 @@ namespace Viscoplastic
                       const Stiffness             &stiffness,
                       const LawPoint              &point)
   {
+    if (const auto f = law.radial_flow(von_mises(stress), point);
+        f && stiffness.is_isotropic())
+      {
+        // dev sigma is that of the trial stress over 1 + a, along itself it
+        // changes by 1/(1 + b).
+        const double mu = stiffness.shear_modulus(),
+                     a = 3. * mu * k * f->secant, b = 3. * mu * k * f->tangent;
+        const SymmetricTensor<2, 3> s    = deviator(stress);
+        const double                size = s.norm();
+        SymmetricTensor<4, 3>       C    = stiffness.tensor();
+        C -= 2. * mu * (a / (1. + a)) * deviator_tensor<3>();
+        if (size > 0.)
+          C -= 2. * mu * (b / (1. + b) - a / (1. + a)) / (size * size) *
+               outer_product(s, s);
+        return C;
+      }
     const auto tangents = law.tangents(stress, strain, stiffness, point);
     const SymmetricTensor<4, 3> E = stiffness.tensor();
     // Exactly, so that a matrix is known to be that of an elastic body.

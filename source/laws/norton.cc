@@ -47,8 +47,8 @@ namespace Viscoplastic
                const Stiffness &stiffness,
                const LawPoint  &point) const override
       {
-        const Slopes slope = slopes(von_mises(stress), point);
-        Tangents     tangents;
+        const FlowSlopes slope = slopes(von_mises(stress), point);
+        Tangents         tangents;
         tangents.stress = -1. * stiffness.tensor() *
                           flow_tangent(stress, slope.secant, slope.tangent);
         return tangents;
@@ -64,6 +64,12 @@ namespace Viscoplastic
         // stress, so the present one counts.
         return 1.5 * stiffness.largest_deviatoric_eigenvalue() *
                slopes(von_mises(stress), point).tangent;
+      }
+
+      std::optional<FlowSlopes>
+      radial_flow(const double sigma_eq, const LawPoint &point) const override
+      {
+        return slopes(sigma_eq, point);
       }
 
       bool
@@ -107,13 +113,7 @@ namespace Viscoplastic
         cap
       };
 
-      /// f/sigma_eq and df/dsigma_eq.
-      struct Slopes
-      {
-        double secant, tangent;
-      };
-
-      static Slopes
+      static FlowSlopes
       slopes(const double equivalent_stress, const LawPoint &point)
       {
         // A sigma^n is formed as (A^(1/n) sigma)^n: in SI units neither A nor
@@ -121,7 +121,7 @@ namespace Viscoplastic
         const double n     = point.parameters[exponent];
         const double a     = std::pow(point.parameters[rate_factor], 1. / n);
         const double sigma = std::min(equivalent_stress, point.parameters[cap]);
-        Slopes       result;
+        FlowSlopes   result;
         result.secant  = a * std::pow(a * sigma, n - 1.);
         result.tangent = n * result.secant;
         if (equivalent_stress > sigma)

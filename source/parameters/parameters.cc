@@ -150,9 +150,11 @@ namespace Viscoplastic
       prm,
       "Stress history",
       stress_history,
-      "Where the irreversible stress z lives. `cell means' is the paper's "
-      "piecewise constant stress; `quadrature points' keeps z at each "
-      "quadrature point, which long creep on coarse meshes needs.");
+      "Where the irreversible stress z lives. `quadrature points' keeps z at "
+      "each quadrature point. `cell means' is the paper's piecewise constant "
+      "stress: it takes less time and memory, and is right for times up to a "
+      "few relaxation times; in long creep what varies in a cell never "
+      "relaxes, and the body becomes too stiff, by factors on coarse meshes.");
   }
 
 

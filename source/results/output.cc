@@ -6,8 +6,8 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/spelling.h>
-#include <viscoplastic_contact/error/recovery_estimate.h>
 #include <viscoplastic_contact/error/solution_errors.h>
+#include <viscoplastic_contact/error/space_estimator.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
 #include <viscoplastic_contact/results/line_output.h>
 #include <viscoplastic_contact/results/output.h>

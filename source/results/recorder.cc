@@ -181,8 +181,8 @@ namespace Viscoplastic
     run.max_displacement               = quantities.max_displacement;
     run.point_displacements            = quantities.point_displacements;
     run.tension_area.update(quantities.tension_area, t);
-    run.missed_bounds += step.end.state.k * quantities.missed_bounds;
-    run.computed_bounds += step.end.state.k * quantities.computed_bounds;
+    run.missed_bounds += step.end.state.k * quantities.friction_bounds.missed;
+    run.computed_bounds += step.end.state.k * quantities.friction_bounds.sum;
     if (run.displacement.update(quantities.max_displacement, t))
       run.displacement_position = quantities.displacement_position;
     run.strain.update(stress.max_strain, t);
@@ -439,8 +439,8 @@ namespace Viscoplastic
              << "Note: the bounds of Coulomb friction, of the pressure of the "
                 "step before, miss those of the pressure of their step by "
              << 100. * run.missed_bounds / run.computed_bounds
-             << " % on average, which no error estimate counts; smaller steps "
-                "or 'Solver/Coulomb pressure' = fixed point mend this.";
+             << " % on average; smaller steps or 'Solver/Coulomb pressure' = "
+                "fixed point mend this.";
         result.push_back(text.str());
       }
 

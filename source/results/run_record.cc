@@ -24,6 +24,7 @@ namespace Viscoplastic
     {
       return {{"t", errors.t},
               {"space", errors.largest.space},
+              {"history", errors.largest.history},
               {"time", errors.largest.time},
               {"friction", errors.largest.friction},
               {"transfer", errors.largest.transfer},

@@ -264,10 +264,12 @@ namespace Viscoplastic
       };
       const ErrorParts &largest = errors.largest;
       part("mesh", largest.space);
+      if (largest.history > 0.)
+        part("mesh, in the history", largest.history);
       if (run.viscous_dissipation)
         part("time steps", largest.time);
       if (largest.friction > 0.)
-        part("slip that turns", largest.friction);
+        part("friction bounds and turns", largest.friction);
       if (largest.transfer > 0.)
         part("changes of the mesh", largest.transfer);
       part("iterations", largest.algebraic);
@@ -303,9 +305,7 @@ namespace Viscoplastic
         return;
 
       out << "Estimated error in the energy norm, largest at t = "
-          << with.time(run.errors->t)
-          << " (without what the mesh\nhas done to the rates that made "
-             "the memory z), and relative to the solution:\n";
+          << with.time(run.errors->t) << ", and relative to the solution:\n";
       print_parts(out, run, *run.errors);
       if (!run.quantity.empty())
         {

@@ -37,7 +37,11 @@ namespace Viscoplastic
       row.add("energy_norm", estimate.energy_norm);
       row.add("estimate_space", estimate.space);
       row.add("estimate_time", estimate.time);
-      if (dim == 3 && scene.has_friction())
+      if (scene.has_viscosity() &&
+          (scene.is_adaptive() || !scene.keeps_history_at_points()))
+        row.add("estimate_history", estimate.history);
+      if (scene.has_friction() &&
+          (dim == 3 || scene.has_bounds_of_step_before()))
         row.add("estimate_friction", estimate.friction);
       if (scene.is_adaptive() && scene.has_irreversible_stress())
         row.add("estimate_transfer", estimate.transfer);
@@ -123,8 +127,9 @@ namespace Viscoplastic
               }
             else if (d.face->has_computed_pressure())
               row.add("bound_lag",
-                      quantities.computed_bounds > 0. ?
-                        quantities.missed_bounds / quantities.computed_bounds :
+                      quantities.friction_bounds.sum > 0. ?
+                        quantities.friction_bounds.missed /
+                          quantities.friction_bounds.sum :
                         0.);
           }
       }

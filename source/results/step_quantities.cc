@@ -90,33 +90,6 @@ namespace Viscoplastic
 
 
 
-  namespace
-  {
-    template <int dim>
-    void
-    measure_lag(const ContactFace<dim> &face,
-                const State<dim>       &old,
-                const State<dim>       &state,
-                StepQuantities<dim>    &result)
-    {
-      const std::vector<double> rates =
-        face.slip_rates(old.velocity, old.t - old.k, old.t);
-      std::vector<double> bounds = face.bounds(state.t, rates);
-      face.add_computed_bounds(state.t, state.contact, bounds, rates);
-      double missed = 0., sum = 0.;
-      for (unsigned int p = 0; p < bounds.size(); ++p)
-        if (!face.layout().points[p].is_obstacle)
-          {
-            missed += std::abs(bounds[p] - state.contact.bound[p]);
-            sum += bounds[p];
-          }
-      result.missed_bounds   = face.layout().sum(missed);
-      result.computed_bounds = face.layout().sum(sum);
-    }
-  } // namespace
-
-
-
   template <int dim>
   StepQuantities<dim>
   measure_step(const Discretization<dim> &d,
@@ -157,7 +130,7 @@ namespace Viscoplastic
       result.tension_area = d.tension->tension_area(state);
     if (!is_initial && d.face && d.face->has_computed_pressure() &&
         d.scene().parameters.solver.coulomb_pressure == CoulombPressure::lagged)
-      measure_lag(*d.face, old.state, state, result);
+      result.friction_bounds = d.face->missed_bounds(state);
 
     result.reactions = reactions(d.space, forces);
     result.sum_of_forces =

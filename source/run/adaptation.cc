@@ -62,16 +62,22 @@ namespace Viscoplastic
   double
   ViscoplasticContact<dim>::space_ratio(const ErrorEstimate &errors) const
   {
-    const double size =
-      budget->size(std::max(recorder.summary().controlled_errors().size,
-                            budget->size(errors)));
+    const double so_far = std::max(recorder.summary().controlled_errors().size,
+                                   budget->size(errors));
+    const double size   = budget->size(so_far);
     // A body that has not moved yet says nothing about the mesh.
     if (!(size > 0.))
       return 1.;
     const double allowed =
       budget->space(budget->errors(errors), size, scene.has_time_error());
     if (!scene.quantity)
-      return errors.space / allowed;
+      {
+        // What the mesh does to a strain that is elastic, a finer one mends.
+        // What it does to creep stays, and counts against what there is of it.
+        const double share =
+          so_far > 0. ? std::min(1., errors.irreversible_norm / so_far) : 0.;
+        return errors.space / (allowed * (1. - share + share * so_far / size));
+      }
     const QuantityEstimate &quantity = errors.quantity;
     if (quantity.unsigned_space == 0.) // nor does friction that cannot change
       return 1.;
@@ -170,6 +176,8 @@ namespace Viscoplastic
       error_estimator ?
         memory_loss(triangulation, discretization->stress_space, state.z) :
         0.;
+    const double history =
+      error_estimator ? time_stepper->history_of_marked_cells(state) : 0.;
     const EnergiesOnMesh before = energies_on_mesh(*discretization, accepted);
     StateTransfer<dim>   transfer(triangulation,
                                 discretization->stress_space,
@@ -187,13 +195,20 @@ namespace Viscoplastic
       parameters.initial_state.reset_displacement && state.initial_u.size() > 0;
     if (keeps_displacement)
       state.initial_u -= state.u;
-    time_stepper->settle(accepted);
+    // Equilibrium keeps the volume, which moves u, which makes z inconsistent.
+    const unsigned int n_rounds = scene.has_viscosity() ? 3 : 1;
+    for (unsigned int round = 0; round < n_rounds; ++round)
+      {
+        if (scene.has_viscosity())
+          share_mismatch(d.stress_space, result.stress, state);
+        time_stepper->settle(accepted);
+      }
     // What a finer mesh finds of the initial state is no displacement since.
     if (keeps_displacement)
       state.initial_u += state.u;
     accepted.rate.reset();
     if (error_estimator)
-      error_estimator->change_mesh(d.space, d.matrix, loss, accepted);
+      error_estimator->change_mesh(d.space, d.matrix, loss, history, accepted);
     recorder.record_mesh_change(before, energies_on_mesh(d, accepted));
   }
 

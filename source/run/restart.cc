@@ -100,8 +100,8 @@ namespace Viscoplastic
     // What record() and estimate() make anew in each step is not here.
     State<dim> &state = accepted.state;
     archive &state.n &state.t &state.k &accepted.is_solution;
-    archive                            &accepted.space_estimate.residual;
-    ContactReport                      &report = accepted.report;
+    archive &accepted.space_estimate.total &accepted.space_estimate.rate_defect;
+    ContactReport                          &report = accepted.report;
     archive &report.duality_gap &report.relative_error &report.error &report
       .tolerance;
     control.exchange(archive);

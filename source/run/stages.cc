@@ -48,7 +48,7 @@ namespace Viscoplastic
     time_stepper->settle(accepted);
     accepted.rate.reset();
     if (error_estimator)
-      error_estimator->change_mesh(d.space, d.matrix, 0., accepted);
+      error_estimator->change_mesh(d.space, d.matrix, 0., 0., accepted);
     time_stepper->estimate(accepted);
     // The loads that are left do work; those on what is gone do not.
     before.of_loads = u * accepted.forces.load.values;

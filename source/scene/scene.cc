@@ -422,6 +422,24 @@ namespace Viscoplastic
 
   template <int dim>
   bool
+  Scene<dim>::has_bounds_of_step_before() const
+  {
+    const bool is_lagged =
+      parameters.solver.coulomb_pressure == CoulombPressure::lagged;
+    return std::any_of(boundary.begin(),
+                       boundary.end(),
+                       [is_lagged](const auto &entry) {
+                         const BoundaryCondition<dim> &b = entry.second;
+                         return b.has_friction() &&
+                                (b.slip_rate_factor.has_value() ||
+                                 (is_lagged && b.has_computed_pressure()));
+                       });
+  }
+
+
+
+  template <int dim>
+  bool
   Scene<dim>::keeps_friction_work() const
   {
     constexpr RecordedField work   = RecordedField::friction_work;

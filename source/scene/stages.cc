@@ -92,8 +92,7 @@ namespace Viscoplastic
                                  "' contradicts 'Exact solution/Data' = "
                                                "solution, which is that of one body."));
           changing.insert(id);
-          if (name == "Added at" &&
-              parameters.stress.stress_history == StressHistory::cell_means)
+          if (name == "Added at" && !keeps_history_at_points())
             warnings.push_back(
               "'" + path +
               "' with 'Material/Stress history' = cell means: "

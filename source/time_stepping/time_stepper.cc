@@ -312,7 +312,9 @@ namespace Viscoplastic
         });
       }
     TimerOutput::Scope phase(timer, "estimate");
-    double             turning = 0.;
+    double             turning = 0., missed_work = 0.;
+    if (discretization.face && scene.has_bounds_of_step_before())
+      missed_work = discretization.face->missed_bounds(state).work;
     if (dim == 3 && discretization.face)
       {
         DistributedVector change = end.forces.u;
@@ -330,6 +332,7 @@ namespace Viscoplastic
                                           scene.parameters.time.scheme),
                             step.report,
                             turning,
+                            missed_work,
                             control.has_kink_at(step.time_step.t_old),
                             accepted,
                             old_rate,

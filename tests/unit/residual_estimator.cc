@@ -4,8 +4,8 @@
 
 #include "sampled_body.h"
 #include <viscoplastic_contact/error/kelly_estimator.h>
-#include <viscoplastic_contact/error/recovery_estimate.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
+#include <viscoplastic_contact/error/space_estimator.h>
 
 #include <cmath>
 #include <sstream>

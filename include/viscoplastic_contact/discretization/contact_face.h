@@ -4,6 +4,7 @@
 #include <deal.II/base/partitioner.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
+#include <viscoplastic_contact/discretization/state.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <memory>
@@ -84,6 +85,20 @@ namespace Viscoplastic
                         const ContactState        &state,
                         std::vector<double>       &bounds,
                         const std::vector<double> &slip_rates = {}) const;
+
+    /// How far the friction bounds of a step, of the pressure and the slip rate
+    /// of the step before, are from those of the step itself.
+    struct MissedBounds
+    {
+      /// The sum of the bounds of the step itself, and of the differences.
+      double sum = 0., missed = 0.;
+      /// The sum of the differences times the slips.
+      double work = 0.;
+    };
+
+    /// At the end of a step. Collective.
+    MissedBounds
+    missed_bounds(const State<dim> &state) const;
 
     /// Whether there are such bounds on any rank.
     bool

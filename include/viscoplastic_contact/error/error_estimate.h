@@ -12,12 +12,16 @@ namespace Viscoplastic
    */
   struct ErrorParts
   {
-    /// The error of the mesh: space_calibration times the residual estimator.
+    /// The error of the mesh, see SpaceEstimator.
     double space = 0.;
+    /// What the meshes have left in z and the strain does not show: the rates
+    /// of cell means, and of cells that have been refined since.
+    double history = 0.;
     /// The error of the time steps up to now, (int E^-1 D : D)^{1/2}, with D
     /// the sum of their defects (see ErrorEstimator).
     double time = 0.;
-    /// The error of slip that has turned its direction within steps.
+    /// The error of slip that has turned its direction within steps, and of
+    /// friction bounds that follow the step before.
     double friction = 0.;
     /// What changes of the mesh have taken from z, (int E^-1 d : d)^{1/2} with
     /// d the change of z in coarsened cells, summed.
@@ -31,7 +35,7 @@ namespace Viscoplastic
     double
     total() const
     {
-      return space + time + friction + transfer + algebraic + initial;
+      return space + history + time + friction + transfer + algebraic + initial;
     }
 
     /// Write to, or read from, an archive.
@@ -39,7 +43,7 @@ namespace Viscoplastic
     void
     exchange(Archive &archive)
     {
-      archive &space &time &friction &transfer &algebraic &initial;
+      archive &space &history &time &friction &transfer &algebraic &initial;
     }
   };
 
@@ -75,10 +79,7 @@ namespace Viscoplastic
 
 
   /**
-   * All that is estimated of a state. The error in the energy norm is that of
-   * one step for given z, with the time error of z and what coarser meshes have
-   * taken from it: the error in space of the rates that z has been made of is
-   * not part of it.
+   * All that is estimated of a state.
    */
   struct ErrorEstimate : public ErrorParts
   {
@@ -95,7 +96,7 @@ namespace Viscoplastic
     /// a(du_n, du_n).
     double velocity_square = 0.;
     /// (int E^-1 z : z)^{1/2} and the same of the change of z in the step; with
-    /// step control only.
+    /// step control or a tolerance only.
     double irreversible_norm = 0., irreversible_change = 0.;
 
     /// Write to, or read from, an archive; but for the norms of step control,

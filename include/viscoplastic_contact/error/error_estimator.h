@@ -47,19 +47,19 @@ namespace Viscoplastic
    * comes from turning counts (see turning_work()): the slip of a point that
    * has been at rest, or keeps its direction, is exact at the end of the step.
    *
-   * Changes of the mesh: what they take from z adds up.
+   * Bounds that follow the pressure or the slip rate of the step before: with
+   * bounds that miss Delta rho, (a(e, e)/2)' <= sum Delta rho |s'|, which adds
+   * up.
+   *
+   * Changes of the mesh: what they take from z adds up. So does what cell means
+   * leave out of G.
    */
   template <int dim>
   class ErrorEstimator
   {
   public:
-    /**
-     * From residual estimator to error in the energy norm: one number for all
-     * scenes. How it was found: doc/method.md, section 12.
-     */
-    static constexpr double space_calibration = 0.3;
-
-    /// The same for slip that turns.
+    /// From the work of slip that turns to its error: one number for all
+    /// scenes.
     static constexpr double friction_calibration = 0.4;
 
     /// Bounds of the relative tolerance of coupled iterations.
@@ -85,11 +85,13 @@ namespace Viscoplastic
                        EvaluatedState<dim> &initial) const;
 
     /// Renew what depends on the mesh in the estimate of a state that has moved
-    /// to a new one. @p memory_loss: what z has lost in it. Collective.
+    /// to a new one. @p memory_loss: what z has lost in it; @p history: what
+    /// refined cells leave in z, squared. Collective.
     void
     change_mesh(const AdmissibleSpace<dim> &space,
                 const DistributedMatrix    &matrix,
                 const double                memory_loss,
+                const double                history,
                 EvaluatedState<dim>        &accepted) const;
 
     /**
@@ -104,14 +106,16 @@ namespace Viscoplastic
      * Set the estimate and the fields of time errors of the end of a step. Its
      * forces and space estimate, and with viscosity the rates of both states,
      * have been evaluated. @p defect: of the scheme of the step. @p turning:
-     * the turning_work() of the step. @p is_fresh: at its beginning data have
-     * a kink, so that G may have one, too. Collective.
+     * the turning_work() of the step; @p missed_work: that of friction bounds
+     * which it has missed (ContactFace::missed_bounds()). @p is_fresh: at its
+     * beginning data have a kink, so that G may have one, too. Collective.
      */
     void
     assess(const StressSpace<dim>    &stress_space,
            const TimeDefect          &defect,
            const ContactReport       &report,
            const double               turning,
+           const double               missed_work,
            const bool                 is_fresh,
            const EvaluatedState<dim> &accepted,
            const FlowRate            *accepted_rate,

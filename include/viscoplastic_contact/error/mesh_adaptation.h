@@ -105,6 +105,8 @@ namespace Viscoplastic
       State<dim> state;
       /// Ghosted; empty without contact points.
       DistributedVector multiplier_density;
+      /// sigma_h, carried like z; empty without viscosity.
+      IrreversibleStress stress;
     };
 
     /// The state on the new mesh. To be called once. Collective.
@@ -127,9 +129,11 @@ namespace Viscoplastic
     parallel::distributed::SolutionTransfer<dim, DistributedVector>
       field_transfer;
 
-    /// Which of the fields at samples there are (without any: nothing else
-    /// below), their old values, the weights of the samples, and the number of
-    /// each owned cell by active cell index.
+    /// Which of the fields at samples there are, sigma_h among them if there is
+    /// viscosity (without any: nothing else below), their old values, the
+    /// weights of the samples, and the number of each owned cell by active cell
+    /// index.
+    static constexpr unsigned int   stress = numbers::invalid_unsigned_int;
     std::vector<unsigned int>       carried;
     std::vector<IrreversibleStress> old_samples;
     std::vector<double>             old_weights;
@@ -141,6 +145,22 @@ namespace Viscoplastic
     unsigned int n;
     double       t, k;
   };
+
+
+  /**
+   * Make up for what the mesh has done to strains in a state that has come to
+   * it. E eps(u), z and sigma, each carried by itself, miss E eps(u) + z =
+   * sigma: new vertices of curved cells are not where displacements were
+   * interpolated, and u moves when it is brought into equilibrium. Left to the
+   * stress alone, a thousandth of the strain of long creep would be a stress
+   * beyond all others. In each cell z takes its share |z|/(|z| + |sigma|) of
+   * the deviator. @p stress: what has been carried over.
+   */
+  template <int dim>
+  void
+  share_mismatch(const StressSpace<dim>   &stress_space,
+                 const IrreversibleStress &stress,
+                 State<dim>               &state);
 
 
   /**

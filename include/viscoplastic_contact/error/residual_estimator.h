@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/fe/fe_values.h>
-#include <deal.II/lac/vector.h>
-
-#include <viscoplastic_contact/discretization/stress_space.h>
+#include <viscoplastic_contact/error/local_cells.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
 
 #include <array>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -45,16 +41,15 @@ namespace Viscoplastic
    * means that z holds of it. Cells of absent materials count for
    * nothing, and faces towards them as free ones of Gamma_2.
    *
-   * What depends on the mesh alone is kept from step to step: gradients at
-   * faces and second derivatives for each shape of cell (cells that differ by a
-   * translation share them), and data that do not depend on time. So a step
-   * evaluates no finite elements.
+   * What depends on the mesh alone is kept from step to step, as are data that
+   * do not depend on time.
    */
   template <int dim>
   class ResidualEstimator
   {
   public:
-    explicit ResidualEstimator(const StressSpace<dim> &stress_space);
+    /// The argument stays in use.
+    explicit ResidualEstimator(const LocalCells<dim> &cells);
 
     /// What has residuals.
     struct Fields
@@ -100,46 +95,17 @@ namespace Viscoplastic
     multiply(const Fields &state, const Fields &dual) const;
 
   private:
-    static constexpr unsigned int n_vertices = 1u << dim, n_points = 1u << dim,
-                                  n_faces       = 2 * dim,
-                                  n_face_points = 1u << (dim - 1);
+    static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
+                                  n_points   = LocalCells<dim>::n_points,
+                                  n_faces    = LocalCells<dim>::n_faces,
+                                  n_face_points =
+                                    LocalCells<dim>::n_face_points;
 
-    using NodalValues = std::array<Tensor<1, dim>, n_vertices>;
-    using Cell        = typename DoFHandler<dim>::active_cell_iterator;
-
-    /// A face or subface at its quadrature points.
-    struct FaceShape
-    {
-      /// The gradients of the vertices' shape functions.
-      std::array<NodalValues, n_face_points>    gradients;
-      std::array<Tensor<1, dim>, n_face_points> normals;
-      std::array<Tensor<1, dim>, n_face_points> positions; // from vertex 0
-      std::array<double, n_face_points>         weights;
-    };
-
-    struct Shape
-    {
-      double diameter, volume;
-      /// Whether they are the same at all points.
-      bool                                 constant_hessians;
-      NodalValues                          mean_gradients;
-      std::array<double, n_points>         weights;
-      std::array<FaceShape, n_faces>       faces;
-      std::array<Tensor<1, dim>, n_points> positions; // from vertex 0
-      std::array<std::array<Tensor<2, dim>, n_vertices>, n_points> hessians;
-    };
-
-    /// A cell of this rank or a ghost: the owned ones first, in the order of
-    /// the stress_space.
-    struct LocalCell
-    {
-      unsigned int                         shape, active_index;
-      types::global_cell_index             global_active_index;
-      std::array<unsigned int, n_vertices> nodes;
-      Stiffness                            stiffness;
-      /// Whether it is part of the body in the present stage.
-      bool is_present;
-    };
+    using NodalValues = typename LocalCells<dim>::NodalValues;
+    using Cell        = typename LocalCells<dim>::CellIterator;
+    using FaceShape   = typename LocalCells<dim>::FaceShape;
+    using Shape       = typename LocalCells<dim>::Shape;
+    using LocalCell   = typename LocalCells<dim>::LocalCell;
 
     /// A part of a cell's face that hanging nodes bound.
     struct SubfaceSide
@@ -183,8 +149,6 @@ namespace Viscoplastic
     };
 
     void
-    make_cells();
-    void
     make_faces();
     void
     make_face_values();
@@ -197,12 +161,6 @@ namespace Viscoplastic
                       const unsigned int            f,
                       const unsigned int            number,
                       const BoundaryCondition<dim> &condition);
-
-    /// The number of a cell's shape, made if it is new.
-    unsigned int
-    find_shape(const Cell        &cell,
-               FEValues<dim>     &values,
-               FEFaceValues<dim> &on_face);
 
     StressTerms
     stress_terms(const std::size_t            cell,
@@ -286,28 +244,17 @@ namespace Viscoplastic
                        const Tensor<1, dim> &r,
                        const Tensor<1, dim> &s) const;
 
-    /// Values of cells by active cell index.
-    Vector<double>
-    by_active_index(const std::vector<double> &by_cell) const;
-
-    /// Means of z of owned cells and ghosts, kept in @p means if z is not them
-    /// itself; null without z. Collective.
-    const SymmetricTensor<2, 3> *
-    mean_irreversible_stress(const IrreversibleStress &z,
-                             IrreversibleStress       &means) const;
-
-    const StressSpace<dim> &stress_space;
+    const LocalCells<dim>        &local;
+    const StressSpace<dim>       &stress_space;
+    const std::vector<Shape>     &shapes;
+    const std::vector<LocalCell> &cells;
     /// Whether b is the same in the whole body.
     bool uniform_body_force;
 
-    std::vector<Shape>              shapes;
-    std::vector<FaceShape>          subface_shapes;
-    std::vector<LocalCell>          cells;
-    std::vector<Point<dim>>         origins;      // vertex 0 of each cell
-    std::vector<types::material_id> material_ids; // of each cell
-    std::vector<SubfaceSide>        subface_sides;
-    std::vector<InteriorFace>       interior_faces;
-    std::vector<BoundaryFace>       boundary_faces;
+    std::vector<FaceShape>    subface_shapes;
+    std::vector<SubfaceSide>  subface_sides;
+    std::vector<InteriorFace> interior_faces;
+    std::vector<BoundaryFace> boundary_faces;
     /// Shape functions at the points of each face.
     std::array<std::array<std::array<double, n_vertices>, n_face_points>,
                n_faces>
@@ -325,9 +272,6 @@ namespace Viscoplastic
     mutable std::vector<Tensor<1, dim>> traction_buffer;
 
     /// Only for the construction.
-    static constexpr unsigned int key_size = dim * (n_vertices - 1) + 2;
-    using ShapeKey                         = std::array<std::int64_t, key_size>;
-    std::map<ShapeKey, unsigned int> shape_of_key;
     std::map<std::tuple<unsigned int, unsigned int, unsigned int>, unsigned int>
       subface_shape_of;
   };

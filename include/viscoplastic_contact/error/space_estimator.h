@@ -4,17 +4,23 @@
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/discretization/state.h>
 #include <viscoplastic_contact/error/dual_problem.h>
+#include <viscoplastic_contact/error/recovery_estimator.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 
 #include <memory>
 
 namespace Viscoplastic
 {
-  /// The error of a state in space, for given z.
+  /// The error of a state in space.
   struct SpaceEstimate
   {
-    /// The residual estimate of the whole body; zero where it is not made.
-    double residual = 0.;
+    /// In the energy norm; zero where only Kelly's estimate is made.
+    double total = 0.;
+    /// The part of it that recovered strains tell.
+    double recovery = 0.;
+    /// What cell means leave out of G, see cell_mean_defect(); zero where the
+    /// history is kept at quadrature points.
+    double rate_defect = 0.;
     /// The squared share of each active cell by which the mesh is refined;
     /// empty in scenes on a fixed mesh.
     Vector<double> squared_indicators;
@@ -23,13 +29,25 @@ namespace Viscoplastic
 
 
   /**
-   * Makes the estimates that a scene asks for on one mesh: the residual
-   * estimator for the error estimate or for refinement, Kelly's for refinement.
+   * Makes the estimates that a scene asks for on one mesh: that of the error,
+   * also for refinement, and Kelly's for refinement.
+   *
+   * The squared error of a cell is the larger of residual_calibration^2 times
+   * the residual estimate, which knows loads and contact, and of the recovery
+   * estimate, which knows what creep has made of earlier errors. That of a
+   * residual is one of a single step for given z: in long creep it is a
+   * fraction of the error, since displacements grow and residuals do not.
    */
   template <int dim>
   class SpaceEstimator
   {
   public:
+    /**
+     * From residual estimator to error in the energy norm: one number for all
+     * scenes. How it was found: doc/method.md, section 12.
+     */
+    static constexpr double residual_calibration = 0.3;
+
     explicit SpaceEstimator(const Discretization<dim> &discretization);
 
     /// Whether a scene asks for any estimate.
@@ -40,6 +58,11 @@ namespace Viscoplastic
     SpaceEstimate
     estimate(const State<dim> &state) const;
 
+    /// What remains in z of the error of cells that are marked for refinement,
+    /// see refined_history(). Collective.
+    double
+    history_of_marked_cells(const State<dim> &state) const;
+
     /// How the residuals of a state and of a dual solution go together; there
     /// has to be a residual estimator. Collective.
     typename ResidualEstimator<dim>::Products
@@ -48,7 +71,15 @@ namespace Viscoplastic
   private:
     const Discretization<dim> &discretization;
     const bool                 refines_by_kelly, refines_by_residual;
-    /// The residual estimator; null if only Kelly's estimate is asked for.
+    /// Null if only Kelly's estimate is asked for.
+    std::unique_ptr<LocalCells<dim>>        cells;
     std::unique_ptr<ResidualEstimator<dim>> residual_estimator;
+    std::unique_ptr<RecoveryEstimator<dim>> recovery_estimator;
   };
+
+  /// The recovery estimate by active cell of a single state. Collective.
+  template <int dim>
+  Vector<double>
+  squared_recovery_estimate(const StressSpace<dim> &stress_space,
+                            const State<dim>       &state);
 } // namespace Viscoplastic

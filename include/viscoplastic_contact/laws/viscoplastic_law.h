@@ -12,6 +12,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -190,6 +191,23 @@ namespace Viscoplastic
     has_symmetric_tangents() const
     {
       return false;
+    }
+
+    /// Of flow along the deviator at the strain rate 3/2 f
+    /// dev(stress)/sigma_eq.
+    struct FlowSlopes
+    {
+      /// f/sigma_eq and df/dsigma_eq, 1/(stress time).
+      double secant, tangent;
+    };
+
+    /// These where f depends on the von Mises stress sigma_eq and the point
+    /// alone and is convex, so that a step of backward Euler is one equation
+    /// for sigma_eq (radial return); none for other flow.
+    virtual std::optional<FlowSlopes>
+    radial_flow(const double /*sigma_eq*/, const LawPoint & /*point*/) const
+    {
+      return {};
     }
 
     /**

@@ -64,7 +64,7 @@ namespace Viscoplastic
   {
     VolumetricIntegration volumetric_integration =
       VolumetricIntegration::automatic;
-    StressHistory stress_history = StressHistory::cell_means;
+    StressHistory stress_history = StressHistory::quadrature_points;
 
     void
     declare(ParameterHandler &prm);
@@ -158,7 +158,7 @@ namespace Viscoplastic
     /// 0: coupled to the estimated discretization error.
     double          contact_tolerance  = 0.;
     unsigned int    maximal_iterations = 200;
-    CoulombPressure coulomb_pressure   = CoulombPressure::lagged;
+    CoulombPressure coulomb_pressure   = CoulombPressure::fixed_point;
     double          coulomb_tolerance  = 1e-6;
     bool            reuse_unchanged    = true;
 

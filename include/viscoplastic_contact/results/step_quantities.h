@@ -37,10 +37,8 @@ namespace Viscoplastic
     Point<dim> displacement_position;
     /// The area on which bilateral contact pulls at the body.
     double tension_area = 0.;
-    /// Of Coulomb friction with the pressure of the step before: the sum of the
-    /// bounds with the pressure of this step, and by how much those of the step
-    /// miss them.
-    double missed_bounds = 0., computed_bounds = 0.;
+    /// Of Coulomb friction with the pressure of the step before.
+    typename ContactFace<dim>::MissedBounds friction_bounds;
     /// The estimate by which an adaptive mesh is refined; zero before the first
     /// one.
     double refinement_estimate = 0.;

@@ -168,7 +168,21 @@ namespace Viscoplastic
     bool
     has_time_error() const
     {
-      return has_viscosity() || (dim == 3 && has_friction());
+      return has_viscosity() || (dim == 3 && has_friction()) ||
+             has_bounds_of_step_before();
+    }
+
+    /// Whether some friction bound is that of the pressure or the slip rate of
+    /// the step before.
+    bool
+    has_bounds_of_step_before() const;
+
+    /// Whether z is kept at quadrature points, not as cell means.
+    bool
+    keeps_history_at_points() const
+    {
+      return parameters.stress.stress_history ==
+             StressHistory::quadrature_points;
     }
 
     bool

@@ -87,6 +87,13 @@ namespace Viscoplastic
     void
     estimate(EvaluatedState<dim> &evaluated) const;
 
+    /// See SpaceEstimator. Collective.
+    double
+    history_of_marked_cells(const State<dim> &state) const
+    {
+      return space_estimator->history_of_marked_cells(state);
+    }
+
     /// Whether steps of this scene ask for G at the state that they start from.
     bool
     needs_rate() const;

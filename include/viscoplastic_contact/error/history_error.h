@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/flow_laws.h>
+#include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/error/local_cells.h>
+
+namespace Viscoplastic
+{
+  /**
+   * What z' = G by cell means leaves out in each unit of time,
+   *
+   *     (int E^-1 d : d)^{1/2},   d = G(sigma_h) - G(mean of sigma_h),
+   *
+   * with G of the same cell's point. What varies in a cell does not flow then;
+   * in long creep it carries loads that it should not, which u_h does not show:
+   * the body as a whole is too stiff. Collective.
+   */
+  template <int dim>
+  double
+  cell_mean_defect(const LocalCells<dim> &cells,
+                   const FlowLaws<dim>   &laws,
+                   const State<dim>      &state);
+
+  /**
+   * What z keeps of the error of cells that are marked for refinement, squared.
+   *
+   * Halved cells have a quarter of the squared error @p squared_error; the rest
+   * goes with them as far as it is one of the present displacement, but what
+   * is in z stays. It is shared between both as z and sigma share E eps, by
+   * their norms in the cell. Zero without z. Collective.
+   */
+  template <int dim>
+  double
+  refined_history(const StressSpace<dim> &stress_space,
+                  const State<dim>       &state,
+                  const Vector<double>   &squared_error);
+} // namespace Viscoplastic

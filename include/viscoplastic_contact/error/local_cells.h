@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/discretization/stress_space.h>
+
+#include <array>
+#include <map>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * What estimators of the error in space need of a mesh: the shape functions
+   * of V_h in all cells of this rank and its ghosts. Cells that differ by a
+   * translation share them, so that a step evaluates no finite elements.
+   */
+  template <int dim>
+  class LocalCells
+  {
+  public:
+    static constexpr unsigned int n_vertices = 1u << dim, n_points = 1u << dim,
+                                  n_faces       = 2 * dim,
+                                  n_face_points = 1u << (dim - 1);
+
+    using NodalValues  = std::array<Tensor<1, dim>, n_vertices>;
+    using CellIterator = typename DoFHandler<dim>::active_cell_iterator;
+
+    /// The gradient of a field with these values at the vertices.
+    static Tensor<2, dim>
+    gradient(const NodalValues &values, const NodalValues &shape_gradients)
+    {
+      Tensor<2, dim> result;
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        for (unsigned int i = 0; i < dim; ++i)
+          result[i] += values[v][i] * shape_gradients[v];
+      return result;
+    }
+
+    /// A face or subface at its quadrature points.
+    struct FaceShape
+    {
+      /// The gradients of the vertices' shape functions.
+      std::array<NodalValues, n_face_points>    gradients;
+      std::array<Tensor<1, dim>, n_face_points> normals;
+      std::array<Tensor<1, dim>, n_face_points> positions; // from vertex 0
+      std::array<double, n_face_points>         weights;
+
+      void
+      reinit(const Point<dim> &vertex_0, const FEFaceValuesBase<dim> &values);
+    };
+
+    struct Shape
+    {
+      double diameter, volume;
+      /// Whether they are the same at all points.
+      bool                                 constant_hessians;
+      NodalValues                          mean_gradients;
+      std::array<NodalValues, n_points>    gradients;
+      std::array<double, n_points>         weights;
+      std::array<FaceShape, n_faces>       faces;
+      std::array<Tensor<1, dim>, n_points> positions; // from vertex 0
+      std::array<std::array<Tensor<2, dim>, n_vertices>, n_points> hessians;
+    };
+
+    struct LocalCell
+    {
+      unsigned int             shape, active_index;
+      types::global_cell_index global_active_index;
+      /// Places of the vertices' degrees of freedom in ghosted vectors, of the
+      /// first component.
+      std::array<unsigned int, n_vertices> nodes;
+      Stiffness                            stiffness;
+      Point<dim>                           origin; // vertex 0
+      types::material_id                   material_id;
+      /// Whether it is part of the body in the present stage.
+      bool is_present;
+    };
+
+    /// The argument stays in use.
+    explicit LocalCells(const StressSpace<dim> &stress_space);
+
+    const StressSpace<dim> &stress_space;
+    std::vector<Shape>      shapes;
+    /// The owned cells first, in the order of the stress space, then ghosts.
+    std::vector<LocalCell> cells;
+
+    /// u at the vertices of a cell; @p u: local array of a ghosted vector.
+    NodalValues
+    displacements(const LocalCell &cell, const double *u) const;
+
+    /// The strains that act in the elastic form, at the points of a cell: those
+    /// of u_h, under mean dilatation with the volumetric part of their mean.
+    std::array<SymmetricTensor<2, 3>, n_points>
+    strains(const LocalCell &cell, const NodalValues &displacements) const;
+
+    /// Cell means of z in owned cells and ghosts, kept in @p means if z is not
+    /// them itself; null without z. Collective.
+    const SymmetricTensor<2, 3> *
+    mean_irreversible_stress(const IrreversibleStress &z,
+                             IrreversibleStress       &means) const;
+
+    /// Values of the owned cells by active cell index.
+    Vector<double>
+    by_active_index(const std::vector<double> &by_cell) const;
+
+  private:
+    static constexpr unsigned int key_size = dim * (n_vertices - 1) + 2;
+    using ShapeKey                         = std::array<std::int64_t, key_size>;
+    using ShapeNumbers                     = std::map<ShapeKey, unsigned int>;
+
+    /// The number of a cell's shape, made if it is new.
+    unsigned int
+    find_shape(const CellIterator &cell,
+               FEValues<dim>      &values,
+               FEFaceValues<dim>  &on_face,
+               ShapeNumbers       &number_of);
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <viscoplastic_contact/error/local_cells.h>
+
+#include <utility>
+
+namespace Viscoplastic
+{
+  /**
+   * The estimate of Zienkiewicz and Zhu: how far the strain eps_h of u_h is
+   * from a continuous one, eps*, whose values at the nodes are means of the
+   * cells around them, weighted by volume (materials apart),
+   *
+   *     eta_K^2 = int_K (eps* - eps_h) : E (eps* - eps_h).
+   *
+   * In a body that creeps the strain holds, other than the stress, what all
+   * steps have left out: it grows with the error of the rates. No bound, and
+   * blind to what goes on in the law of friction; but without a constant, and
+   * exact in the limit where solutions are smooth and meshes regular. Cells of
+   * absent materials count for nothing.
+   */
+  template <int dim>
+  class RecoveryEstimator
+  {
+  public:
+    /// The argument stays in use. Collective.
+    explicit RecoveryEstimator(const LocalCells<dim> &cells);
+
+    /// eta_K^2 by active cell, zero in cells of other ranks; @p u with ghosts,
+    /// Cartesian. Collective.
+    Vector<double>
+    estimate(const DistributedVector &u) const;
+
+  private:
+    static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
+                                  n_points   = LocalCells<dim>::n_points;
+    /// Components of a strain in the plane or in space.
+    static constexpr unsigned int n_components =
+      SymmetricTensor<2, dim>::n_independent_components;
+
+    using NodalVector = LinearAlgebra::distributed::Vector<double>;
+    using Cell        = typename LocalCells<dim>::LocalCell;
+
+    /// A node on the face or edge of a coarser cell.
+    struct HangingNode
+    {
+      unsigned int                                 node;
+      std::vector<std::pair<unsigned int, double>> parents;
+    };
+
+    /// A material: its owned cells, and what recovery needs at their nodes.
+    struct Part
+    {
+      std::vector<unsigned int> cells;
+      NodalVector               inverse_volume; // of the cells around
+      /// Those that have the material at all of their parents take what is
+      /// between them.
+      std::vector<HangingNode> hanging_nodes;
+    };
+
+    /// Set the strains at the nodes of a part. Collective.
+    void
+    recover(const Part &part, const DistributedVector &u) const;
+
+    /// eta_K^2 of an owned cell, from what has been recovered.
+    double
+    squared_distance(const unsigned int cell, const DistributedVector &u) const;
+
+    const LocalCells<dim> &local;
+    const FESystem<dim>    fe;
+    DoFHandler<dim>        dof_handler;
+    /// Local places of the first component at the vertices of owned cells.
+    std::vector<std::array<unsigned int, n_vertices>> nodes;
+    /// Shape functions at the points of a cell.
+    std::array<std::array<double, n_vertices>, n_points> shape_values;
+    std::vector<Part>                                    parts;
+
+    /// eps* at the nodes; kept, since a new vector for each step costs as much
+    /// as to fill it.
+    mutable NodalVector values;
+  };
+} // namespace Viscoplastic

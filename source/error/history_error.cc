@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/error/history_error.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  double
+  cell_mean_defect(const LocalCells<dim> &cells,
+                   const FlowLaws<dim>   &laws,
+                   const State<dim>      &state)
+  {
+    const StressSpace<dim> &stress_space = laws.stress_space;
+    const MPI_Comm          communicator = stress_space.space.communicator;
+    Assert(stress_space.n_samples == 1, ExcInternalError());
+    const auto now    = laws.at(state.t);
+    double     square = 0.;
+    fail_together(communicator, [&] {
+      for (unsigned int c = 0; c < stress_space.n_cells(); ++c)
+        {
+          const ViscoplasticLaw *law = now.law(c);
+          if (law == nullptr)
+            continue;
+          const auto    &cell    = cells.cells[c];
+          const auto    &weights = cells.shapes[cell.shape].weights;
+          const LawPoint point   = now.point(c, 0);
+          const auto     strains =
+            cells.strains(cell, cells.displacements(cell, state.u.begin()));
+          const auto rate = [&](const SymmetricTensor<2, 3> &strain) {
+            return law->rate(cell.stiffness.stress(strain) + state.z[c],
+                             strain,
+                             cell.stiffness,
+                             point);
+          };
+          SymmetricTensor<2, 3> mean;
+          for (unsigned int q = 0; q < strains.size(); ++q)
+            mean += strains[q] * (weights[q] / stress_space.volume(c));
+          const SymmetricTensor<2, 3> of_mean = rate(mean);
+          for (unsigned int q = 0; q < strains.size(); ++q)
+            square += weights[q] * cell.stiffness.complementary_square(
+                                     rate(strains[q]) - of_mean);
+        }
+    });
+    return std::sqrt(Utilities::MPI::sum(square, communicator));
+  }
+
+
+
+  template <int dim>
+  double
+  refined_history(const StressSpace<dim> &stress_space,
+                  const State<dim>       &state,
+                  const Vector<double>   &squared_error)
+  {
+    const unsigned int                 n      = stress_space.n_samples;
+    double                             result = 0.;
+    std::vector<SymmetricTensor<2, 3>> strains(n);
+    for (unsigned int c = 0; c < stress_space.n_cells() && !state.z.empty();
+         ++c)
+      {
+        const auto &cell = stress_space.space.cells[c];
+        if (!cell->refine_flag_set())
+          continue;
+        const Stiffness &stiffness = stress_space.moduli(c);
+        stress_space.strains(c, state.u.begin(), strains.data());
+        double of_z = 0., of_stress = 0.; // squared norms
+        for (unsigned int s = 0; s < n; ++s)
+          {
+            const SymmetricTensor<2, 3> &z = state.z[c * n + s];
+            of_z +=
+              stress_space.weight(c, s) * stiffness.complementary_square(z);
+            of_stress +=
+              stress_space.weight(c, s) *
+              stiffness.complementary_square(stiffness.stress(strains[s]) + z);
+          }
+        if (of_z > 0.)
+          result +=
+            0.75 * squared_error[cell->active_cell_index()] * of_z /
+            Utilities::fixed_power<2>(std::sqrt(of_z) + std::sqrt(of_stress));
+      }
+    return Utilities::MPI::sum(result, stress_space.space.communicator);
+  }
+
+
+
+  template double
+  cell_mean_defect<2>(const LocalCells<2> &,
+                      const FlowLaws<2> &,
+                      const State<2> &);
+  template double
+  cell_mean_defect<3>(const LocalCells<3> &,
+                      const FlowLaws<3> &,
+                      const State<3> &);
+  template double
+  refined_history<2>(const StressSpace<2> &,
+                     const State<2> &,
+                     const Vector<double> &);
+  template double
+  refined_history<3>(const StressSpace<3> &,
+                     const State<3> &,
+                     const Vector<double> &);
+} // namespace Viscoplastic

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/distributed/tria_base.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <viscoplastic_contact/error/local_cells.h>
+#include <viscoplastic_contact/laws/strain.h>
+#include <viscoplastic_contact/mesh/cell_order.h>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  void
+  LocalCells<dim>::FaceShape::reinit(const Point<dim>            &vertex_0,
+                                     const FEFaceValuesBase<dim> &values)
+  {
+    for (const unsigned int q : values.quadrature_point_indices())
+      {
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          gradients[q][v] = values.shape_grad(v * dim, q);
+        normals[q]   = values.normal_vector(q);
+        positions[q] = values.quadrature_point(q) - vertex_0;
+        weights[q]   = values.JxW(q);
+      }
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  LocalCells<dim>::find_shape(const CellIterator &cell,
+                              FEValues<dim>      &values,
+                              FEFaceValues<dim>  &on_face,
+                              ShapeNumbers       &number_of)
+  {
+    // Vertices from the first, relative to the diameter and rounded: equal for
+    // translated cells, whatever rounding did to their vertices.
+    constexpr double resolution = 1ll << 36;
+    ShapeKey         key;
+    int              exponent;
+    const double     diameter = cell->diameter();
+    key[0] = std::llround(std::frexp(diameter, &exponent) * resolution);
+    key[1] = exponent;
+    for (unsigned int v = 1, i = 2; v < n_vertices; ++v)
+      for (unsigned int d = 0; d < dim; ++d, ++i)
+        key[i] = std::llround((cell->vertex(v)[d] - cell->vertex(0)[d]) /
+                              diameter * resolution);
+    const auto [entry, is_new] = number_of.emplace(key, shapes.size());
+    if (!is_new)
+      return entry->second;
+
+    values.reinit(cell);
+    shapes.emplace_back();
+    Shape &shape   = shapes.back();
+    shape.diameter = diameter;
+    double volume  = 0.;
+    for (const unsigned int q : values.quadrature_point_indices())
+      {
+        shape.weights[q]   = values.JxW(q);
+        shape.positions[q] = values.quadrature_point(q) - cell->vertex(0);
+        volume += values.JxW(q);
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          {
+            shape.mean_gradients[v] +=
+              values.shape_grad(v * dim, q) * values.JxW(q);
+            shape.gradients[q][v] = values.shape_grad(v * dim, q);
+            shape.hessians[q][v]  = values.shape_hessian(v * dim, q);
+          }
+      }
+    for (auto &gradient : shape.mean_gradients)
+      gradient /= volume;
+    shape.volume            = volume;
+    shape.constant_hessians = true;
+    for (unsigned int q = 1; q < n_points; ++q)
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        shape.constant_hessians &=
+          (shape.hessians[q][v] - shape.hessians[0][v]).norm() <=
+          1e-12 * shape.hessians[0][v].norm();
+    for (unsigned int f = 0; f < n_faces; ++f)
+      {
+        on_face.reinit(cell, f);
+        shape.faces[f].reinit(cell->vertex(0), on_face);
+      }
+    return entry->second;
+  }
+
+
+
+  template <int dim>
+  LocalCells<dim>::LocalCells(const StressSpace<dim> &stress_space)
+    : stress_space(stress_space)
+  {
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
+    FEValues<dim>               values(fe,
+                         QGauss<dim>(2),
+                         update_gradients | update_hessians |
+                           update_quadrature_points | update_JxW_values);
+    FEFaceValues<dim>           on_face(fe,
+                              QGauss<dim - 1>(2),
+                              update_gradients | update_normal_vectors |
+                                update_quadrature_points | update_JxW_values);
+    ShapeNumbers                number_of;
+    const auto add = [&](const CellIterator &cell, const Stiffness &E) {
+      LocalCell here{find_shape(cell, values, on_face, number_of),
+                     cell->active_cell_index(),
+                     cell->global_active_cell_index(),
+                     {},
+                     E,
+                     cell->vertex(0),
+                     cell->material_id(),
+                     space.scene.is_present(cell->material_id())};
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        here.nodes[v] =
+          space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
+      cells.push_back(std::move(here));
+    };
+    for (const auto &cell : space.cells)
+      add(cell, stress_space.moduli(cells.size()));
+    for (const auto &cell : ghost_cells(space.dof_handler))
+      add(cell,
+          space.scene.material(cell->material_id()).stiffness(cell->center()));
+  }
+
+
+
+  template <int dim>
+  typename LocalCells<dim>::NodalValues
+  LocalCells<dim>::displacements(const LocalCell &cell, const double *u) const
+  {
+    NodalValues result;
+    for (unsigned int v = 0; v < n_vertices; ++v)
+      for (unsigned int d = 0; d < dim; ++d)
+        result[v][d] = u[cell.nodes[v] + d];
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::array<SymmetricTensor<2, 3>, LocalCells<dim>::n_points>
+  LocalCells<dim>::strains(const LocalCell   &cell,
+                           const NodalValues &displacements) const
+  {
+    const Shape                                &shape = shapes[cell.shape];
+    std::array<SymmetricTensor<2, 3>, n_points> result;
+    for (unsigned int q = 0; q < n_points; ++q)
+      result[q] = strain(gradient(displacements, shape.gradients[q]));
+    if (stress_space.mean_dilatation)
+      {
+        const double dilatation =
+          trace(gradient(displacements, shape.mean_gradients));
+        for (SymmetricTensor<2, 3> &strain : result)
+          {
+            const double excess = (dilatation - trace(strain)) / 3.;
+            for (unsigned int d = 0; d < 3; ++d)
+              strain[d][d] += excess;
+          }
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  const SymmetricTensor<2, 3> *
+  LocalCells<dim>::mean_irreversible_stress(const IrreversibleStress &z,
+                                            IrreversibleStress &means) const
+  {
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    // A rank without cells has an empty z in every scene.
+    if (Utilities::MPI::max(z.empty() ? 0 : 1, space.communicator) == 0)
+      return nullptr;
+    const bool is_alone =
+      Utilities::MPI::n_mpi_processes(space.communicator) == 1;
+    if (is_alone && stress_space.n_samples == 1)
+      return z.data();
+    means.resize(cells.size());
+    const std::size_t n_owned = stress_space.n_cells();
+    for (std::size_t c = 0; c < n_owned; ++c)
+      means[c] = stress_space.mean(c, &z[c * stress_space.n_samples]);
+    if (is_alone)
+      return means.data();
+
+    const auto &triangulation =
+      dynamic_cast<const parallel::TriangulationBase<dim> &>(
+        space.dof_handler.get_triangulation());
+    const auto partitioner =
+      triangulation.global_active_cell_index_partitioner().lock();
+    LinearAlgebra::distributed::Vector<double> component(partitioner);
+    for (unsigned int i = 0; i < 6; ++i)
+      {
+        for (std::size_t c = 0; c < n_owned; ++c)
+          component(cells[c].global_active_index) =
+            means[c].access_raw_entry(i);
+        component.update_ghost_values();
+        for (std::size_t c = n_owned; c < cells.size(); ++c)
+          means[c].access_raw_entry(i) =
+            component(cells[c].global_active_index);
+        component.zero_out_ghost_values();
+      }
+    return means.data();
+  }
+
+
+
+  template <int dim>
+  Vector<double>
+  LocalCells<dim>::by_active_index(const std::vector<double> &by_cell) const
+  {
+    Vector<double> result(
+      stress_space.space.dof_handler.get_triangulation().n_active_cells());
+    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+      result[cells[c].active_index] = by_cell[c];
+    return result;
+  }
+
+
+
+  template class LocalCells<2>;
+  template class LocalCells<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <viscoplastic_contact/error/recovery_estimator.h>
+
+#include <set>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  RecoveryEstimator<dim>::RecoveryEstimator(const LocalCells<dim> &cells)
+    : local(cells)
+    , fe(FE_Q<dim>(1), n_components)
+    , dof_handler(cells.stress_space.space.dof_handler.get_triangulation())
+  {
+    const AdmissibleSpace<dim> &space = cells.stress_space.space;
+    dof_handler.distribute_dofs(fe);
+    IndexSet relevant;
+    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    AffineConstraints<double> constraints(relevant);
+    DoFTools::make_hanging_node_constraints(dof_handler, constraints);
+    constraints.close();
+    values.reinit(dof_handler.locally_owned_dofs(),
+                  relevant,
+                  space.communicator);
+    const auto place = [&](const types::global_dof_index dof) {
+      return values.get_partitioner()->global_to_local(dof);
+    };
+
+    // Those of all ranks, which exchange sums at nodes together.
+    std::map<types::material_id, unsigned int> part_of;
+    for (const auto &cell :
+         space.dof_handler.get_triangulation().cell_iterators_on_level(0))
+      if (space.scene.is_present(cell->material_id()))
+        part_of.emplace(cell->material_id(), part_of.size());
+    parts.resize(part_of.size());
+    for (Part &part : parts)
+      part.inverse_volume.reinit(values);
+
+    std::vector<std::map<types::global_dof_index, unsigned int>> hanging(
+      parts.size());
+    for (unsigned int c = 0; c < cells.stress_space.n_cells(); ++c)
+      {
+        const typename DoFHandler<dim>::active_cell_iterator cell(
+          &space.dof_handler.get_triangulation(),
+          space.cells[c]->level(),
+          space.cells[c]->index(),
+          &dof_handler);
+        nodes.emplace_back();
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          nodes[c][v] = place(cell->vertex_dof_index(v, 0));
+        if (!cells.cells[c].is_present)
+          continue;
+        const unsigned int p = part_of.at(cells.cells[c].material_id);
+        parts[p].cells.push_back(c);
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          {
+            const types::global_dof_index dof = cell->vertex_dof_index(v, 0);
+            for (unsigned int i = 0; i < n_components; ++i)
+              parts[p].inverse_volume.local_element(nodes[c][v] + i) +=
+                cells.stress_space.volume(c);
+            if (constraints.is_constrained(dof))
+              hanging[p].emplace(dof, nodes[c][v]);
+          }
+      }
+    for (unsigned int p = 0; p < parts.size(); ++p)
+      {
+        NodalVector &volume = parts[p].inverse_volume;
+        volume.compress(VectorOperation::add);
+        for (double &value : volume)
+          value = value > 0. ? 1. / value : 0.;
+        volume.update_ghost_values();
+        for (const auto &[dof, node] : hanging[p])
+          {
+            HangingNode result{node, {}};
+            bool        has_parents = true;
+            for (const auto &[parent, factor] :
+                 *constraints.get_constraint_entries(dof))
+              {
+                result.parents.emplace_back(place(parent), factor);
+                has_parents &=
+                  volume.local_element(result.parents.back().first) > 0.;
+              }
+            if (has_parents)
+              parts[p].hanging_nodes.push_back(std::move(result));
+          }
+      }
+
+    const QGauss<dim> points(2);
+    const FE_Q<dim>   scalar(1);
+    for (unsigned int q = 0; q < n_points; ++q)
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        shape_values[q][v] = scalar.shape_value(v, points.point(q));
+  }
+
+
+
+  template <int dim>
+  void
+  RecoveryEstimator<dim>::recover(const Part              &part,
+                                  const DistributedVector &u) const
+  {
+    values              = 0.;
+    double *const nodal = values.begin();
+    for (const unsigned int c : part.cells)
+      {
+        const Cell &cell  = local.cells[c];
+        const auto &shape = local.shapes[cell.shape];
+
+        const SymmetricTensor<2, dim> integral =
+          shape.volume *
+          symmetrize(local.gradient(local.displacements(cell, u.begin()),
+                                    shape.mean_gradients));
+        for (const unsigned int node : nodes[c])
+          for (unsigned int i = 0; i < n_components; ++i)
+            nodal[node + i] += integral.access_raw_entry(i);
+      }
+    values.compress(VectorOperation::add);
+    values.scale(part.inverse_volume);
+    values.update_ghost_values();
+    for (const HangingNode &hanging : part.hanging_nodes)
+      for (unsigned int i = 0; i < n_components; ++i)
+        {
+          nodal[hanging.node + i] = 0.;
+          for (const auto &[parent, factor] : hanging.parents)
+            nodal[hanging.node + i] += factor * nodal[parent + i];
+        }
+  }
+
+
+
+  template <int dim>
+  double
+  RecoveryEstimator<dim>::squared_distance(const unsigned int       c,
+                                           const DistributedVector &u) const
+  {
+    const Cell &cell    = local.cells[c];
+    const auto &weights = local.shapes[cell.shape].weights;
+    const auto  strains =
+      local.strains(cell, local.displacements(cell, u.begin()));
+    const double *nodal  = values.begin();
+    double        result = 0.;
+    for (unsigned int q = 0; q < n_points; ++q)
+      {
+        SymmetricTensor<2, dim> recovered;
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          for (unsigned int i = 0; i < n_components; ++i)
+            recovered.access_raw_entry(i) +=
+              shape_values[q][v] * nodal[nodes[c][v] + i];
+        SymmetricTensor<2, 3> defect = -strains[q];
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = i; j < dim; ++j)
+            defect[i][j] += recovered[i][j];
+        result += weights[q] * (cell.stiffness.stress(defect) * defect);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  Vector<double>
+  RecoveryEstimator<dim>::estimate(const DistributedVector &u) const
+  {
+    std::vector<double> squared(local.cells.size());
+    for (const Part &part : parts)
+      {
+        recover(part, u);
+        for (const unsigned int c : part.cells)
+          squared[c] = squared_distance(c, u);
+      }
+    return local.by_active_index(squared);
+  }
+
+
+
+  template class RecoveryEstimator<2>;
+  template class RecoveryEstimator<3>;
+} // namespace Viscoplastic

@@ -30,19 +30,22 @@ namespace Viscoplastic
           const LawPoint point   = now.point(c, 0);
           const auto     strains =
             cells.strains(cell, cells.displacements(cell, state.u.begin()));
-          const auto rate = [&](const SymmetricTensor<2, 3> &strain) {
-            return law->rate(cell.stiffness.stress(strain) + state.z[c],
-                             strain,
-                             cell.stiffness,
-                             point);
-          };
           SymmetricTensor<2, 3> mean;
           for (unsigned int q = 0; q < strains.size(); ++q)
             mean += strains[q] * (weights[q] / stress_space.volume(c));
-          const SymmetricTensor<2, 3> of_mean = rate(mean);
+          const auto tangents =
+            law->tangents(cell.stiffness.stress(mean) + state.z[c],
+                          mean,
+                          cell.stiffness,
+                          point);
           for (unsigned int q = 0; q < strains.size(); ++q)
-            square += weights[q] * cell.stiffness.complementary_square(
-                                     rate(strains[q]) - of_mean);
+            {
+              const SymmetricTensor<2, 3> change = strains[q] - mean;
+              square += weights[q] *
+                        cell.stiffness.complementary_square(
+                          tangents.stress * cell.stiffness.stress(change) +
+                          tangents.strain * change);
+            }
         }
     });
     return std::sqrt(Utilities::MPI::sum(square, communicator));

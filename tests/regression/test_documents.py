@@ -212,6 +212,27 @@ class Documents(unittest.TestCase):
         self.assertGreater(n_entries, 20)
 
 
+class Approximations(unittest.TestCase):
+    """The table of what the program approximates by itself."""
+
+    def test_each_names_its_entry_and_where_its_error_counts(self):
+        text = (SOURCE / "doc/method.md").read_text()
+        table = text.split("### What the program approximates by itself")[1].split("###")[0]
+        rows = [line.split("|")[1:-1] for line in table.splitlines() if line[:1] == "|"][2:]
+        self.assertGreater(len(rows), 15)
+        known = entries()
+        columns = set(re.findall(r"`estimate_(\w+)`", (SOURCE / "doc/results.md").read_text()))
+        for what, entry, error in rows:
+            with self.subTest(approximation=what.strip()):
+                *path, name = entry.strip(" `").split("/")
+                path = [re.sub(r"^(Boundary|Material) \S+$", r"\1", p) for p in path]
+                self.assertIn(name, known["/".join(path)])
+                counted = re.findall(r"`(\w+)`", error)
+                self.assertLessEqual(set(counted), columns)
+                if not counted:
+                    self.assertRegex(error, "none|not counted|data|counted, and")
+
+
 class Registration(unittest.TestCase):
     def test_every_class_with_tests_is_an_entry_of_ctest(self):
         folder = SOURCE / "tests" / "regression"

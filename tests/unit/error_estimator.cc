@@ -98,7 +98,8 @@ namespace
                 }
             const DistributedVector u       = body.rough_vector(),
                                     density = body.rough_vector(0.7);
-            const ResidualEstimator<dim> estimator(*body.stress_space);
+            const LocalCells<dim>        cells(*body.stress_space);
+            const ResidualEstimator<dim> estimator(cells);
             for (const double t : {0., 0.4})
               {
                 const Vector<double> plain = plain_residual_estimate(

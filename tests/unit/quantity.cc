@@ -151,8 +151,9 @@ namespace
                                   field(pair(1., 1.), pair(1., -2.))),
                                 w = body.interpolate(
                                   field(pair(2., -1.), pair(1., 0.5)));
-        const auto products =
-          ResidualEstimator<dim>(*body.stress_space)
+        const LocalCells<dim> cells(*body.stress_space);
+        const auto            products =
+          ResidualEstimator<dim>(cells)
             .multiply({u, {}, {}, nullptr}, {w, {}, {}, nullptr});
         // Errors -x (h - x)/2 u_xx and so on: a(e_u, e_w) in a cell.
         const double mu = 1. / 2.6, lambda = 0.3 / (1.3 * 0.4);

@@ -35,8 +35,8 @@ namespace
                     const double              t,
                     const DistributedVector  *multiplier_density)
   {
-    return ResidualEstimator<dim>(stress_space)
-      .estimate({u, z, t, multiplier_density});
+    const LocalCells<dim> cells(stress_space);
+    return ResidualEstimator<dim>(cells).estimate({u, z, t, multiplier_density});
   }
 
 

@@ -135,6 +135,40 @@ namespace
 
 
 
+  /// What of the stress on a new mesh does not fit to u and z becomes z as far
+  /// as strains have crept, and in deviators only.
+  TYPED_TEST(Transfer, CreepTakesItsShareOfAMismatch)
+  {
+    constexpr int    dim = TypeParam::value;
+    SampledBody<dim> body(box_with<dim>("set Role = clamped\n"), true);
+    body.set_up();
+    State<dim> state;
+    state.u              = body.space->ghosted_vector();
+    const Stress       s = deviator(constant_stress());
+    IrreversibleStress stress =
+      body.sample([&](const Point<dim> &) { return 0.76 * s; });
+    state.z = body.sample([&](const Point<dim> &) { return 0.75 * s; });
+    share_mismatch(*body.stress_space, stress, state);
+    const double share = 0.75 / (0.75 + 0.76);
+    EXPECT_LT(body.max_difference(state.z,
+                                  [&](const Point<dim> &) {
+                                    return (0.75 + share * 0.01) * s;
+                                  }),
+              1e-14);
+
+    // A pressure is left to equilibrium, and elastic strain stays elastic.
+    const IrreversibleStress before = state.z;
+    for (Stress &tensor : stress = state.z)
+      tensor += 0.3 * unit_symmetric_tensor<3>();
+    share_mismatch(*body.stress_space, stress, state);
+    EXPECT_EQ(state.z, before);
+    state.z.assign(state.z.size(), Stress());
+    share_mismatch(*body.stress_space, stress, state);
+    EXPECT_EQ(state.z, IrreversibleStress(state.z.size()));
+  }
+
+
+
   TYPED_TEST(Transfer, LosesWhatWasForetold)
   {
     constexpr int dim = TypeParam::value;

@@ -9,7 +9,7 @@ from .results import NoPicture
 from .units import Units
 
 ESTIMATES = {
-    "estimator": (r"residuals, $C\,\eta_K$", style.SERIES[0], "o"),
+    "estimator": ("estimate", style.SERIES[0], "o"),
     "recovery": (r"recovered strain", style.SERIES[1], "x"),
 }
 
@@ -29,8 +29,6 @@ def draw(results, options):
         if name not in body or (name == "estimator" and of_quantity):
             continue
         estimated = of_cells(body, name)
-        if name == "estimator":
-            estimated = estimated * constant(results, time)
         values.append(estimated)
         quotient = np.linalg.norm(estimated) / np.linalg.norm(true)
         axes.plot(
@@ -73,13 +71,3 @@ def draw(results, options):
 def of_cells(body, name):
     """Fields of cells have the same value at all of their points."""
     return body[name][body.cells[:, 0]]
-
-
-def constant(results, time):
-    """C of the residual estimator, by the statistics of that step."""
-    statistics = results.statistics
-    for name in ("t", "estimator", "estimate_space"):
-        if name not in statistics:
-            return 1.0
-    row = int(np.abs(statistics["t"] - time).argmin())
-    return statistics["estimate_space"][row] / statistics["estimator"][row]

@@ -113,7 +113,7 @@ PANELS = (
     ),
     STEP_SIZE,
     CELLS,
-    Panel("estimate\n" r"$(\sum\eta_K^2)^{1/2}$", ["estimator"]),
+    Panel("estimate\nof the mesh", ["estimator"]),
     ERROR,
     QUANTITY,
     Panel(

@@ -8,7 +8,7 @@ SCALARS = {
     "creep_strain": (r"equivalent creep strain $\varepsilon_\mathrm{c}$", None),
     "creep_rate": (r"equivalent creep rate $\dot\varepsilon_\mathrm{c}$", "rate"),
     "pressure": (r"pressure $-\mathrm{tr}\,\sigma/3$, compression positive", "stress"),
-    "estimator": (r"error estimator $\eta_K$", "energy norm"),
+    "estimator": ("estimated error of cells", "energy norm"),
     "error_energy": (r"true error $\Vert u-u_h\Vert_{a,K}$", "energy norm"),
     "recovery": ("error by recovered strain", "energy norm"),
     "subdomain": ("MPI rank", None),

@@ -114,7 +114,7 @@ namespace Viscoplastic
     estimate.space            = safety * std::abs(estimate.space_correction);
     estimate.time             = std::abs(estimate.time_correction);
     estimate.friction         = errors.friction * estimate.dual_norm;
-    estimate.history          = errors.history * estimate.dual_norm;
+    estimate.history          = errors.history * estimate.dual_error;
     estimate.transfer         = errors.transfer * estimate.dual_error;
     estimate.algebraic        = errors.algebraic * estimate.dual_norm;
     estimate.initial          = errors.initial * estimate.dual_error;

@@ -22,8 +22,8 @@ namespace Viscoplastic
    * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
    *   steps (see ErrorEstimator).
    * - everything else is known by its norm: slip that turns and the iterations
-   *   by a(w, w)^{1/2}, initial data and changes of the mesh, which are
-   *   orthogonal to what is constant in cells, by the error of w.
+   *   by a(w, w)^{1/2}; initial data, changes of the mesh and the history,
+   *   which are orthogonal to what is constant in cells, by the error of w.
    *
    * The work of friction, int rho |s'|, is sum rho_c |s_c| with s_c the slip
    * since point c has begun to slip: its error is that of J(u) at the end of a

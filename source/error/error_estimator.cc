@@ -215,6 +215,7 @@ namespace Viscoplastic
     estimate.space       = end.space_estimate.total;
     estimate.algebraic   = report.error;
 
+    estimate.creep_path = before.creep_path;
     if (scene.has_viscosity())
       {
         Assert(accepted_rate != nullptr && end.rate,
@@ -225,6 +226,7 @@ namespace Viscoplastic
                    accepted.state,
                    *accepted_rate,
                    end);
+        estimate.creep_path += estimate.irreversible_change;
       }
 
     // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:

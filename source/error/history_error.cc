@@ -41,10 +41,10 @@ namespace Viscoplastic
           for (unsigned int q = 0; q < strains.size(); ++q)
             {
               const SymmetricTensor<2, 3> change = strains[q] - mean;
-              square += weights[q] *
-                        cell.stiffness.complementary_square(
-                          tangents.stress * cell.stiffness.stress(change) +
-                          tangents.strain * change);
+              square +=
+                weights[q] * cell.stiffness.complementary_square(
+                               tangents.stress * cell.stiffness.stress(change) +
+                               tangents.strain * change);
             }
         }
     });
@@ -54,20 +54,16 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  refined_history(const StressSpace<dim> &stress_space,
-                  const State<dim>       &state,
-                  const Vector<double>   &squared_error)
+  Vector<double>
+  history_if_refined(const StressSpace<dim> &stress_space,
+                     const State<dim>       &state,
+                     const Vector<double>   &squared_error)
   {
-    const unsigned int                 n      = stress_space.n_samples;
-    double                             result = 0.;
+    const unsigned int                 n = stress_space.n_samples;
+    Vector<double>                     result(squared_error.size());
     std::vector<SymmetricTensor<2, 3>> strains(n);
-    for (unsigned int c = 0; c < stress_space.n_cells() && !state.z.empty();
-         ++c)
+    for (unsigned int c = 0; c < stress_space.n_cells(); ++c)
       {
-        const auto &cell = stress_space.space.cells[c];
-        if (!cell->refine_flag_set())
-          continue;
         const Stiffness &stiffness = stress_space.moduli(c);
         stress_space.strains(c, state.u.begin(), strains.data());
         double of_z = 0., of_stress = 0.; // squared norms
@@ -80,12 +76,13 @@ namespace Viscoplastic
               stress_space.weight(c, s) *
               stiffness.complementary_square(stiffness.stress(strains[s]) + z);
           }
+        const unsigned int i = stress_space.space.cells[c]->active_cell_index();
         if (of_z > 0.)
-          result +=
-            0.75 * squared_error[cell->active_cell_index()] * of_z /
+          result[i] =
+            0.75 * squared_error[i] * of_z /
             Utilities::fixed_power<2>(std::sqrt(of_z) + std::sqrt(of_stress));
       }
-    return Utilities::MPI::sum(result, stress_space.space.communicator);
+    return result;
   }
 
 
@@ -98,12 +95,12 @@ namespace Viscoplastic
   cell_mean_defect<3>(const LocalCells<3> &,
                       const FlowLaws<3> &,
                       const State<3> &);
-  template double
-  refined_history<2>(const StressSpace<2> &,
-                     const State<2> &,
-                     const Vector<double> &);
-  template double
-  refined_history<3>(const StressSpace<3> &,
-                     const State<3> &,
-                     const Vector<double> &);
+  template Vector<double>
+  history_if_refined<2>(const StressSpace<2> &,
+                        const State<2> &,
+                        const Vector<double> &);
+  template Vector<double>
+  history_if_refined<3>(const StressSpace<3> &,
+                        const State<3> &,
+                        const Vector<double> &);
 } // namespace Viscoplastic

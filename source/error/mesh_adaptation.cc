@@ -264,7 +264,8 @@ namespace Viscoplastic
     parallel::distributed::Triangulation<dim> &triangulation,
     const StressSpace<dim>                    &old_stress_space,
     const State<dim>                          &state,
-    const DistributedVector                   *multiplier_density)
+    const DistributedVector                   *multiplier_density,
+    const Vector<double>                      &if_refined)
     : triangulation(triangulation)
     , n_samples(old_stress_space.n_samples)
     , old_fields{{state.u,
@@ -275,6 +276,7 @@ namespace Viscoplastic
                                        DistributedVector()}}
     , field_transfer(old_stress_space.space.dof_handler)
     , handle(numbers::invalid_unsigned_int)
+    , if_refined(if_refined)
     , n(state.n)
     , t(state.t)
     , k(state.k)
@@ -337,6 +339,8 @@ namespace Viscoplastic
     // curved cells, too. On straight ones this is the L2 projection, as the
     // Gauss rule integrates the parent's mass matrix (in 3D: on affine cells)
     // exactly, diagonal as it is.
+    if (status == Triangulation<dim>::CELL_REFINE && if_refined.size() > 0)
+      of_refined_cells += if_refined[cell->active_cell_index()];
     IrreversibleStress values(carried.size() * (n_samples + 1));
     for (unsigned int f = 0; f < carried.size(); ++f)
       {
@@ -407,6 +411,8 @@ namespace Viscoplastic
 
     if (carried.empty())
       return result;
+    result.of_refined_cells =
+      Utilities::MPI::sum(of_refined_cells, space.communicator);
     const auto of_state = sample_fields(result.state);
     const auto sampled  = [&](const unsigned int f) {
       return f == stress ? &result.stress : of_state[f];
@@ -499,6 +505,8 @@ namespace Viscoplastic
       {
         const double of_z = std::sqrt(square(state.z, c)),
                      size = of_z + std::sqrt(square(stress, c));
+        if (of_z == 0.)
+          continue;
         for (unsigned int s = 0; s < n; ++s)
           {
             const SymmetricTensor<2, 3> mismatch =

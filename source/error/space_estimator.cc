@@ -69,14 +69,15 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  SpaceEstimator<dim>::history_of_marked_cells(const State<dim> &state) const
+  Vector<double>
+  SpaceEstimator<dim>::history_if_cells_are_refined(
+    const State<dim> &state) const
   {
-    return discretization.scene().has_viscosity() && recovery_estimator ?
-             refined_history(discretization.stress_space,
-                             state,
-                             recovery_estimator->estimate(state.u)) :
-             0.;
+    if (!discretization.scene().has_viscosity() || !recovery_estimator)
+      return {};
+    return history_if_refined(discretization.stress_space,
+                              state,
+                              recovery_estimator->estimate(state.u));
   }
 
 

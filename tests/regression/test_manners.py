@@ -258,9 +258,10 @@ class Voice(Manners):
         lines = re.findall(
             r"^Step +(\d+)/~(\d+)  t = (\S+) .*  left \d", text, re.M
         )
-        # The first three know nothing of their growth.
-        self.assertEqual(re.findall(r"^Step (\d+)  t = ", text, re.M), ["1", "2", "3"])
-        self.assertEqual(lines[0][0], "4")
+        # The first ones know nothing of their growth.
+        first = re.findall(r"^Step (\d+)  t = ", text, re.M)
+        self.assertIn(first, (["1", "2"], ["1", "2", "3"]))
+        self.assertEqual(lines[0][0], str(len(first) + 1))
         n_steps = int(re.search(r"^Steps: (\d+) accepted", text, re.M).group(1))
         self.assertEqual(lines[-1][:2], (str(n_steps), str(n_steps)))
         self.assertGreater(len(lines), 20)

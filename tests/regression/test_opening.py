@@ -41,7 +41,7 @@ IN_SPACE = {
 }
 PLANE, SPACE = (2, "rubbing_2d", 2, 3), (3, "rubbing_3d", 4, 5)
 FRICTIONLESS = {"Friction law": "none"}
-FIXED_POINT = {"Solver/Coulomb pressure": "fixed point"}
+LAGGED = {"Solver/Coulomb pressure": "lagged"}
 
 
 def rub(place, contact, plate=None, more=None, ranks=1, check=True):
@@ -103,8 +103,11 @@ class Lagged(Contact):
                 "friction_force_x"
             ][-1]
 
-        exact = force(32, **FIXED_POINT, **{"Solver/Coulomb tolerance": 1e-9})
-        errors = [abs(force(steps) - exact) for steps in (4, 8, 16)]
+        exact = force(32, **{"Solver/Coulomb tolerance": 1e-9})
+        errors = [
+            abs(force(steps, **LAGGED) - exact)
+            for steps in (4, 8, 16)
+        ]
         self.assertGreater(errors[-1], 0.02 * exact)
         for coarse, fine in zip(errors, errors[1:]):
             order = np.log2(coarse / fine)
@@ -204,7 +207,6 @@ class HardCases(Contact):
         plate = "-1e-9*max(0, t - 1)", "0", "0"
         more = {
             "Time/Phases": "1: 2, 3: 2",
-            **FIXED_POINT,
             "Solver/Coulomb tolerance": 1e-9,
         }
         for friction in FRICTIONLESS, {}:
@@ -276,10 +278,10 @@ class HardCases(Contact):
             for place in PLANE, SPACE:
                 normal = "xyz"[place[0] - 1]
                 with self.subTest(mu=mu, dim=place[0]):
-                    result = rub(place, contact)
+                    result = rub(place, contact, more=LAGGED)
                     self.check_contact(result, mu, True, normal)
                     self.check_identities(result)
-                    coupled = rub(place, contact, more=FIXED_POINT)
+                    coupled = rub(place, contact)
                     self.check_contact(coupled, mu, False, normal)
                     self.check_identities(coupled)
                     self.assertLess(coupled["contraction"].max(), 0.9)
@@ -294,7 +296,7 @@ class HardCases(Contact):
         """mu = 4 in space: found, or said in a sentence, and the pressure of the
         step before goes on."""
         contact = {"Friction coefficient": 4}
-        result = rub(SPACE, contact, more=FIXED_POINT, check=False)
+        result = rub(SPACE, contact, check=False)
         if result.returncode:
             self.assertRegex(result.stderr, "The fixed point of Coulomb's law is not")
             self.assertRegex(result.stderr, "'Solver/Coulomb pressure' = lagged")
@@ -323,7 +325,7 @@ class HardCases(Contact):
 
     def test_ranks_without_contact(self):
         """Four ranks, of which one has no node of the foundation."""
-        one, four = (rub(PLANE, {}, more=FIXED_POINT, ranks=n) for n in (1, 4))
+        one, four = (rub(PLANE, {}, ranks=n) for n in (1, 4))
         for name in "contact_force_y", "friction_force_x", "stored_energy":
             size = abs(one[name]).max()
             # the tolerance of the fixed point is 1e-6
@@ -366,7 +368,7 @@ class HardCases(Contact):
         plate = "-0.02*min(4*t, 1) + 0.06*max(0, t - 0.75)", "0.05*min(t, 2 - t)", "0"
         more = {"Time/Phases": "1: 16, 1.5: 16"}
         for self.lagged in True, False:
-            pressure = {} if self.lagged else FIXED_POINT
+            pressure = LAGGED if self.lagged else {}
             self.check_both(check, {}, plate, {**more, **pressure})
 
     def test_single_node(self):

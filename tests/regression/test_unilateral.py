@@ -32,8 +32,9 @@ def entries_of(scene):
         contact["Friction bound"] = scene["bound"]
     if law in ("lagged", "coupled"):
         contact["Friction coefficient"] = scene["mu"]
+    if law == "lagged":
+        entries["Solver/Coulomb pressure"] = "lagged"
     if law == "coupled":
-        entries["Solver/Coulomb pressure"] = "fixed point"
         entries["Solver/Coulomb tolerance"] = 1e-11
     return {
         **entries,

@@ -184,8 +184,8 @@ namespace
       (std::vector<std::string>{
         "volumetric integration (full): mean dilatation "
         "(Material/Volumetric integration=mean dilatation)",
-        "stress history (cell means): quadrature points (Material/Stress "
-        "history=quadrature points)",
+        "stress history (quadrature points): cell means (Material/Stress "
+        "history=cell means)",
         "time scheme (forward Euler): backward Euler (Time/Scheme=backward "
         "Euler)",
         "time scheme (forward Euler): Heun (Time/Scheme=Heun)",

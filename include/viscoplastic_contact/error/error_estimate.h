@@ -98,6 +98,8 @@ namespace Viscoplastic
     /// (int E^-1 z : z)^{1/2} and the same of the change of z in the step; with
     /// step control or a tolerance only.
     double irreversible_norm = 0., irreversible_change = 0.;
+    /// The sum of these changes up to now.
+    double creep_path = 0.;
 
     /// Write to, or read from, an archive; but for the norms of step control,
     /// which each step makes anew.
@@ -107,7 +109,8 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       quantity.exchange(archive);
-      archive &time_indicator &velocity_variation &energy_norm &velocity_square;
+      archive &time_indicator &velocity_variation &energy_norm &velocity_square
+        &creep_path;
     }
   };
 

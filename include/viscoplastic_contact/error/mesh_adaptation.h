@@ -87,12 +87,14 @@ namespace Viscoplastic
   class StateTransfer
   {
   public:
-    /// @p multiplier_density is ghosted, and null without contact points.
-    /// Collective.
+    /// @p multiplier_density is ghosted, and null without contact points; @p
+    /// if_refined: a number of each active cell, to be summed up over those
+    /// that are refined, or none. Collective.
     StateTransfer(parallel::distributed::Triangulation<dim> &triangulation,
                   const StressSpace<dim>                    &old_stress_space,
                   const State<dim>                          &state,
-                  const DistributedVector *multiplier_density);
+                  const DistributedVector                   *multiplier_density,
+                  const Vector<double>                      &if_refined = {});
 
     /// The triangulation calls back until unpack().
     StateTransfer(const StateTransfer &) = delete;
@@ -107,6 +109,9 @@ namespace Viscoplastic
       DistributedVector multiplier_density;
       /// sigma_h, carried like z; empty without viscosity.
       IrreversibleStress stress;
+      /// The sum of the numbers of cells that have been refined, which only the
+      /// mesh itself knows: it keeps neighbors within one level.
+      double of_refined_cells = 0.;
     };
 
     /// The state on the new mesh. To be called once. Collective.
@@ -141,6 +146,9 @@ namespace Viscoplastic
     unsigned int                    handle;
     /// Samples on each child = prolongation * samples on the parent.
     std::vector<FullMatrix<double>> prolongation;
+
+    Vector<double> if_refined;
+    mutable double of_refined_cells = 0.;
 
     unsigned int n;
     double       t, k;

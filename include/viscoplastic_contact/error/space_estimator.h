@@ -58,10 +58,10 @@ namespace Viscoplastic
     SpaceEstimate
     estimate(const State<dim> &state) const;
 
-    /// What remains in z of the error of cells that are marked for refinement,
-    /// see refined_history(). Collective.
-    double
-    history_of_marked_cells(const State<dim> &state) const;
+    /// What z keeps of the error of each cell if it is refined, squared, see
+    /// history_if_refined(); empty without viscosity. Collective.
+    Vector<double>
+    history_if_cells_are_refined(const State<dim> &state) const;
 
     /// How the residuals of a state and of a dual solution go together; there
     /// has to be a residual estimator. Collective.

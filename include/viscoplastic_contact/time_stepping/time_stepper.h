@@ -88,10 +88,10 @@ namespace Viscoplastic
     estimate(EvaluatedState<dim> &evaluated) const;
 
     /// See SpaceEstimator. Collective.
-    double
-    history_of_marked_cells(const State<dim> &state) const
+    Vector<double>
+    history_if_cells_are_refined(const State<dim> &state) const
     {
-      return space_estimator->history_of_marked_cells(state);
+      return space_estimator->history_if_cells_are_refined(state);
     }
 
     /// Whether steps of this scene ask for G at the state that they start from.

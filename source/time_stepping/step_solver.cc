@@ -205,6 +205,8 @@ namespace Viscoplastic
   {
     const SolverParameters &parameters =
       discretization.scene().parameters.solver;
+    if (springs)
+      contact.bound = springs->bounds_that_hold(problem, contact.bound);
     ContactReport report =
       solve_with_given_bounds(problem, right_side, tolerance, u, contact);
     if (!problem.bounds_follow_pressure || !discretization.slipping_face())
@@ -220,6 +222,8 @@ namespace Viscoplastic
                                  contact,
                                  bounds,
                                  problem.slip_rates);
+        if (springs)
+          bounds = springs->bounds_that_hold(problem, bounds);
         double change = 0., sum = 0.;
         for (unsigned int p = 0; p < bounds.size(); ++p)
           if (!face.layout().points[p].is_obstacle)

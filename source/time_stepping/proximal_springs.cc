@@ -12,10 +12,12 @@ namespace Viscoplastic
   namespace
   {
     /// The springs of the proximal point method, relative to the diagonal of
-    /// the matrix: softer than ground on which anything could rest, far above
-    /// rounding of the matrix. What they carry is reduced by something like
-    /// this factor each time that the step is solved.
-    constexpr double spring_stiffness = 1e-7;
+    /// the matrix. What they carry is reduced by something like this factor
+    /// each time that the step is solved; softer ones would magnify rounding
+    /// of resultants beyond StepSolver::rounding_error().
+    const double spring_stiffness =
+      getenv("VSPRING") ? atof(getenv("VSPRING")) : 1e-4;
+    const bool verbose = getenv("VVERBOSE");
     /// A body that still moves after so many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
 
@@ -109,6 +111,23 @@ namespace Viscoplastic
         regular_matrix.set(dof, dof, diagonal + springs.begin()[i]);
       }
     regular_matrix.compress(VectorOperation::insert);
+
+    // A rigid motion takes no force but that of the springs.
+    DistributedVector force(springs), held(springs);
+    for (const DistributedVector &motion : motions)
+      {
+        matrix.vmult(force, motion);
+        force.scale(motion);
+        held = springs;
+        held.scale(motion);
+        AssertThrow(
+          force.l2_norm() <= 0.1 * (motion * held),
+          ExcMessage(
+            "The stiffness of the body differs so much from place to place "
+            "that its rigid motions, which only contact prevents, are lost in "
+            "rounding. Let materials differ by less (a factor of 1e8 is safe), "
+            "or prescribe displacements where the body is stiff."));
+      }
     return regular_matrix;
   }
 
@@ -316,6 +335,19 @@ namespace Viscoplastic
           force_in_springs <=
             0.01 * std::max(right.l1_norm(), right_side.l1_norm()) ||
           in_springs <= rounding * norm(center);
+        if (verbose)
+          std::fprintf(
+            stderr,
+            "prox %d in_springs %g size %g error %g u %g f %g inner %g rounding %g it %d\n",
+            n,
+            in_springs,
+            size,
+            report.error,
+            u.linfty_norm(),
+            force_in_springs,
+            inner_tolerance,
+            bulk.rounding_error(),
+            again.iterations);
         report.error += in_springs;
         if (in_balance &&
             report.error <= std::max(tolerance * size, bulk.rounding_error()))

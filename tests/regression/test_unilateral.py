@@ -252,6 +252,85 @@ class Held(TestCase):
                     result["max_penetration"][-1], load / stiffness, relative=1e-5
                 )
 
+    def test_beds_as_soft_as_they_may_be(self):
+        """A stiff block sinks in by p/c; a slab without weight lies on no more
+        of its bed than a beam would (Weitsman): pi/(2 lambda) on either side of
+        its load, and sinks in by (F lambda/2c) (2 + cosh pi - 1)/sinh pi."""
+        for stiffness in (2e-6, 4e-9):  # c h / E
+            for ranks, solver in ((1, "direct"), (2, "multigrid")):
+                with self.subTest(stiffness=stiffness, solver=solver):
+                    compliance = 12000 * stiffness / 0.25
+                    block = {
+                        "Geometry/Arguments": "32, 4 : 0, 0 : 8, 1 : true",
+                        "Material/Young's modulus": 12000,
+                        "Material/Poisson's ratio": 0,
+                        "Boundary 0/Role": "symmetry",
+                        "Boundary 2/Contact law": "normal compliance",
+                        "Boundary 2/Compliance": compliance,
+                        "Boundary 2/Friction law": "none",
+                        "Boundary 2/Gap": 0,
+                        "Boundary 3/Traction": f"0; -{0.2 * compliance}*t",
+                        "Solver/Linear solver": solver,
+                        "Time/Phases": "1: 2",
+                    }
+                    entries = {**self.BLOCK, **block}
+                    for name in (
+                        "Boundary 0/Traction",
+                        "Boundary 2/Friction coefficient",
+                    ):
+                        entries.pop(name)
+                    result = run("bed", entries, ranks, "")
+                    self.assertClose(result["max_penetration"][-1], 0.2, relative=1e-6)
+                    self.assertClose(
+                        result["contact_force_y"][-1],
+                        -8 * 0.2 * compliance,
+                        relative=1e-6,
+                    )
+        youngs_modulus, bed, load = 30e9, 50e6, 1e6
+        slab = {
+            "Geometry/Arguments": "160, 4 : 0, 0 : 10, 0.25 : true",
+            "Geometry/Boundary ids": "if(id == 3 && x < 0.5, 5, id)",
+            "Material/Young's modulus": youngs_modulus,
+            "Material/Poisson's ratio": 0.2,
+            "Boundary 0/Role": "symmetry",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "normal compliance",
+            "Boundary 2/Compliance": bed,
+            "Boundary 2/Friction law": "none",
+            "Boundary 3/Role": "free",
+            "Boundary 5/Role": "traction",
+            "Boundary 5/Pressure": f"{load}*t",
+            "Time/Phases": "1: 1",
+        }
+        result = run("slab", slab, text="")
+        bending = youngs_modulus / (1 - 0.2**2) * 0.25**3 / 12
+        wave = (bed / 4 / bending) ** 0.25
+        self.assertClose(result["contact_force_y"][-1], -0.5 * load, relative=1e-7)
+        self.assertClose(
+            result["contact_area"][-1], np.pi / 2 / wave, relative=0.03
+        )
+        depth = load * wave / 2 / bed * (1 + np.cosh(np.pi)) / np.sinh(np.pi)
+        # the load is spread
+        self.assertClose(result["max_penetration"][-1], depth, relative=0.05)
+
+    def test_more_friction_than_the_pressure_before_allows(self):
+        """The push of each step is held by the pressure of that step alone."""
+        for steps in (2, 5):
+            with self.subTest(steps=steps):
+                result = self.run_block(
+                    {
+                        "Boundary 0/Traction": "0.005*t; 0",
+                        "Boundary 2/Gap": 0,
+                        "Boundary 3/Traction": "0; -0.01*t",
+                        "Solver/Coulomb pressure": "fixed point",
+                        "Time/Phases": f"1: {steps}",
+                    }
+                )
+                self.assertClose(
+                    result["friction_force_x"], 0.005 * result["t"], relative=1e-5
+                )
+
     def test_nearly_incompressible(self):
         result = self.run_block(
             {
@@ -298,6 +377,23 @@ class Held(TestCase):
             ),
             # no friction in the first step
             ({"Boundary 0/Traction": "0.001*t; 0"}, "= fixed point has"),
+            # which no pressure of its own could give
+            (
+                {
+                    "Boundary 0/Traction": "0.011*t; 0",
+                    "Solver/Coulomb pressure": "fixed point",
+                },
+                r"translation along \(0.958, 0.287\)",
+            ),
+            # stiffness that is lost in rounding
+            (
+                {
+                    "Geometry/Material ids": "if(y < 0.5, 1, 2)",
+                    "Material 1/Young's modulus": 1,
+                    "Material 2/Young's modulus": 1e11,
+                },
+                "differs so much from place to place",
+            ),
             (
                 {"Boundary 2/Friction law": "none"},
                 "leave a rigid motion free: translation along x",

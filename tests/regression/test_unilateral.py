@@ -574,8 +574,81 @@ class WherePiecesMeet(TestCase):
                 self.assertClose(force, resists, relative=1e-4)
 
 
+class FixedPoint(TestCase):
+    """Coulomb's law in its own step, where that is hard to find."""
+
+    def test_friction_that_holds_what_would_press(self):
+        """Without friction the foundation, which moves, presses; with the
+        friction of that pressure it would not touch: bounds that just follow
+        the pressure swing between both."""
+        result = run(
+            "swinging",
+            {
+                "Geometry/Generator": "subdivided_hyper_rectangle",
+                "Geometry/Arguments": "18, 2 : 0, 0 : 1, 1 : true",
+                "Material/Young's modulus": "1.7*exp(-y^2)",
+                "Material/Poisson's ratio": 0.499,
+                "Material/Law": "elastic",
+                "Boundary 0/Role": "traction",
+                "Boundary 0/Pressure": "0.004*10^(2*sin(y))*(1-exp(-5*t))",
+                "Boundary 1/Role": "symmetry",
+                "Boundary 2/Role": "clamped",
+                "Boundary 3/Role": "contact",
+                "Boundary 3/Contact law": "unilateral",
+                "Boundary 3/Friction law": "coulomb",
+                "Boundary 3/Friction coefficient": 3,
+                "Boundary 3/Gap": 0.0066,
+                "Boundary 3/Foundation motion": "-0.47*10^(2*sin(x))*sqrt(t); 0",
+                "Solver/Contact tolerance": 1e-10,
+                "Solver/Coulomb pressure": "fixed point",
+                "Time/Phases": "1: 3",
+            },
+            text="",
+        )
+        self.check_identities(result, 1e-8, balance=1e-6)
+        self.assertGreater(result["contact_area"].max(), 0)
+
+
 class AtRest(TestCase):
     """Where nothing happens, or nothing but what bilateral contact does."""
+
+    def test_forces_beside_stresses_that_balance_each_other(self):
+        """Of stresses that were there before, and of a body that nothing
+        touches, resultants are rounding, or what a tolerance leaves."""
+        ring = {
+            "Geometry/Generator": "concentric_hyper_shells",
+            "Geometry/Arguments": "0,0:0.125:0.25:2:0.0:8:true",
+            "Material/Young's modulus": 7.8e14,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 1e14,
+            "Boundary 0/Role": "clamped",
+            "Boundary 1/Role": "clamped",
+            "Initial state/Stress": "0; 1e13; 0; 0",
+            "Time/Phases": "1: 3",
+            "Time/Scheme": "backward Euler",
+        }
+        lies = {
+            "Geometry/Generator": "truncated_cone",
+            "Geometry/Arguments": "1:0.5:1",
+            "Geometry/Global refinements": 1,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 3,
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "contact",
+            "Boundary 1/Contact law": "normal compliance",
+            "Boundary 1/Compliance": 4,
+            "Boundary 1/Friction law": "tresca",
+            "Boundary 1/Friction bound": "0.002*(1 + 0.5*sin(3*y))",
+            "Boundary 2/Role": "free",
+            "Initial state/Equilibrate": "true",
+            "Initial state/Reset displacement": "true",
+            "Initial state/Stress": "0; 0; 0.01; 0",
+            "Time/Phases": "1: 3",
+        }
+        for name, scene in ("ring", ring), ("lies", lies):
+            with self.subTest(scene=name):
+                result = run(name, scene, text="")
+                self.assertLess(result["force_balance_defect"].max(), 1e-6)
 
     BLOCK = {
         "Dimension": 3,

@@ -15,9 +15,7 @@ namespace Viscoplastic
     /// the matrix. What they carry is reduced by something like this factor
     /// each time that the step is solved; softer ones would magnify rounding
     /// of resultants beyond StepSolver::rounding_error().
-    const double spring_stiffness =
-      getenv("VSPRING") ? atof(getenv("VSPRING")) : 1e-4;
-    const bool verbose = getenv("VVERBOSE");
+    constexpr double spring_stiffness = 1e-4;
     /// A body that still moves after so many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
 
@@ -335,19 +333,6 @@ namespace Viscoplastic
           force_in_springs <=
             0.01 * std::max(right.l1_norm(), right_side.l1_norm()) ||
           in_springs <= rounding * norm(center);
-        if (verbose)
-          std::fprintf(
-            stderr,
-            "prox %d in_springs %g size %g error %g u %g f %g inner %g rounding %g it %d\n",
-            n,
-            in_springs,
-            size,
-            report.error,
-            u.linfty_norm(),
-            force_in_springs,
-            inner_tolerance,
-            bulk.rounding_error(),
-            again.iterations);
         report.error += in_springs;
         if (in_balance &&
             report.error <= std::max(tolerance * size, bulk.rounding_error()))

@@ -377,6 +377,21 @@ class Refused(TestCase):
             },
         )
 
+    def test_the_end_of_a_thin_sheet_holds_it(self):
+        """However thin it is: 1e-6 of its length is no rounding."""
+        sheet = {
+            "Geometry/Arguments": "4, 2 : 0, 0 : 1, 1e-6 : true",
+            "Material/Poisson's ratio": 0,
+            "Boundary 0/Role": "clamped",
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Traction": "0.01*t; 0",
+            "Boundary 2/Role": "free",
+            "Boundary 3/Role": "free",
+            "Time/Phases": "1: 1",
+        }
+        result = run("sheet", sheet, text="")
+        self.assertClose(result["max_displacement"][-1], 0.01, relative=1e-3)
+
     def test_incompatible_initial_load(self):
         """A load that is there at t = 0 with zero initial stress."""
         self.refused(

@@ -265,7 +265,7 @@ namespace Viscoplastic
                 for (unsigned int j = 0; j < point.n_tangents; ++j)
                   of_point[i][j] = point.map[i] * (flexibility * point.map[j]);
               const Tensor<1, 2> free_motion =
-                slip(point, start + flexibility * remaining);
+                state.slip_with(point, p, start + flexibility * remaining);
               const PointSolution solution =
                 point.is_obstacle ? solve_obstacle(point,
                                                    of_point[0][0],
@@ -360,12 +360,13 @@ namespace Viscoplastic
           }
       }
 
-    // A node whose points hold all its components does not move at all, not
-    // even by rounding.
+    // A node whose points hold all its components goes with the foundation,
+    // without rounding: where that is at rest, it does not move at all.
     if (is_plain && state.sticks[begin] &&
         face.points[begin].n_tangents + (normal.norm() > 0. ? 1 : 0) ==
           face.n_node_dofs(node))
-      return distance * normal;
+      return distance * normal +
+             motion_with_slip(face.points[begin], state.foundation_step[begin]);
     return x;
   }
 

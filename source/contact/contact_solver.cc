@@ -50,7 +50,8 @@ namespace Viscoplastic
           const ContactLayout::Point &point = face.points[p];
           state.slip[p]                     = Tensor<1, 2>();
           if (!state.sticks[p] || point.is_obstacle)
-            state.slip[p] = slip(point, face.node_values(x, point.node));
+            state.slip[p] =
+              state.slip_with(point, p, face.node_values(x, point.node));
           if (point.gives_way())
             state.sticks[p] = state.penetration(p) > 0.;
           if (!point.is_obstacle && state.bound[p] > 0. &&
@@ -80,7 +81,8 @@ namespace Viscoplastic
             continue;
           const Tensor<1, 3> here = face.node_values(x, node);
           const Tensor<1, 3> part =
-            motion_with_slip(face.points[p], slip(face.points[p], here));
+            motion_with_slip(face.points[p],
+                             state.slip_with(face.points[p], p, here));
           if (part * (diagonal[node] * part) >
               Utilities::fixed_power<2>(rounding))
             continue;

@@ -128,20 +128,15 @@ namespace Viscoplastic
                  const ContactState      &old_state,
                  const ContactState      &state,
                  const DistributedVector &change,
-                 const Vector<double>    &foundation_step,
                  const double             max_displacement)
   {
     FrictionIdentities              result;
-    const std::vector<Tensor<1, 2>> slips = face.slips(change, foundation_step);
-    if (foundation_step.size() > 0)
-      {
-        const std::vector<Tensor<1, 2>> carried = face.slips(foundation_step);
-        for (unsigned int p = 0; p < carried.size(); ++p)
-          if (!face.layout().points[p].is_obstacle)
-            result.foundation_work -=
-              0.5 * (old_state.multiplier[p] + state.multiplier[p]) *
-              carried[p];
-      }
+    const std::vector<Tensor<1, 2>> slips =
+      face.slips(change, state.foundation_step);
+    for (unsigned int p = 0; p < slips.size(); ++p)
+      result.foundation_work -=
+        0.5 * (old_state.multiplier[p] + state.multiplier[p]) *
+        state.foundation_step[p];
     for (unsigned int p = 0; p < slips.size(); ++p)
       {
         const ContactLayout &layout = face.layout();
@@ -258,7 +253,6 @@ namespace Viscoplastic
                                                   const ContactState &,        \
                                                   const ContactState &,        \
                                                   const DistributedVector &,   \
-                                                  const Vector<double> &,      \
                                                   const double);
 
   INSTANTIATE(2)

@@ -486,11 +486,11 @@ namespace Viscoplastic
         face.add_computed_bounds(state.t, contact, contact.bound, rates);
       }
     discretization.space.to_frames(state.velocity, velocity);
-    Vector<double> carried = face.foundation_step(state.t - state.k, state.t);
-    if (carried.size() > 0)
-      carried /= state.k;
-    const auto   slip_rates = face.slips(velocity, carried);
-    const double max_speed  = velocity.linfty_norm();
+    auto       slip_rates = face.slips(velocity);
+    const auto carried    = face.foundation_step(state.t - state.k, state.t);
+    for (unsigned int p = 0; p < carried.size(); ++p)
+      slip_rates[p] -= carried[p] / state.k;
+    const double max_speed = velocity.linfty_norm();
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
         const double bound      = contact.bound[p];

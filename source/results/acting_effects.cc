@@ -44,11 +44,12 @@ namespace Viscoplastic
                       is_so(touches);
         has_opened = has_opened || is_so(is_open);
       }
+    const auto &steps = step.end.state.contact.foundation_step;
     if (!foundation_has_moved && discretization.scene().has_moving_foundation())
       foundation_has_moved =
-        is_so(std::any_of(step.foundation_step.begin(),
-                          step.foundation_step.end(),
-                          [](const double d) { return d != 0.; }));
+        is_so(std::any_of(steps.begin(), steps.end(), [](const auto &w) {
+          return w != Tensor<1, 2>();
+        }));
   }
 
 

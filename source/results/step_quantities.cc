@@ -144,7 +144,6 @@ namespace Viscoplastic
                                          old.state.contact,
                                          state.contact,
                                          change,
-                                         step.foundation_step,
                                          result.max_displacement);
         result.friction_force = d.face->resultant(state.contact);
         if (d.face->has_obstacles())
@@ -177,8 +176,11 @@ namespace Viscoplastic
     if (stable_norm(result.sum_of_forces) > 1e-9 * result.largest_force)
       {
         DistributedVector moves(forces.u);
-        if (step.foundation_step.size() > 0)
-          d.face->restriction().add(1., step.foundation_step, moves);
+        if (d.face)
+          d.face->restriction().add(1.,
+                                    face_motion(d.face->layout(),
+                                                state.contact.foundation_step),
+                                    moves);
         if (const double rounding = force_of_rounding(d, moves);
             result.largest_force <= rounding)
           result.largest_force = 1e8 * rounding;

@@ -207,10 +207,8 @@ namespace Viscoplastic
         const State<dim> &state = accepted.state;
         problem.slip_rates =
           d.face->slip_rates(state.velocity, state.t - state.k, state.t);
-        problem.bounds = d.face->step_bounds(time_step.t,
-                                             u,
-                                             problem.foundation_step,
-                                             problem.slip_rates);
+        problem.bounds =
+          d.face->step_bounds(time_step.t, u, problem.slip_rates);
         if (d.face->has_computed_pressure() &&
             scene.parameters.solver.coulomb_pressure ==
               CoulombPressure::fixed_point)
@@ -283,7 +281,6 @@ namespace Viscoplastic
         else if (!scene.has_source()) // which jumps between steps
           step.end.rate = std::move(solution.end_rate);
       }
-    step.foundation_step = std::move(problem.foundation_step);
     return step;
   }
 
@@ -317,12 +314,11 @@ namespace Viscoplastic
       {
         DistributedVector change = end.forces.u;
         change -= accepted.forces.u;
-        turning =
-          turning_work(discretization.face->layout(),
-                       accepted.state.contact,
-                       state.contact,
-                       discretization.face->slips(change,
-                                                  step.foundation_step));
+        turning = turning_work(
+          discretization.face->layout(),
+          accepted.state.contact,
+          state.contact,
+          discretization.face->slips(change, state.contact.foundation_step));
       }
     error_estimator->assess(discretization.stress_space,
                             time_defect(step.is_implicit ?

@@ -96,14 +96,12 @@ namespace Viscoplastic
                     const ContactState      &state,
                     const DistributedVector &change);
 
-  /// @p change of the displacement in the step, in frames, and what the
-  /// foundation moved meanwhile (empty: nothing). Collective.
+  /// @p change of the displacement in the step, in frames. Collective.
   template <int dim>
   FrictionIdentities
   check_friction(const ContactFace<dim>  &face,
                  const ContactState      &old_state,
                  const ContactState      &state,
                  const DistributedVector &change,
-                 const Vector<double>    &foundation_step,
                  const double             max_displacement);
 } // namespace Viscoplastic

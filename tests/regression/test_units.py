@@ -449,6 +449,34 @@ SHORT = (
     ("partial_slip_2d", {"Time/Phases": "1: 1, 1.5: 2"}),
     ("soft_ground_3d", {"Time/Phases": "0.5: 2"}),
     ("perzyna_compression_2d", {"Time/Phases": "0.5: 4"}),
+    (
+        "perzyna_compression_2d",
+        {
+            "Material/Law": "norton",
+            "Material/norton/Rate factor": 3,
+            "Material/norton/Exponent": 2.5,
+            "Material/norton/Stress cap": 10,
+            "Step control/Tolerance": 0.03,
+            "Time/Scheme": "Heun",
+        },
+    ),
+    (
+        "perzyna_compression_2d",
+        {
+            "Material/Law": "parsed",
+            "Material/parsed/Strain rate": "sinh(sigma_eq)*exp(-p)/(1 + eps_eq)",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "0.5: 4",
+        },
+    ),
+    (
+        "slab_adaptive",
+        {"Error control/Tolerance": 0.2, "Time/Phases": "0.5: 4", "Output/Points": "0, 0"},
+    ),
+    (
+        "coulomb_block_3d",
+        {"Solver/Linear solver": "multigrid", "Boundary 4/Slip rate factor": "1/(1 + v)"},
+    ),
     ("rubbing_2d", {}),
     ("junction_2d", {}),
     ("excavated_column", {}),

@@ -3,6 +3,7 @@
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 #include <viscoplastic_contact/mesh/marking_threshold.h>
+#include <viscoplastic_contact/mesh/mesh_refinement.h>
 
 #include <cmath>
 #include <limits>
@@ -180,7 +181,7 @@ namespace Viscoplastic
     if (Utilities::MPI::sum(static_cast<double>(n_refined), comm) > allowed)
       limit_refinement(triangulation, squared_estimate, allowed);
 
-    triangulation.prepare_coarsening_and_refinement();
+    prepare_mesh_change(triangulation);
     if (limit_coarsening)
       limit_coarsening();
     if (is_worth_it(triangulation, squared_estimate, parameters.smallest_share))

@@ -24,7 +24,7 @@ namespace Viscoplastic
   {
     const std::string manifest_name = "manifest.txt";
     const std::string any_format    = "viscoplastic_contact checkpoint ";
-    const std::string first_line    = any_format + "8";
+    const std::string first_line    = any_format + "9";
     const std::string unfinished = ".unfinished", outdated = ".outdated";
     // What an unfinished checkpoint has instead of a manifest.
     const std::string list_name       = "unfinished.txt";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
@@ -464,8 +465,24 @@ namespace Viscoplastic
     message << "The active set iteration did not converge in " << max_iterations
             << " iterations: the relative error bound is " << best_error
             << " at best, and the tolerance is " << tolerance
-            << " ('Solver/Contact tolerance'); raise 'Solver/Maximal contact "
-               "iterations' or the tolerance.";
+            << " ('Solver/Contact tolerance'); ";
+    // Rounding of displacements makes forces of all sizes of it.
+    constexpr double beyond_rounding = 1e13;
+    double           stiffest        = 0.;
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      if (const ContactLayout::Point &point = face.points[p]; point.gives_way())
+        stiffest = std::max(stiffest,
+                            point.compliance.slope(state.penetration(p)) *
+                              (point.map[0] *
+                               (inverse_diagonal[point.node] * point.map[0])));
+    stiffest = Utilities::MPI::max(stiffest, face.communicator);
+    if (stiffest > beyond_rounding)
+      message << "the foundation is " << stiffest
+              << " times as stiff as the body, which no number resolves: give "
+                 "a smaller 'Compliance', or 'Contact law' = unilateral, its "
+                 "limit.";
+    else
+      message << "raise 'Solver/Maximal contact iterations' or the tolerance.";
     AssertThrow(false, ExcMessage(message.str()));
   }
 

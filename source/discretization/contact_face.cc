@@ -425,6 +425,41 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  ContactFace<dim>::closes_between_nodes(const double             t,
+                                         const DistributedVector &u) const
+  {
+    if (!any_obstacles || !numbers)
+      return false;
+    // What is left of the gap, interpolated, and what the gap is less than its
+    // interpolant.
+    LinearAlgebra::distributed::Vector<double> gaps(numbers), left(numbers);
+    const std::vector<double>                  gap_at_nodes = bounds(t),
+                              left_at_nodes                 = step_bounds(t, u);
+    std::copy(gap_at_nodes.begin(), gap_at_nodes.end(), gaps.begin());
+    std::copy(left_at_nodes.begin(), left_at_nodes.end(), left.begin());
+    gaps.update_ghost_values();
+    left.update_ghost_values();
+    std::vector<double> sums(samples.size(), 0.), weights(samples.size(), 0.);
+    for (const Share &share : shares)
+      if (share.of_obstacle)
+        {
+          weights[share.sample] += share.value;
+          sums[share.sample] += share.value * (left.local_element(share.point) -
+                                               gaps.local_element(share.point));
+        }
+    bool here = false;
+    for (std::size_t s = 0; s < samples.size(); ++s)
+      if (weights[s] > 0.)
+        here |=
+          samples[s].condition->gap(samples[s].x, t) + sums[s] / weights[s] <
+          0.;
+    return layout().any(here);
+  }
+
+
+
+  template <int dim>
   void
   ContactFace<dim>::add_computed_bounds(
     const double               t,

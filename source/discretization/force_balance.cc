@@ -4,6 +4,9 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 
+#include <cmath>
+#include <limits>
+
 namespace Viscoplastic
 {
   namespace
@@ -67,6 +70,33 @@ namespace Viscoplastic
         forces.internal -= irreversible;
       }
     return forces;
+  }
+
+
+
+  template <int dim>
+  EnergyRounding
+  energy_rounding(const AdmissibleSpace<dim> &space,
+                  const DistributedMatrix    &matrix,
+                  const Forces<dim>          &forces)
+  {
+    const auto          square = [](const double x) { return x * x; };
+    std::vector<double> sums(2, 0.);
+    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+      {
+        const double stiffness =
+          matrix.diag_element(space.owned.nth_index_in_set(i));
+        if (!(stiffness > 0.))
+          continue;
+        sums[0] += stiffness * square(forces.u.begin()[i]);
+        if (!space.excluded()[i])
+          sums[0] += square(forces.load.values.begin()[i]) / stiffness;
+        sums[1] += square(forces.elastic.begin()[i]) / stiffness;
+      }
+    Utilities::MPI::sum(sums, space.communicator, sums);
+    const double size =
+      100. * std::numeric_limits<double>::epsilon() * std::sqrt(sums[0]);
+    return {size, std::sqrt(sums[1]) <= size};
   }
 
 
@@ -235,10 +265,13 @@ namespace Viscoplastic
 
 
 #define INSTANTIATE(dim)                                                       \
-  template Forces<dim> evaluate_forces<dim>(const StressSpace<dim> &,          \
-                                            const DistributedMatrix &,         \
-                                            Load<dim>,                         \
-                                            const State<dim> &);               \
+  template Forces<dim>    evaluate_forces<dim>(const StressSpace<dim> &,       \
+                                            const DistributedMatrix &,      \
+                                            Load<dim>,                      \
+                                            const State<dim> &);            \
+  template EnergyRounding energy_rounding<dim>(const AdmissibleSpace<dim> &,   \
+                                               const DistributedMatrix &,      \
+                                               const Forces<dim> &);           \
   template std::map<types::boundary_id, Tensor<1, dim>> reactions<dim>(        \
     const AdmissibleSpace<dim> &, const Forces<dim> &);                        \
   template double             external_work<dim>(const AdmissibleSpace<dim> &, \

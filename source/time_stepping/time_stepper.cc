@@ -334,11 +334,17 @@ namespace Viscoplastic
       quantity_estimator->assess(solver_of_elasticity().bulk(), accepted, end);
     const ErrorEstimate &estimate = end.errors;
     StepErrors           errors;
-    errors.indicator =
-      estimate.time_indicator + estimate.friction - accepted.errors.friction;
     errors.change =
       std::max(state.k * std::sqrt(std::max(0., estimate.velocity_square)),
                estimate.irreversible_change);
+    // What the iterations leave of both states changes G by up to r times as
+    // much, and is all that there is of a smaller change: no shorter step has
+    // less of it.
+    const double left = step.report.error + accepted.report.error;
+    if (errors.change > left)
+      errors.indicator =
+        std::max(0., estimate.time_indicator - 0.5 * step.stiffness() * left) +
+        estimate.friction - accepted.errors.friction;
     errors.size   = scene.parameters.error_control.has_tolerance() ?
                       estimate.energy_norm :
                       std::max(estimate.energy_norm, estimate.irreversible_norm);
@@ -348,8 +354,13 @@ namespace Viscoplastic
         const QuantityEstimate &quantity = estimate.quantity,
                                &before   = accepted.errors.quantity;
         errors.indicator *= quantity.dual_norm;
-        errors.change = std::abs(quantity.value - before.value);
+        // The body may move on while the quantity hardly changes, as after a
+        // change of the mesh.
+        const double share =
+          errors.size > 0. ? std::min(1., errors.change / errors.size) : 0.;
         errors.size   = std::abs(quantity.value);
+        errors.change = std::max(std::abs(quantity.value - before.value),
+                                 share * errors.size);
         errors.before = before.time + before.friction;
       }
     if (!std::isfinite(errors.indicator + errors.change + errors.size))

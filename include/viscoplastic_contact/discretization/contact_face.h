@@ -114,6 +114,11 @@ namespace Viscoplastic
                   const DistributedVector &u,
                   ContactState            &state) const;
 
+    /// Whether the body at @p u (in frames) is beyond the gap at time t
+    /// somewhere between the nodes, where nothing keeps it out. Collective.
+    bool
+    closes_between_nodes(const double t, const DistributedVector &u) const;
+
     /// Whether bounds() depends on time.
     bool
     bounds_depend_on_time() const

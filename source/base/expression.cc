@@ -436,6 +436,18 @@ namespace Viscoplastic
 
   template <int dim>
   bool
+  VectorExpression<dim>::is_written_as(const VectorExpression &other) const
+  {
+    bool result = components.size() == other.components.size();
+    for (unsigned int c = 0; result && c < components.size(); ++c)
+      result = components[c].is_written_as(other.components[c]);
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
   VectorExpression<dim>::is_zero() const
   {
     for (const auto &component : components)

@@ -122,6 +122,23 @@ namespace Viscoplastic
 
 
 
+  Vector<double>
+  face_motion(const ContactLayout &face, const std::vector<Tensor<1, 2>> &slips)
+  {
+    AssertDimension(slips.size(), face.points.size());
+    Vector<double> result(face.n_dofs());
+    for (unsigned int p = 0; p < slips.size(); ++p)
+      {
+        const ContactLayout::Point &point  = face.points[p];
+        const Tensor<1, 3>          motion = motion_with_slip(point, slips[p]);
+        if (motion.norm() > face.node_values(result, point.node).norm())
+          face.set_node_values(motion, point.node, result);
+      }
+    return result;
+  }
+
+
+
   bool
   FaceTruncation::blocks_as(const FaceTruncation &other,
                             const ContactLayout  &face) const

@@ -265,7 +265,7 @@ namespace Viscoplastic
                 for (unsigned int j = 0; j < point.n_tangents; ++j)
                   of_point[i][j] = point.map[i] * (flexibility * point.map[j]);
               const Tensor<1, 2> free_motion =
-                slip(point, start + flexibility * remaining);
+                state.slip_with(point, p, start + flexibility * remaining);
               const PointSolution solution =
                 point.is_obstacle ? solve_obstacle(point,
                                                    of_point[0][0],
@@ -360,12 +360,13 @@ namespace Viscoplastic
           }
       }
 
-    // A node whose points hold all its components does not move at all, not
-    // even by rounding.
+    // A node whose points hold all its components goes with the foundation,
+    // without rounding: where that is at rest, it does not move at all.
     if (is_plain && state.sticks[begin] &&
         face.points[begin].n_tangents + (normal.norm() > 0. ? 1 : 0) ==
           face.n_node_dofs(node))
-      return distance * normal;
+      return distance * normal +
+             motion_with_slip(face.points[begin], state.foundation_step[begin]);
     return x;
   }
 
@@ -531,7 +532,8 @@ namespace Viscoplastic
   FaceTruncation
   make_truncation(const ContactLayout             &face,
                   const ContactState              &state,
-                  const std::vector<Tensor<2, 3>> &inverse_diagonal)
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                  const double                     stiffest)
   {
     FaceTruncation truncation;
     truncation.projector.resize(face.n_nodes());
@@ -545,14 +547,13 @@ namespace Viscoplastic
              p < face.first_point[node + 1];
              ++p)
           {
-            const ContactLayout::Point &point    = face.points[p];
-            const double                stiffest = inverse_diagonal.empty() ?
-                                                     std::numeric_limits<double>::max() :
-                                                     1e10 / inverse_diagonal[node].norm();
+            const ContactLayout::Point &point = face.points[p];
+            const double                limit = inverse_diagonal.empty() ?
+                                                  std::numeric_limits<double>::max() :
+                                                  stiffest / inverse_diagonal[node].norm();
             if (point.gives_way())
               truncation.spring[node] +=
-                std::min(point.compliance.slope(state.penetration(p)),
-                         stiffest) *
+                std::min(point.compliance.slope(state.penetration(p)), limit) *
                 outer_product(point.map[0], point.map[0]);
             else if (state.sticks[p])
               for (unsigned int i = 0; i < point.n_tangents; ++i)
@@ -568,9 +569,9 @@ namespace Viscoplastic
             else if (point.n_tangents == 2 && state.bound[p] > 0.)
               {
                 // kappa P_e with kappa = rho/|s|, which tends to infinity as
-                // a point comes to rest; 1e10 times the diagonal is stick.
+                // a point comes to rest.
                 const double kappa =
-                  std::min(state.bound[p] / state.slip[p].norm(), stiffest);
+                  std::min(state.bound[p] / state.slip[p].norm(), limit);
                 const Tensor<1, 2> e = state.slip[p] / state.slip[p].norm();
                 const Tensor<1, 3> across =
                   -e[1] * point.map[0] + e[0] * point.map[1];

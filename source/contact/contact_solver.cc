@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
@@ -50,7 +51,8 @@ namespace Viscoplastic
           const ContactLayout::Point &point = face.points[p];
           state.slip[p]                     = Tensor<1, 2>();
           if (!state.sticks[p] || point.is_obstacle)
-            state.slip[p] = slip(point, face.node_values(x, point.node));
+            state.slip[p] =
+              state.slip_with(point, p, face.node_values(x, point.node));
           if (point.gives_way())
             state.sticks[p] = state.penetration(p) > 0.;
           if (!point.is_obstacle && state.bound[p] > 0. &&
@@ -80,7 +82,8 @@ namespace Viscoplastic
             continue;
           const Tensor<1, 3> here = face.node_values(x, node);
           const Tensor<1, 3> part =
-            motion_with_slip(face.points[p], slip(face.points[p], here));
+            motion_with_slip(face.points[p],
+                             state.slip_with(face.points[p], p, here));
           if (part * (diagonal[node] * part) >
               Utilities::fixed_power<2>(rounding))
             continue;
@@ -462,8 +465,24 @@ namespace Viscoplastic
     message << "The active set iteration did not converge in " << max_iterations
             << " iterations: the relative error bound is " << best_error
             << " at best, and the tolerance is " << tolerance
-            << " ('Solver/Contact tolerance'); raise 'Solver/Maximal contact "
-               "iterations' or the tolerance.";
+            << " ('Solver/Contact tolerance'); ";
+    // Rounding of displacements makes forces of all sizes of it.
+    constexpr double beyond_rounding = 1e13;
+    double           stiffest        = 0.;
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      if (const ContactLayout::Point &point = face.points[p]; point.gives_way())
+        stiffest = std::max(stiffest,
+                            point.compliance.slope(state.penetration(p)) *
+                              (point.map[0] *
+                               (inverse_diagonal[point.node] * point.map[0])));
+    stiffest = Utilities::MPI::max(stiffest, face.communicator);
+    if (stiffest > beyond_rounding)
+      message << "the foundation is " << stiffest
+              << " times as stiff as the body, which no number resolves: give "
+                 "a smaller 'Compliance', or 'Contact law' = unilateral, its "
+                 "limit.";
+    else
+      message << "raise 'Solver/Maximal contact iterations' or the tolerance.";
     AssertThrow(false, ExcMessage(message.str()));
   }
 

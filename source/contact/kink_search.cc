@@ -190,7 +190,8 @@ namespace Viscoplastic
       if (reverses(face, state, w, node))
         {
           if (first_obstacle == end)
-            here = -1. * face.node_values(x, node);
+            here = motion_with_slip(face.points[p], state.foundation_step[p]) -
+                   face.node_values(x, node);
           else
             here -=
               motion_with_slip(face.points[p],

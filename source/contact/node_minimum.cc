@@ -97,8 +97,11 @@ namespace Viscoplastic
       for (unsigned int p = begin; p < end; ++p)
         {
           const ContactLayout::Point &point = face.points[p];
-          if (point.is_obstacle)
-            size = std::max(size, -state.bound[p] / point.map[0].norm());
+          size =
+            std::max(size,
+                     (point.is_obstacle ? -state.bound[p] :
+                                          state.foundation_step[p].norm()) /
+                       point.map[0].norm());
           if (has_friction(p) || (point.is_obstacle && !point.gives_way()))
             holders.push_back(p);
         }
@@ -126,7 +129,9 @@ namespace Viscoplastic
               {
                 const Tensor<1, 3> &map = point.map[row];
                 const double        missing =
-                  (point.is_obstacle ? state.bound[p] : 0.) - map * start;
+                  (point.is_obstacle ? state.bound[p] :
+                                       state.foundation_step[p][row]) -
+                  map * start;
                 // What is left of this direction.
                 Tensor<1, 3> q    = projector * map;
                 const double size = q.norm();
@@ -157,7 +162,7 @@ namespace Viscoplastic
       for (unsigned int p = begin; p < end; ++p)
         {
           const ContactLayout::Point &point = face.points[p];
-          const Tensor<1, 2>          s     = slip(point, x);
+          const Tensor<1, 2>          s     = state.slip_with(point, p, x);
           if (point.gives_way())
             {
               const double w = s[0] - state.bound[p];
@@ -249,7 +254,7 @@ namespace Viscoplastic
           const ContactLayout::Point &point = face.points[p];
           if (is_held[p - begin] || point.gives_way())
             continue;
-          const Tensor<1, 2> s    = slip(point, x);
+          const Tensor<1, 2> s    = state.slip_with(point, p, x);
           const double       room = negligible * point.map[0].norm();
           if (point.is_obstacle ? s[0] > state.bound[p] + room :
                                   has_friction(p) && !(s.norm() > room))
@@ -275,7 +280,7 @@ namespace Viscoplastic
           const auto slip_of                = [&](const Candidate &candidate) {
             return candidate.is_held[p - begin] && !point.is_obstacle ?
                                     Tensor<1, 2>() :
-                                    slip(point, candidate.x);
+                                    state.slip_with(point, p, candidate.x);
           };
           const Tensor<1, 2> s_from = slip_of(from), s_to = slip_of(to);
           if (point.gives_way())
@@ -319,7 +324,7 @@ namespace Viscoplastic
     for (unsigned int p = begin; p < face.first_point[node + 1]; ++p)
       {
         const ContactLayout::Point &point = face.points[p];
-        const Tensor<1, 2>          s     = slip(point, best->x);
+        const Tensor<1, 2>          s     = state.slip_with(point, p, best->x);
         state.sticks[p] =
           point.gives_way() ? s[0] > state.bound[p] : best->is_held[p - begin];
         state.multiplier[p] = Tensor<1, 2>();

@@ -375,7 +375,6 @@ namespace Viscoplastic
   std::vector<double>
   ContactFace<dim>::step_bounds(const double               t,
                                 const DistributedVector   &u,
-                                const Vector<double>      &foundation_step,
                                 const std::vector<double> &slip_rates) const
   {
     std::vector<double> result = bounds(t, slip_rates);
@@ -396,9 +395,6 @@ namespace Viscoplastic
             for (unsigned int d = 0; d < dim; ++d)
               result[p] -=
                 (obstacle.map[d] + obstacle.fixed[d]) * u.begin()[first + d];
-            if (foundation_step.size() > 0)
-              result[p] -=
-                slip(face.points[p], face.node_values(foundation_step, n))[0];
           }
       }
     return result;
@@ -412,7 +408,7 @@ namespace Viscoplastic
                                   const DistributedVector &u,
                                   ContactState            &state) const
   {
-    const std::vector<double> distances = step_bounds(t, u, {});
+    const std::vector<double> distances = step_bounds(t, u);
     for (unsigned int p = 0; p < state.n_points(); ++p)
       if (const ContactLayout::Point &point = layout().points[p];
           point.is_obstacle)
@@ -452,6 +448,41 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  ContactFace<dim>::closes_between_nodes(const double             t,
+                                         const DistributedVector &u) const
+  {
+    if (!any_obstacles || !numbers)
+      return false;
+    // What is left of the gap, interpolated, and what the gap is less than its
+    // interpolant.
+    LinearAlgebra::distributed::Vector<double> gaps(numbers), left(numbers);
+    const std::vector<double>                  gap_at_nodes = bounds(t),
+                              left_at_nodes                 = step_bounds(t, u);
+    std::copy(gap_at_nodes.begin(), gap_at_nodes.end(), gaps.begin());
+    std::copy(left_at_nodes.begin(), left_at_nodes.end(), left.begin());
+    gaps.update_ghost_values();
+    left.update_ghost_values();
+    std::vector<double> sums(samples.size(), 0.), weights(samples.size(), 0.);
+    for (const Share &share : shares)
+      if (share.of_obstacle)
+        {
+          weights[share.sample] += share.value;
+          sums[share.sample] += share.value * (left.local_element(share.point) -
+                                               gaps.local_element(share.point));
+        }
+    bool here = false;
+    for (std::size_t s = 0; s < samples.size(); ++s)
+      if (weights[s] > 0.)
+        here |=
+          samples[s].condition->gap(samples[s].x, t) + sums[s] / weights[s] <
+          0.;
+    return layout().any(here);
+  }
+
+
+
+  template <int dim>
   void
   ContactFace<dim>::add_computed_bounds(
     const double               t,
@@ -461,132 +492,67 @@ namespace Viscoplastic
   {
     if (!any_computed_pressure)
       return;
-    const std::vector<double> coefficients = sum_shares(
-      [t](const Sample &sample) {
-        return sample.condition->has_computed_pressure() ?
-                 sample.condition->bound(sample.x, t) :
-                 0.;
-      },
-      /* of_obstacles = */ false,
-      &slip_rates);
-    if (state.n_points() != bounds.size())
-      return;
+    // Piece by piece: each presses at the node by itself.
     const ContactLayout &face = layout();
-    for (unsigned int p = 0; p < bounds.size(); ++p)
-      if (coefficients[p] > 0.)
-        {
-          // The obstacles of the same pieces; none where other conditions hold
-          // the node along the normal.
-          const ContactLayout::Point &point = face.points[p];
-          const auto                 &ids   = boundary_ids[p];
-          double                      force = 0., area = 0.;
-          for (unsigned int o = face.first_obstacle(point.node);
-               o < face.first_point[point.node + 1];
-               ++o)
-            if (std::find_first_of(ids.begin(),
-                                   ids.end(),
-                                   boundary_ids[o].begin(),
-                                   boundary_ids[o].end()) != ids.end())
-              {
-                force += state.multiplier[o][0];
-                area += point_weights[o];
-              }
-          if (force > 0.)
-            bounds[p] += coefficients[p] / area * force;
-        }
+    for (const auto &pair : space.scene.boundary)
+      {
+        const types::boundary_id      id        = pair.first;
+        const BoundaryCondition<dim> &condition = pair.second;
+        if (!condition.has_computed_pressure())
+          continue;
+        const std::vector<double> coefficients = sum_shares(
+          [&](const Sample &sample) {
+            return sample.condition == &condition ?
+                     condition.bound(sample.x, t) :
+                     0.;
+          },
+          /* of_obstacles = */ false,
+          &slip_rates);
+        if (state.n_points() != bounds.size())
+          continue;
+        for (unsigned int p = 0; p < bounds.size(); ++p)
+          if (coefficients[p] > 0.)
+            // None where other conditions hold the node along the normal.
+            for (unsigned int o = face.first_obstacle(face.points[p].node);
+                 o < face.first_point[face.points[p].node + 1];
+                 ++o)
+              if (const auto &ids = boundary_ids[o];
+                  state.multiplier[o][0] > 0. &&
+                  std::find(ids.begin(), ids.end(), id) != ids.end())
+                bounds[p] +=
+                  coefficients[p] / point_weights[o] * state.multiplier[o][0];
+      }
   }
 
 
 
   template <int dim>
-  std::vector<double>
-  ContactFace<dim>::bounds_by_id(const double t) const
-  {
-    if (constant_bounds_by_id)
-      return *constant_bounds_by_id;
-    std::vector<std::size_t> first{0};
-    for (const auto &ids : boundary_ids)
-      first.push_back(first.back() + ids.size());
-    std::vector<double> result(first.back(), 0.);
-    for (const auto &[id, condition] : space.scene.boundary)
-      if (condition.has_friction())
-        {
-          const types::boundary_id  this_id = id;
-          const std::vector<double> part =
-            sum_shares([this_id, t](const Sample &sample) {
-              return sample.condition->id == this_id ?
-                       sample.condition->bound(sample.x, t) :
-                       0.;
-            });
-          for (unsigned int p = 0; p < part.size(); ++p)
-            for (unsigned int i = 0; i < boundary_ids[p].size(); ++i)
-              if (boundary_ids[p][i] == id)
-                result[first[p] + i] = part[p];
-        }
-    if (!bounds_vary && space.scene.parameters.solver.reuse_unchanged)
-      constant_bounds_by_id = result;
-    return result;
-  }
-
-
-
-  template <int dim>
-  Vector<double>
+  std::vector<Tensor<1, 2>>
   ContactFace<dim>::foundation_step(const double t_old, const double t) const
   {
-    const ContactLayout &face = layout();
     if (!space.scene.has_moving_foundation())
       return {};
-    const std::vector<double> weights = bounds_by_id(t);
-    Vector<double>            result(face.n_dofs());
-    std::size_t               k = 0; // among the weights
-    for (unsigned int n = 0; n < face.n_nodes(); ++n)
+    const ContactLayout      &face = layout();
+    std::vector<Tensor<1, 2>> result(face.points.size());
+    for (unsigned int p = 0; p < result.size(); ++p)
       {
-        const Node &node = nodes[n];
-        // The motion of an id in face components.
-        const auto motion = [&](const types::boundary_id id) {
-          const BoundaryCondition<dim> &condition = space.scene.boundary.at(id);
-          const Tensor<1, dim>          step      = transpose(node.directions) *
-                                      (condition.sliding(node.position, t) -
-                                       condition.sliding(node.position, t_old));
-          Tensor<1, 3> on_face;
-          for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
-            on_face[i] = step[node.components[i]];
-          return on_face;
-        };
-
-        // Least squares of M_p x = M_p w over the points p and their ids.
-        SymmetricTensor<2, 3> matrix;
-        Tensor<1, 3>          right_side, first_motion;
-        unsigned int          n_motions = 0;
-        for (unsigned int p = face.first_point[n]; p < face.first_point[n + 1];
-             ++p)
-          for (const types::boundary_id id : boundary_ids[p])
-            {
-              const double weight = weights[k++];
-              if (weight == 0. || face.points[p].is_obstacle)
-                continue;
-              const ContactLayout::Point &point = face.points[p];
-              const Tensor<1, 3>          w     = motion(id);
-              if (n_motions++ == 0)
-                first_motion = w;
-              right_side += weight * node_force(point, slip(point, w));
-              for (unsigned int row = 0; row < point.n_tangents; ++row)
-                matrix += weight * symmetrize(outer_product(point.map[row],
-                                                            point.map[row]));
-            }
-        Tensor<1, 3> x = first_motion;
-        if (n_motions > 1)
-          {
-            // The change against one of them, of least norm: directions that
-            // no point sees drop out, and equal motions are met exactly.
-            right_side -= matrix * first_motion;
-            const auto modes = eigenvectors(matrix);
-            for (const auto &[value, mode] : modes)
-              if (value > 1e-12 * modes[0].first)
-                x += (mode * right_side / value) * mode;
-          }
-        face.set_node_values(x, n, result);
+        // All pieces of a point of friction move alike, see make_nodal_frame().
+        const BoundaryCondition<dim> &condition =
+          space.scene.boundary.at(boundary_ids[p].front());
+        if (face.points[p].is_obstacle || !condition.foundation_motion)
+          continue;
+        const unsigned int   n    = face.points[p].node;
+        const Node          &node = nodes[n];
+        const Tensor<1, dim> step = transpose(node.directions) *
+                                    (condition.sliding(node.position, t) -
+                                     condition.sliding(node.position, t_old));
+        Tensor<1, 3> on_face;
+        for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+          on_face[i] = step[node.components[i]];
+        // The slip is what is left of the tangential displacement P x where
+        // other conditions hold a part of x: map^T map = P^T P, and of a w that
+        // is tangential itself (map map^T)^{-1} map w.
+        result[p] = nearest_multiplier(face.points[p], on_face);
       }
     return result;
   }

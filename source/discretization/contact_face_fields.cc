@@ -42,26 +42,18 @@ namespace Viscoplastic
 
   template <int dim>
   std::vector<Tensor<1, 2>>
-  ContactFace<dim>::slips(const Vector<double> &change) const
+  ContactFace<dim>::slips(
+    const DistributedVector         &change,
+    const std::vector<Tensor<1, 2>> &foundation_step) const
   {
     const ContactLayout      &face = layout();
+    const Vector<double>      x    = face_restriction.gather(change);
     std::vector<Tensor<1, 2>> result;
     for (const auto &point : face.points)
-      result.push_back(slip(point, face.node_values(change, point.node)));
+      result.push_back(slip(point, face.node_values(x, point.node)));
+    for (unsigned int p = 0; p < foundation_step.size(); ++p)
+      result[p] -= foundation_step[p];
     return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<Tensor<1, 2>>
-  ContactFace<dim>::slips(const DistributedVector &change,
-                          const Vector<double>    &foundation_step) const
-  {
-    Vector<double> x = face_restriction.gather(change);
-    if (foundation_step.size() > 0)
-      x -= foundation_step;
-    return slips(x);
   }
 
 
@@ -76,11 +68,11 @@ namespace Viscoplastic
       return {};
     DistributedVector in_frames = space.owned_vector();
     space.to_frames(velocity, in_frames);
-    Vector<double> carried;
+    std::vector<Tensor<1, 2>> carried;
     if (t > t_old)
       carried = foundation_step(t_old, t);
-    if (carried.size() > 0)
-      carried /= t - t_old;
+    for (Tensor<1, 2> &rate : carried)
+      rate /= t - t_old;
     std::vector<double> result;
     for (const Tensor<1, 2> &rate : slips(in_frames, carried))
       result.push_back(stable_norm(rate));
@@ -103,14 +95,18 @@ namespace Viscoplastic
         if (point_weights[p] == 0. ||
             (of_friction_alone && face.points[p].is_obstacle))
           continue;
-        // Obstacles along the same normal share their area.
-        double area = point_weights[p];
-        if (const auto &point = face.points[p]; point.is_obstacle)
-          for (unsigned int o = face.first_obstacle(point.node);
-               o < face.first_point[point.node + 1];
-               ++o)
-            if (o != p && (face.points[o].map[0] - point.map[0]).norm() < 1e-10)
-              area += point_weights[o];
+        // Points along the same normal share their area.
+        double      area  = point_weights[p];
+        const auto &point = face.points[p];
+        for (unsigned int o = face.first_point[point.node];
+             o < face.first_point[point.node + 1];
+             ++o)
+          if (const auto &other = face.points[o];
+              o != p && other.is_obstacle == point.is_obstacle &&
+              other.n_tangents == point.n_tangents &&
+              (other.map[0] - point.map[0]).norm() < 1e-10 &&
+              (other.map[1] - point.map[1]).norm() < 1e-10)
+            area += point_weights[o];
         Tensor<1, dim> traction = cartesian(p, state.multiplier[p]) / area;
         // A pressure is along the normal, also where other conditions hold a
         // part of it and carry that.
@@ -196,9 +192,7 @@ namespace Viscoplastic
   template Tensor<1, dim> ContactFace<dim>::resultant(const ContactState &,  \
                                                       const bool) const;     \
   template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                \
-    const Vector<double> &) const;                                           \
-  template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                \
-    const DistributedVector &, const Vector<double> &) const;                \
+    const DistributedVector &, const std::vector<Tensor<1, 2>> &) const;     \
   template std::vector<double> ContactFace<dim>::slip_rates(                 \
     const DistributedVector &, const double, const double) const;            \
   template DistributedVector ContactFace<dim>::density(const ContactState &, \

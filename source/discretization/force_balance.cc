@@ -4,6 +4,9 @@
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 
+#include <cmath>
+#include <limits>
+
 namespace Viscoplastic
 {
   namespace
@@ -72,6 +75,33 @@ namespace Viscoplastic
 
 
   template <int dim>
+  EnergyRounding
+  energy_rounding(const AdmissibleSpace<dim> &space,
+                  const DistributedMatrix    &matrix,
+                  const Forces<dim>          &forces)
+  {
+    const auto          square = [](const double x) { return x * x; };
+    std::vector<double> sums(2, 0.);
+    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+      {
+        const double stiffness =
+          matrix.diag_element(space.owned.nth_index_in_set(i));
+        if (!(stiffness > 0.))
+          continue;
+        sums[0] += stiffness * square(forces.u.begin()[i]);
+        if (!space.excluded()[i])
+          sums[0] += square(forces.load.values.begin()[i]) / stiffness;
+        sums[1] += square(forces.elastic.begin()[i]) / stiffness;
+      }
+    Utilities::MPI::sum(sums, space.communicator, sums);
+    const double size =
+      100. * std::numeric_limits<double>::epsilon() * std::sqrt(sums[0]);
+    return {size, std::sqrt(sums[1]) <= size};
+  }
+
+
+
+  template <int dim>
   std::map<types::boundary_id, Tensor<1, dim>>
   reactions(const AdmissibleSpace<dim> &space, const Forces<dim> &forces)
   {
@@ -128,20 +158,15 @@ namespace Viscoplastic
                  const ContactState      &old_state,
                  const ContactState      &state,
                  const DistributedVector &change,
-                 const Vector<double>    &foundation_step,
                  const double             max_displacement)
   {
     FrictionIdentities              result;
-    const std::vector<Tensor<1, 2>> slips = face.slips(change, foundation_step);
-    if (foundation_step.size() > 0)
-      {
-        const std::vector<Tensor<1, 2>> carried = face.slips(foundation_step);
-        for (unsigned int p = 0; p < carried.size(); ++p)
-          if (!face.layout().points[p].is_obstacle)
-            result.foundation_work -=
-              0.5 * (old_state.multiplier[p] + state.multiplier[p]) *
-              carried[p];
-      }
+    const std::vector<Tensor<1, 2>> slips =
+      face.slips(change, state.foundation_step);
+    for (unsigned int p = 0; p < slips.size(); ++p)
+      result.foundation_work -=
+        0.5 * (old_state.multiplier[p] + state.multiplier[p]) *
+        state.foundation_step[p];
     for (unsigned int p = 0; p < slips.size(); ++p)
       {
         const ContactLayout &layout = face.layout();
@@ -240,10 +265,13 @@ namespace Viscoplastic
 
 
 #define INSTANTIATE(dim)                                                       \
-  template Forces<dim> evaluate_forces<dim>(const StressSpace<dim> &,          \
-                                            const DistributedMatrix &,         \
-                                            Load<dim>,                         \
-                                            const State<dim> &);               \
+  template Forces<dim>    evaluate_forces<dim>(const StressSpace<dim> &,       \
+                                            const DistributedMatrix &,      \
+                                            Load<dim>,                      \
+                                            const State<dim> &);            \
+  template EnergyRounding energy_rounding<dim>(const AdmissibleSpace<dim> &,   \
+                                               const DistributedMatrix &,      \
+                                               const Forces<dim> &);           \
   template std::map<types::boundary_id, Tensor<1, dim>> reactions<dim>(        \
     const AdmissibleSpace<dim> &, const Forces<dim> &);                        \
   template double             external_work<dim>(const AdmissibleSpace<dim> &, \
@@ -258,7 +286,6 @@ namespace Viscoplastic
                                                   const ContactState &,        \
                                                   const ContactState &,        \
                                                   const DistributedVector &,   \
-                                                  const Vector<double> &,      \
                                                   const double);
 
   INSTANTIATE(2)

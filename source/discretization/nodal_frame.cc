@@ -53,6 +53,35 @@ namespace Viscoplastic
 
 
 
+    /// Whether the foundations of two pieces that leave the same slip at a node
+    /// move alike there.
+    template <int dim>
+    bool
+    move_alike(const NodalFrame<dim>        &frame,
+               const BoundaryCondition<dim> &a,
+               const BoundaryCondition<dim> &b)
+    {
+      if (!a.foundation_motion && !b.foundation_motion)
+        return true;
+      if (!a.foundation_motion || !b.foundation_motion ||
+          !a.foundation_motion->is_written_as(*b.foundation_motion))
+        return false;
+      // The same motion along pieces at an angle is the same slip if each piece
+      // leaves as much of each free direction.
+      std::array<bool, dim> is_free;
+      is_free.fill(true);
+      for (unsigned int i = 0; i < frame.n_fixed; ++i)
+        is_free[frame.fixed[i]] = false;
+      for (unsigned int i = 0; i < dim; ++i)
+        if (const auto e = column(frame.directions, i);
+            is_free[i] &&
+            (tangential(e, a.normal) - tangential(e, b.normal)).norm() > 1e-10)
+          return false;
+      return true;
+    }
+
+
+
     /**
      * The friction point of a piece with normal @p nu at a node with the given
      * frame; without tangents if the other conditions leave no slip.
@@ -220,7 +249,8 @@ namespace Viscoplastic
           frame.fixed[i] = i;
       }
 
-    std::vector<SymmetricTensor<2, dim>> forms;
+    std::vector<SymmetricTensor<2, dim>>        forms;
+    std::vector<const BoundaryCondition<dim> *> first_of_point;
     for (const auto *condition : conditions)
       if (condition->has_friction())
         {
@@ -229,15 +259,19 @@ namespace Viscoplastic
             make_plane(frame, condition->normal, condition->id, form);
           if (plane.n_tangents == 0)
             continue;
-          // Pieces with the same slip share one point.
+          // Pieces with the same slip share one point, if it is slip against
+          // the same foundation.
           unsigned int p = 0;
-          while (p < forms.size() && (forms[p] - form).norm() > 1e-10)
+          while (p < forms.size() &&
+                 ((forms[p] - form).norm() > 1e-10 ||
+                  !move_alike(frame, *first_of_point[p], *condition)))
             ++p;
           if (p < forms.size())
             frame.planes[p].boundary_ids.push_back(condition->id);
           else
             {
               forms.push_back(form);
+              first_of_point.push_back(condition);
               frame.planes.push_back(plane);
             }
         }

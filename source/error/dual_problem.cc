@@ -10,6 +10,10 @@ namespace Viscoplastic
   {
     /// Of the dual solution in the energy norm: an estimate needs no more.
     constexpr double dual_tolerance = 1e-3;
+    /// A spring that many times as stiff as its node holds it as well as an
+    /// estimate needs. In short steps rho/|s| is beyond all measure, and the
+    /// preconditioner is not made anew for it.
+    constexpr double stiffest_spring = 1. / dual_tolerance;
   } // namespace
 
 
@@ -41,7 +45,10 @@ namespace Viscoplastic
     switch (quantity.kind)
       {
         case QuantityOfInterest::Kind::friction_force:
-          return discretization.face->resultant(state.contact)[d];
+        case QuantityOfInterest::Kind::contact_force:
+          return discretization.face->resultant(
+            state.contact,
+            quantity.kind == QuantityOfInterest::Kind::contact_force)[d];
         case QuantityOfInterest::Kind::friction_dissipation:
           {
             const ContactState  &contact = state.contact;
@@ -120,7 +127,10 @@ namespace Viscoplastic
             w.begin()[first + frame.fixed[i]] = value[i];
         }
     const ContactFace<dim> *face = discretization.slipping_face();
-    if (quantity.kind == QuantityOfInterest::Kind::friction_force &&
+    const bool              is_contact_force =
+      quantity.kind == QuantityOfInterest::Kind::contact_force;
+    if ((quantity.kind == QuantityOfInterest::Kind::friction_force ||
+         is_contact_force) &&
         face != nullptr)
       {
         DistributedVector everywhere = space.owned_vector(),
@@ -131,20 +141,23 @@ namespace Viscoplastic
         ghosted = everywhere;
         space.to_frames(ghosted, everywhere);
         Vector<double> on_face = face->restriction().gather(everywhere);
-        // Along obstacles there is no friction.
+        // Along obstacles there is no friction, and contact only there.
         const ContactLayout &layout = face->layout();
         for (unsigned int n = 0; n < layout.n_nodes(); ++n)
-          for (unsigned int p = layout.first_obstacle(n);
-               p < layout.first_point[n + 1];
-               ++p)
-            {
-              const Tensor<1, 3> &normal = layout.points[p].map[0];
-              const Tensor<1, 3>  here   = layout.node_values(on_face, n);
-              layout.set_node_values(here - (normal * here) /
-                                              normal.norm_square() * normal,
-                                     n,
-                                     on_face);
-            }
+          {
+            const Tensor<1, 3> all  = layout.node_values(on_face, n);
+            Tensor<1, 3>       rest = all;
+            for (unsigned int p = layout.first_obstacle(n);
+                 p < layout.first_point[n + 1];
+                 ++p)
+              {
+                const Tensor<1, 3> &normal = layout.points[p].map[0];
+                rest -= (normal * rest) / normal.norm_square() * normal;
+              }
+            layout.set_node_values(is_contact_force ? all - rest : rest,
+                                   n,
+                                   on_face);
+          }
         face->restriction().set(on_face, w);
       }
     return w;
@@ -205,8 +218,9 @@ namespace Viscoplastic
         const Vector<double> no_force(face.n_dofs());
         Vector<double>       change(face.n_dofs());
         solver.begin(load, dual.w);
-        solver.set_truncation(make_truncation(face, linear, inverse_diagonal),
-                              /* may_rebuild = */ false);
+        solver.set_truncation(
+          make_truncation(face, linear, inverse_diagonal, stiffest_spring),
+          /* may_rebuild = */ false);
         solver.correct(no_force, dual_tolerance, change);
         solver.search_terms(change);
         solver.take_step(1.);

@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/error/memory_loss.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 #include <viscoplastic_contact/mesh/marking_threshold.h>
+#include <viscoplastic_contact/mesh/mesh_refinement.h>
 
 #include <cmath>
 
@@ -145,7 +146,7 @@ namespace Viscoplastic
       if (family.squared_loss > threshold)
         for (const auto &child : family.parent->child_iterators())
           child->clear_coarsen_flag();
-    triangulation.prepare_coarsening_and_refinement();
+    prepare_mesh_change(triangulation);
   }
 
 

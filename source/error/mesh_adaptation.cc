@@ -3,6 +3,7 @@
 #include <viscoplastic_contact/error/mesh_adaptation.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 #include <viscoplastic_contact/mesh/marking_threshold.h>
+#include <viscoplastic_contact/mesh/mesh_refinement.h>
 
 #include <cmath>
 #include <limits>
@@ -180,7 +181,7 @@ namespace Viscoplastic
     if (Utilities::MPI::sum(static_cast<double>(n_refined), comm) > allowed)
       limit_refinement(triangulation, squared_estimate, allowed);
 
-    triangulation.prepare_coarsening_and_refinement();
+    prepare_mesh_change(triangulation);
     if (limit_coarsening)
       limit_coarsening();
     if (is_worth_it(triangulation, squared_estimate, parameters.smallest_share))
@@ -559,11 +560,11 @@ namespace Viscoplastic
         face.add_computed_bounds(state.t, contact, contact.bound, rates);
       }
     discretization.space.to_frames(state.velocity, velocity);
-    Vector<double> carried = face.foundation_step(state.t - state.k, state.t);
-    if (carried.size() > 0)
-      carried /= state.k;
-    const auto   slip_rates = face.slips(velocity, carried);
-    const double max_speed  = velocity.linfty_norm();
+    auto       slip_rates = face.slips(velocity);
+    const auto carried    = face.foundation_step(state.t - state.k, state.t);
+    for (unsigned int p = 0; p < carried.size(); ++p)
+      slip_rates[p] -= carried[p] / state.k;
+    const double max_speed = velocity.linfty_norm();
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
         const double bound      = contact.bound[p];

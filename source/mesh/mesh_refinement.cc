@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
@@ -148,10 +149,114 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    enum class Mark : unsigned int
+    {
+      stays,
+      refined,
+      coarsened
+    };
+
+    template <class Cell>
+    Mark
+    mark_of(const Cell &cell)
+    {
+      return cell->refine_flag_set()  ? Mark::refined :
+             cell->coarsen_flag_set() ? Mark::coarsened :
+                                        Mark::stays;
+    }
+
+
+
+    /// Clear the flags of owned families that are not to go as a whole. Ranks
+    /// own siblings together.
+    template <int dim>
+    void
+    keep_incomplete_families(
+      parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned() && cell->coarsen_flag_set())
+          {
+            bool all = cell->level() > 0;
+            if (all)
+              for (const auto &sibling : cell->parent()->child_iterators())
+                all &= sibling->is_active() && sibling->coarsen_flag_set();
+            if (!all)
+              cell->clear_coarsen_flag();
+          }
+    }
+
+
+
+    /// Give ghosts the flags that their owners have set. Collective.
+    template <int dim>
+    void
+    exchange_flags(parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      using Mesh         = parallel::distributed::Triangulation<dim>;
+      using CellIterator = typename Mesh::active_cell_iterator;
+      for (const CellIterator &cell : triangulation.active_cell_iterators())
+        if (!cell->is_locally_owned())
+          {
+            cell->clear_refine_flag();
+            cell->clear_coarsen_flag();
+          }
+      GridTools::exchange_cell_data_to_ghosts<unsigned int, Mesh>(
+        triangulation,
+        [](const CellIterator &cell) {
+          return static_cast<unsigned int>(mark_of(cell));
+        },
+        [](const CellIterator &cell, const unsigned int &mark) {
+          if (mark == static_cast<unsigned int>(Mark::refined))
+            cell->set_refine_flag();
+          else if (mark == static_cast<unsigned int>(Mark::coarsened))
+            // The whole family, some of which may be out of sight.
+            for (const auto &sibling : cell->parent()->child_iterators())
+              if (sibling->is_active() && !sibling->is_locally_owned())
+                sibling->set_coarsen_flag();
+        });
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  prepare_mesh_change(parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    const auto marks = [&triangulation] {
+      std::vector<Mark> result;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          result.push_back(mark_of(cell));
+      return result;
+    };
+    // Ever fewer families go and ever more cells are refined, until all ranks
+    // agree.
+    keep_incomplete_families(triangulation);
+    bool any_change = true;
+    while (any_change)
+      {
+        const std::vector<Mark> before = marks();
+        exchange_flags(triangulation);
+        triangulation.prepare_coarsening_and_refinement();
+        any_change = Utilities::MPI::max(marks() != before ? 1 : 0,
+                                         triangulation.get_communicator()) == 1;
+      }
+  }
+
+
+
   template void
   refine_mesh(const GeometryParameters &,
               parallel::distributed::Triangulation<2> &);
   template void
   refine_mesh(const GeometryParameters &,
               parallel::distributed::Triangulation<3> &);
+  template void
+  prepare_mesh_change(parallel::distributed::Triangulation<2> &);
+  template void
+  prepare_mesh_change(parallel::distributed::Triangulation<3> &);
 } // namespace Viscoplastic

@@ -131,17 +131,19 @@ namespace Viscoplastic
                       "first step of each phase, `Geometry' the first mesh. "
                       "0: meshes and steps are those of the other entries.",
                       Patterns::Double(0., 1.));
-    prm.add_parameter("Quantity",
-                      quantity,
-                      "A column of statistics.csv whose error is estimated by "
-                      "duality, too: the work of friction, or a component of "
-                      "the friction force, of the reaction of a boundary, or "
-                      "of the displacement of one of `Output/Points', as in "
-                      "`friction_dissipation', `friction_force_x', "
-                      "`reaction_1_y', `point0_x'. `Tolerance' is that of this "
-                      "quantity then, relative to its largest value, and "
-                      "meshes are refined where it feels their errors. "
-                      "Empty: the energy norm.");
+    prm.add_parameter(
+      "Quantity",
+      quantity,
+      "A column of statistics.csv whose error is estimated by "
+      "duality, too: the work of friction, or a component of "
+      "the friction force, of the force of contact that opens, "
+      "of the reaction of a boundary, or of the displacement of "
+      "one of `Output/Points', as in `friction_dissipation', "
+      "`friction_force_x', `contact_force_y', "
+      "`reaction_1_y', `point0_x'. `Tolerance' is that of this "
+      "quantity then, relative to its largest value, and "
+      "meshes are refined where it feels their errors. "
+      "Empty: the energy norm.");
     prm.add_parameter("Error bar",
                       error_estimator,
                       "Estimate the error of every step in the energy norm: "

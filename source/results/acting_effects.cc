@@ -36,19 +36,29 @@ namespace Viscoplastic
         const ContactState &state   = step.end.state.contact;
         bool                touches = false, is_open = false;
         for (unsigned int p = 0; p < state.n_points(); ++p)
-          if (discretization.face->layout().points[p].is_obstacle)
-            (state.multiplier[p][0] > 0. ? touches : is_open) = true;
+          if (const auto &point = discretization.face->layout().points[p];
+              point.is_obstacle)
+            // A pressure that is nothing beside those of the body is one.
+            (state.multiplier[p][0] > 0. ||
+                 (point.gives_way() && state.penetration(p) > 0.) ?
+               touches :
+               is_open) = true;
         // A body that nothing else holds needs it even if no load presses.
         has_touched = has_touched ||
                       discretization.space.is_held_by_contact() ||
                       is_so(touches);
         has_opened = has_opened || is_so(is_open);
+        if (!has_touched && !closes_between_nodes)
+          closes_between_nodes =
+            discretization.face->closes_between_nodes(step.time_step.t,
+                                                      step.end.forces.u);
       }
+    const auto &steps = step.end.state.contact.foundation_step;
     if (!foundation_has_moved && discretization.scene().has_moving_foundation())
       foundation_has_moved =
-        is_so(std::any_of(step.foundation_step.begin(),
-                          step.foundation_step.end(),
-                          [](const double d) { return d != 0.; }));
+        is_so(std::any_of(steps.begin(), steps.end(), [](const auto &w) {
+          return w != Tensor<1, 2>();
+        }));
   }
 
 
@@ -96,7 +106,11 @@ namespace Viscoplastic
         has_computed_pressure |= pair.second.has_computed_pressure();
         gives_way |= pair.second.gives_way();
       }
-    if (scene.has_unilateral_contact() && !has_touched && !has_given_bound)
+    if (scene.has_unilateral_contact() && !has_touched && closes_between_nodes)
+      result.push_back("unilateral contact has never acted: the gap has closed "
+                       "between the nodes, but not at them; the mesh is too "
+                       "coarse for it ('Geometry/Boundary refinements').");
+    else if (scene.has_unilateral_contact() && !has_touched && !has_given_bound)
       result.push_back(
         "unilateral contact has never acted: nothing has touched "
         "the foundation, and 'Role' = free gives the same for "

@@ -117,7 +117,6 @@ namespace Viscoplastic
                                          old.state.contact,
                                          state.contact,
                                          change,
-                                         step.foundation_step,
                                          result.max_displacement);
         result.friction_force = d.face->resultant(state.contact);
         if (d.face->has_obstacles())
@@ -159,8 +158,11 @@ namespace Viscoplastic
             result.largest_force <= 1e-6 * cancels)
           result.force_scale = cancels;
         DistributedVector moves(forces.u);
-        if (step.foundation_step.size() > 0)
-          d.face->restriction().add(1., step.foundation_step, moves);
+        if (d.face)
+          d.face->restriction().add(1.,
+                                    face_motion(d.face->layout(),
+                                                state.contact.foundation_step),
+                                    moves);
         result.rounding_of_forces = force_of_rounding(d, moves);
         if (result.largest_force <= result.rounding_of_forces)
           result.force_scale =

@@ -29,10 +29,32 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  ViscoplasticContact<dim>::estimate_is_rounding() const
+  {
+    const EnergyRounding rounding = energy_rounding(discretization->space,
+                                                    discretization->matrix,
+                                                    accepted.forces);
+    if (parameters.refinement.strategy == RefinementStrategy::kelly)
+      return rounding.is_all_of_the_strain;
+    const double energy_norm =
+      std::sqrt(2. * std::max(0., accepted.forces.strain_energy));
+    return accepted.space_estimate.total <=
+           std::max(10. *
+                      std::max(1e-10, parameters.solver.strict_tolerance()) *
+                      energy_norm,
+                    rounding.size);
+  }
+
+
+
+  template <int dim>
   void
   ViscoplasticContact<dim>::adapt_mesh()
   {
-    TimerOutput::Scope    phase(timer, "adaptation");
+    TimerOutput::Scope phase(timer, "adaptation");
+    if (estimate_is_rounding())
+      return;
     const Vector<double> &squared_indicators =
       accepted.space_estimate.squared_indicators;
     if (budget)
@@ -45,13 +67,6 @@ namespace Viscoplastic
           change_mesh();
         return;
       }
-    // What rounding and iterations leave of an estimate, as in uniform states,
-    // says nothing about the mesh, and differs between numbers of ranks.
-    if (parameters.refinement.strategy == RefinementStrategy::residual &&
-        total_estimate(squared_indicators, triangulation) <=
-          10. * std::max(1e-10, time_stepper->tolerance(accepted)) *
-            std::sqrt(2. * std::max(0., accepted.forces.strain_energy)))
-      return;
     if (mark_cells(triangulation, squared_indicators, refinement_limits()))
       change_mesh();
   }
@@ -223,6 +238,8 @@ namespace Viscoplastic
 
   template RefinementParameters
   ViscoplasticContact<2>::refinement_limits() const;
+  template bool
+  ViscoplasticContact<2>::estimate_is_rounding() const;
   template void
   ViscoplasticContact<2>::adapt_mesh();
   template bool
@@ -233,6 +250,8 @@ namespace Viscoplastic
                                             const Vector<double> &);
   template RefinementParameters
   ViscoplasticContact<3>::refinement_limits() const;
+  template bool
+  ViscoplasticContact<3>::estimate_is_rounding() const;
   template void
   ViscoplasticContact<3>::adapt_mesh();
   template bool

@@ -20,15 +20,20 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           known.push_back({kind, i, d, name + '_' + "xyz"[d]});
       };
-    bool has_friction = false;
+    bool has_friction = false, opens = false;
     for (const auto &[id, condition] : boundary)
-      has_friction |= condition.has_friction();
+      {
+        has_friction |= condition.has_friction();
+        opens |= condition.is_unilateral();
+      }
     if (has_friction)
       {
         add(Kind::friction_force, 0, "friction_force");
         known.push_back(
           {Kind::friction_dissipation, 0, 0, "friction_dissipation"});
       }
+    if (opens)
+      add(Kind::contact_force, 0, "contact_force");
     for (const auto &[id, condition] : boundary)
       if (condition.constrains())
         add(Kind::reaction, id, "reaction_" + std::to_string(id));

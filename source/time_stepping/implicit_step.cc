@@ -395,7 +395,7 @@ namespace Viscoplastic
         DistributedVector increment(base);
         increment -= problem.old_u();
         slips        = d.face->slips(increment, problem.foundation_step);
-        slip_changes = d.face->slips(change, {});
+        slip_changes = d.face->slips(change);
       }
     const auto derivative = [&](const double              s,
                                 const IrreversibleStress &z_there) {

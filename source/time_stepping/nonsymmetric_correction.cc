@@ -222,10 +222,8 @@ namespace Viscoplastic
         const ContactLayout &layout = face->layout();
         DistributedVector    change(to.u);
         change -= problem.old_u();
-        Vector<double> x = face->restriction().gather(change);
-        if (problem.foundation_step.size() > 0)
-          x -= problem.foundation_step;
-        Vector<double> stop(x.size());
+        const Vector<double> x = face->restriction().gather(change);
+        Vector<double>       stop(x.size());
         for (unsigned int p = 0; p < layout.points.size(); ++p)
           {
             const ContactLayout::Point &point = layout.points[p];
@@ -234,7 +232,7 @@ namespace Viscoplastic
             if (to.contact.sticks[p] || point.gives_way())
               continue;
             const Tensor<1, 2> before = s;
-            s                         = slip(point, values);
+            s                         = to.contact.slip_with(point, p, values);
             const auto stop_by        = [&](const Tensor<1, 3> &change) {
               layout.set_node_values(layout.node_values(stop, point.node) +
                                        change,
@@ -255,9 +253,11 @@ namespace Viscoplastic
               continue;
             if (before * s <= 0. && layout.has_plain_friction(point.node))
               {
-                stop_by(layout.n_node_points(point.node) == 1 ?
-                          -1. * values :
-                          -1. * motion_with_slip(point, s));
+                stop_by(
+                  layout.n_node_points(point.node) == 1 ?
+                    motion_with_slip(point, to.contact.foundation_step[p]) -
+                      values :
+                    -1. * motion_with_slip(point, s));
                 s = Tensor<1, 2>();
               }
             to.contact.sticks[p] = s.norm() == 0.;

@@ -277,8 +277,8 @@ namespace Viscoplastic
     const ContactFace<dim> &face = *discretization.face;
     DistributedVector       increment(u);
     increment -= problem.old_u();
-    const auto here   = face.slips(increment, problem.foundation_step);
-    const auto steps  = face.slips(motion, {});
+    const auto here   = face.slips(increment);
+    const auto steps  = face.slips(motion);
     double     result = std::numeric_limits<double>::max();
     for (unsigned int p = 0; p < here.size(); ++p)
       if (const ContactLayout::Point &point = face.layout().points[p];

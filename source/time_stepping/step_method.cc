@@ -110,6 +110,8 @@ namespace Viscoplastic
     state.contact         = old.contact;
     ContactState &contact = state.contact;
     contact.bound         = problem.bounds;
+    if (problem.foundation_step.size() > 0)
+      contact.foundation_step = problem.foundation_step;
     if (problem.bounds_follow_pressure)
       {
         contact.bound = problem.given_bounds;
@@ -161,8 +163,11 @@ namespace Viscoplastic
                   holds_at_rest(*discretization.face,
                                 old.state.contact,
                                 problem.bounds) &&
-                  (problem.foundation_step.size() == 0 ||
-                   problem.foundation_step.all_zero());
+                  std::all_of(problem.foundation_step.begin(),
+                              problem.foundation_step.end(),
+                              [](const Tensor<1, 2> &step) {
+                                return step == Tensor<1, 2>();
+                              });
     return Utilities::MPI::min(unchanged ? 1 : 0,
                                discretization.space.communicator) == 1;
   }

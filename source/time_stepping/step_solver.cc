@@ -82,8 +82,7 @@ namespace Viscoplastic
     u.add(std::min(problem.time_step.k, guess.k), velocity);
     if (d.face)
       {
-        const ContactLayout  &face            = d.face->layout();
-        const Vector<double> &foundation_step = problem.foundation_step;
+        const ContactLayout &face = d.face->layout();
         if (guess.contact.n_points() == problem.bounds.size())
           {
             contact       = guess.contact;
@@ -91,27 +90,28 @@ namespace Viscoplastic
           }
         else
           contact = ContactState(problem.bounds);
+        if (problem.foundation_step.size() > 0)
+          contact.foundation_step = problem.foundation_step;
         const auto &positions = d.face->restriction().positions();
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
           {
             const unsigned int begin    = face.first_dof[node],
                                p        = face.first_point[node],
                                obstacle = face.first_obstacle(node);
-            // The increment of the node relative to the foundation.
-            Tensor<1, 3> carried, x;
-            if (foundation_step.size() > 0)
-              carried = face.node_values(foundation_step, node);
+            // The increment of the node.
+            Tensor<1, 3> x;
             for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
               {
                 const unsigned int dof = positions[begin + i];
-                x[i] = u.begin()[dof] - old_u.begin()[dof] - carried[i];
+                x[i]                   = u.begin()[dof] - old_u.begin()[dof];
               }
             const bool sticks =
               p < obstacle && contact.sticks[p] && contact.bound[p] > 0.;
             if (sticks && obstacle == face.first_point[node + 1])
-              x = 0.;
+              x = motion_with_slip(face.points[p], contact.foundation_step[p]);
             else if (sticks && face.has_plain_friction(node))
-              x -= motion_with_slip(face.points[p], slip(face.points[p], x));
+              x -= motion_with_slip(face.points[p],
+                                    contact.slip_with(face.points[p], p, x));
             for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
               {
                 const Tensor<1, 3> &normal = face.points[o].map[0];
@@ -127,7 +127,7 @@ namespace Viscoplastic
               for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
                 {
                   const unsigned int dof = positions[begin + i];
-                  u.begin()[dof] = old_u.begin()[dof] + carried[i] + x[i];
+                  u.begin()[dof]         = old_u.begin()[dof] + x[i];
                 }
           }
       }
@@ -334,10 +334,14 @@ namespace Viscoplastic
     // would leave the range of numbers, another unit does. In a ramp that
     // begins like exp(-1/t) that is nothing unusual; a whole run of this kind
     // is refused (see Recorder::check_sizes()).
+    Vector<double> foundation_step;
+    if (problem.foundation_step.size() > 0)
+      foundation_step =
+        face_motion(discretization.face->layout(), problem.foundation_step);
     const Data   data{problem.old_u(),
                     problem.load.values,
                     right_side,
-                    problem.foundation_step};
+                    foundation_step};
     const double size = size_of(data, u);
     AssertThrow(!(size > largest_size),
                 ExcMessage(out_of_range("the size of loads and displacements "
@@ -365,6 +369,7 @@ namespace Viscoplastic
       for (unsigned int p = 0; p < contact.n_points(); ++p)
         {
           contact.bound[p] *= factor;
+          contact.foundation_step[p] *= factor;
           contact.slip[p] *= factor;
           contact.multiplier[p] *= factor;
         }
@@ -373,7 +378,6 @@ namespace Viscoplastic
                             load             = in_unit(data.load),
                             other_right_side = in_unit(right_side);
     const std::vector<double> bounds         = contact.bound;
-    Vector<double>            foundation_step(data.foundation_step);
     if (foundation_step.size() > 0)
       foundation_step /= unit;
     scale(1. / unit);
@@ -381,6 +385,8 @@ namespace Viscoplastic
       {old_u, load, other_right_side, foundation_step}, tolerance, u, contact);
     scale(unit);
     contact.bound = bounds;
+    if (problem.foundation_step.size() > 0)
+      contact.foundation_step = problem.foundation_step;
     report.duality_gap *= unit * unit;
     report.error *= unit;
     bulk_solver->set_rounding_error(unit * bulk_solver->rounding_error());
@@ -405,8 +411,6 @@ namespace Viscoplastic
         DistributedVector change(u);
         change -= data.old_u;
         Vector<double> increment = d.face->restriction().gather(change);
-        if (data.foundation_step.size() > 0)
-          increment -= data.foundation_step;
         // (3.20): the minimum of J is its solution.
         bulk_solver->begin(data.right_side, u);
         const double seconds_to_begin = timer.wall_time();

@@ -207,10 +207,8 @@ namespace Viscoplastic
         const State<dim> &state = accepted.state;
         problem.slip_rates =
           d.face->slip_rates(state.velocity, state.t - state.k, state.t);
-        problem.bounds = d.face->step_bounds(time_step.t,
-                                             u,
-                                             problem.foundation_step,
-                                             problem.slip_rates);
+        problem.bounds =
+          d.face->step_bounds(time_step.t, u, problem.slip_rates);
         if (d.face->has_computed_pressure() &&
             scene.parameters.solver.coulomb_pressure ==
               CoulombPressure::fixed_point)
@@ -283,7 +281,6 @@ namespace Viscoplastic
         else if (!scene.has_source()) // which jumps between steps
           step.end.rate = std::move(solution.end_rate);
       }
-    step.foundation_step = std::move(problem.foundation_step);
     return step;
   }
 
@@ -322,12 +319,11 @@ namespace Viscoplastic
       {
         DistributedVector change = end.forces.u;
         change -= accepted.forces.u;
-        turning =
-          turning_work(discretization.face->layout(),
-                       accepted.state.contact,
-                       state.contact,
-                       discretization.face->slips(change,
-                                                  step.foundation_step));
+        turning = turning_work(
+          discretization.face->layout(),
+          accepted.state.contact,
+          state.contact,
+          discretization.face->slips(change, state.contact.foundation_step));
       }
     error_estimator->assess(discretization.stress_space,
                             time_defect(step.is_implicit ?
@@ -344,11 +340,17 @@ namespace Viscoplastic
       quantity_estimator->assess(solver_of_elasticity().bulk(), accepted, end);
     const ErrorEstimate &estimate = end.errors;
     StepErrors           errors;
-    errors.indicator =
-      estimate.time_indicator + estimate.friction - accepted.errors.friction;
     errors.change =
       std::max(state.k * std::sqrt(std::max(0., estimate.velocity_square)),
                estimate.irreversible_change);
+    // What the iterations leave of both states changes G by up to r times as
+    // much, and is all that there is of a smaller change: no shorter step has
+    // less of it.
+    const double left = step.report.error + accepted.report.error;
+    if (errors.change > left)
+      errors.indicator =
+        std::max(0., estimate.time_indicator - 0.5 * step.stiffness() * left) +
+        estimate.friction - accepted.errors.friction;
     errors.size   = scene.parameters.error_control.has_tolerance() ?
                       estimate.energy_norm :
                       std::max(estimate.energy_norm, estimate.irreversible_norm);
@@ -358,8 +360,13 @@ namespace Viscoplastic
         const QuantityEstimate &quantity = estimate.quantity,
                                &before   = accepted.errors.quantity;
         errors.indicator *= quantity.dual_norm;
-        errors.change = std::abs(quantity.value - before.value);
+        // The body may move on while the quantity hardly changes, as after a
+        // change of the mesh.
+        const double share =
+          errors.size > 0. ? std::min(1., errors.change / errors.size) : 0.;
         errors.size   = std::abs(quantity.value);
+        errors.change = std::max(std::abs(quantity.value - before.value),
+                                 share * errors.size);
         errors.before = before.time + before.friction;
       }
     if (!std::isfinite(errors.indicator + errors.change + errors.size))

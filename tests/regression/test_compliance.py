@@ -297,5 +297,49 @@ class Refused(TestCase):
         self.assertIn(f"'{compliance}'", unused.stdout + unused.stderr)
 
 
+class Notes(TestCase):
+    """What is said of foundations that press by almost nothing, or too much."""
+
+    PRESSED = {
+        "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
+        "Boundary 0/Role": "free",
+        "Boundary 1/Role": "free",
+        "Boundary 2/Role": "contact",
+        "Boundary 2/Friction law": "none",
+        "Boundary 3/Role": "displacement",
+        "Boundary 3/Displacement": "0; -0.02*t",
+        "Time/Phases": "1: 4",
+    }
+
+    def pressed(self, law, check=True, **more):
+        more = {f"Boundary 2/{name.replace('_', ' ')}": more[name] for name in more}
+        scene = {**self.PRESSED, "Boundary 2/Contact law": law, **more}
+        return run("pressed", scene, text="", check=check)
+
+    def test_a_pressure_below_rounding(self):
+        ground = {"Compliance": 1, "Compliance_exponent": 20, "Gap": "0.01 + 0.001*x"}
+        result = self.pressed("normal compliance", **ground)
+        self.assertClose(result["max_penetration"][-1], 0.01, 1e-9)
+        self.assertNotIn("never acted", result.stdout)
+
+    def test_a_gap_that_closes_between_nodes(self):
+        """Nodes are at multiples of 1/2."""
+        for law in "unilateral", "normal compliance":
+            gap = "0.1 - 0.095*exp(-100*(x - 0.9)^2)"
+            more = {"Compliance": 1} if law != "unilateral" else {}
+            result = self.pressed(law, Gap=gap, **more)
+            self.assertEqual(result["contact_area"].max(), 0)
+            self.assertIn("closed between the nodes", result.stdout)
+            self.assertNotIn("free gives the same", result.stdout)
+        open_gap = self.pressed("unilateral", Gap=0.1)
+        self.assertIn("free gives the same", open_gap.stdout)
+
+    def test_a_stiffness_that_no_number_resolves(self):
+        gap = "0.01*(x - 1)^2"
+        result = self.pressed("normal compliance", check=False, Compliance=1e20, Gap=gap)
+        self.assertRefused(result, "times as stiff as the body", "its limit")
+        self.assertNotIn("raise", result.stderr)
+
+
 if __name__ == "__main__":
     main()

@@ -211,6 +211,82 @@ class Relativity(TestCase):
             )
 
 
+# conveyor_3d beside a wall that it rubs at, under a traction along both; the
+# pieces meet in an edge, whose nodes slip over two foundations.
+WALL = {
+    "Geometry/Arguments": "4, 4, 2 : 0, 0, 0 : 1, 1, 0.5 : true",
+    "Boundary 0/Role": "traction",
+    "Boundary 0/Traction": "0; 0.05*t; 0",
+    "Boundary 1/Role": "contact",
+    "Boundary 1/Friction law": "tresca",
+    "Boundary 1/Friction bound": 0.005,
+    "Boundary 4/Contact law": "unilateral",
+    "Boundary 4/Friction law": "coulomb",
+    "Boundary 4/Friction bound": "",
+    "Boundary 4/Friction coefficient": 0.3,
+    "Boundary 4/Foundation motion": "0; 0.2*t; 0",
+    "Boundary 4/Foundation displacement": "-0.01*t",
+    "Time/Phases": "1: 4",
+    "Output/Points": "1, 0, 0; 1, 0.5, 0",
+}
+
+
+class Neighbors(TestCase):
+    """Pieces that share nodes have a foundation each."""
+
+    def same(self, a, b, names):
+        for name in names + ("stored_energy", "external_work", "max_von_mises"):
+            scale = np.abs(b[name]).max()
+            self.assertClose(a[name], b[name], absolute=1e-9 * scale, what=name)
+
+    def test_one_that_touches_nothing_moves_nothing(self):
+        names = "point0_y", "point1_y", "friction_dissipation", "reaction_1_x"
+        far = {**WALL, "Boundary 4/Gap": 1, "Solver/Contact tolerance": 1e-12}
+        moving = run("conveyor_3d", far)
+        self.check_identities(moving)
+        self.assertGreater(moving["friction_dissipation"][-1], 0)
+        resting = run("conveyor_3d", {**far, "Boundary 4/Foundation motion": ""})
+        self.same(moving, resting, names)
+
+    def test_the_same_motion_in_other_words(self):
+        """Is one foundation in two pieces, in a plane and at an edge."""
+        names = "slip_area", "stick_area", "friction_dissipation"
+        names += "friction_force_x", "friction_force_y"
+        exact = {"Time/Phases": "0.5: 4", "Solver/Contact tolerance": 1e-12}
+        for more in (
+            {
+                "Geometry/Boundary ids": "if(z < 1e-6 && x < 0.5, 7, id)",
+                "Geometry/Boundary refinements": "7: 1",
+                "Geometry/Arguments": WALL["Geometry/Arguments"],
+                "Boundary 7/Role": "contact",
+                "Boundary 7/Friction law": "tresca",
+                "Boundary 7/Friction bound": "0.05*(1 + x)",
+                "Boundary 7/Foundation motion": "{0}; {1}; 0",
+            },
+            {
+                **WALL,
+                "Boundary 4/Contact law": "bilateral",
+                "Boundary 4/Friction law": "tresca",
+                "Boundary 4/Friction bound": 0.03,
+                "Boundary 4/Friction coefficient": "",
+                "Boundary 4/Foundation motion": "0; 0.2*sin(pi*t); 0",
+                "Boundary 1/Foundation motion": "0; {1}; 0",
+            },
+        ):
+            piece = [name for name, value in more.items() if "{1}" in str(value)][0]
+            words = (
+                ("0.2*(1 - cos(pi*t))", "0.2*sin(pi*t)"),
+                ("0.2 - 0.2*cos(pi*t)", "sin(pi*t)/5"),
+            )
+            one, two = (
+                run("conveyor_3d", {**more, **exact, piece: more[piece].format(*motion)})
+                for motion in words
+            )
+            self.check_identities(two)
+            self.assertGreater(two["friction_dissipation"][-1], 0)
+            self.same(two, one, names)
+
+
 class Glued(TestCase):
     """No slip whatever the force."""
 

@@ -98,6 +98,34 @@ class Estimated(TestCase):
         )
         self.check(coarse, fine, column, (0.5, 1.2))
 
+    def test_of_contact_that_opens(self):
+        """The force on a foundation, rigid or not; on a given mesh and to a
+        tolerance. What touches is taken as found."""
+        scene = {
+            "Material/Law": "elastic",
+            "Boundary 0/Role": "free",
+            "Boundary 0/Traction": "",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Friction law": "none",
+            "Boundary 2/Friction bound": "",
+            "Boundary 3/Role": "displacement",
+            "Boundary 3/Displacement": "0; -0.08*t",
+            "Time/Phases": "1: 2",
+        }
+        soft = {"Boundary 2/Contact law": "normal compliance", "Boundary 2/Compliance": 2}
+        column = "contact_force_y"
+        for more in {}, soft:
+            with self.subTest(more):
+                more = {**scene, **more}
+                coarse = run("slab", {**COARSE_SLAB, **of(column, **more)})
+                fine = run("slab", {**more, "Geometry/Global refinements": 2})
+                self.check(coarse, fine, column, (0.8, 1.2))
+                kept = run("slab", {**COARSE_SLAB, **of(column, 0.002, **more)})
+                error = (kept[column] - fine[column])[-1] / fine[column][-1]
+                self.assertLess(abs(error), 0.002)
+                self.assertGreater(abs(error), 0.0002)
+                self.assertGreater(kept["cells"][-1], kept["cells"][1])
+
     def test_of_time_steps(self):
         """Few steps on a fine mesh, until all of the face slips."""
         overrides = {"Geometry/Global refinements": 4}

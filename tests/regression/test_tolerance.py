@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs to a tolerance, which choose meshes and steps by themselves."""
 
+import numpy as np
+
 from harness import TestCase, main, run
 from test_error_bar import manufactured
 from test_restart import EVERY_STEP, Job, without_wall_times
@@ -104,6 +106,44 @@ class Meshes(TestCase):
             self.assertClose(
                 several["estimate_total"], self.slab["estimate_total"], 1e-5
             )
+
+
+class Rounding(TestCase):
+    """A first step that carries the body without strain."""
+
+    SCENE = {
+        "Geometry/Arguments": "6, 2 : 0, 0 : 2, 1 : true",
+        "Geometry/Global refinements": 1,
+        "Material/Young's modulus": 1e6,
+        "Material/Law": "elastic",
+        "Boundary 0/Role": "free",
+        "Boundary 1/Role": "free",
+        "Boundary 2/Role": "contact",
+        "Boundary 2/Contact law": "unilateral",
+        "Boundary 2/Gap": "0.003*(1 - t)",
+        "Boundary 2/Friction law": "coulomb",
+        "Boundary 2/Friction coefficient": 0.3,
+        "Boundary 3/Role": "displacement",
+        "Boundary 3/Displacement": "0.006*sin(2*t); -0.012*sin(2*t)",
+        "Time/Phases": "0.5: 8",
+        "Solver/Contact tolerance": 1e-11,
+        "Output/Fields every": 0,
+    }
+
+    def test_makes_no_mesh(self):
+        """What it leaves of an estimate does not, whatever chooses the mesh."""
+        for more in (
+            {"Error control/Tolerance": 0.2, "Mesh refinement/Cell budget": 500},
+            {"Mesh refinement/Strategy": "residual"},
+            {"Mesh refinement/Strategy": "kelly"},
+        ):
+            with self.subTest(more):
+                result = run("carried", {**self.SCENE, **more}, text="")
+                strains = result["max_von_mises"] > 1e-6 * result["max_von_mises"].max()
+                first = int(np.argmax(strains))
+                self.assertGreater(first, 1)
+                self.assertEqual(set(result["cells"][: first + 1]), {48})
+                self.assertNotEqual(result["cells"][-1], 48)
 
 
 class Kinks(TestCase):

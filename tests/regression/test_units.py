@@ -10,10 +10,21 @@ from pathlib import Path
 
 import numpy as np
 
-from harness import DEFECTS, EFFORT, SOURCE, TestCase, main, run, run_program
+from harness import (
+    DEFECTS,
+    EFFORT,
+    SOURCE,
+    TestCase,
+    as_prm,
+    main,
+    run,
+    run_program,
+    scene_file,
+)
 
 sys.path.insert(0, str(SOURCE / "contrib" / "python"))
 
+from test_contact_data import WALL
 from viscoplastic_contact.results import Results
 
 # Rock salt that creeps and slips, in metres, days and megapascals.
@@ -306,6 +317,232 @@ class Same(TestCase):
                 continue
             values, expected = several[column][1:], self.scene[column][1:]
             self.compare(column, values, expected, 1, column)
+
+
+# Columns and their units in words, as powers of stress, length and time; the
+# numbers of what is per thickness in plane strain are those of d = 2.
+POWERS_OF_WORDS = {
+    "": lambda d: (0, 0, 0),
+    "1": lambda d: (0, 0, 0),
+    "time": lambda d: (0, 0, 1),
+    "length": lambda d: (0, 1, 0),
+    "area": lambda d: (0, d - 1, 0),
+    "volume": lambda d: (0, d, 0),
+    "force": lambda d: (1, d - 1, 0),
+    "energy": lambda d: (1, d, 0),
+    "energy^½": lambda d: (0.5, d / 2, 0),
+    "(energy/time)^½": lambda d: (0.5, d / 2, -0.5),
+    "stress": lambda d: (1, 0, 0),
+    "stress × volume^½": lambda d: (1, d / 2, 0),
+}
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+
+
+class Scaled:
+    """A scene in other units: stress, length and time by these factors."""
+
+    def __init__(self, stress, length, time):
+        self.sizes = stress, length, time
+        self.sizes_of_names = {
+            **dict.fromkeys("xyz", length),
+            "t": time,
+            "v": length / time,
+            "sigma_eq": stress,
+            "p": stress,
+        }
+
+    def power(self, powers):
+        return float(np.prod([size**power for size, power in zip(self.sizes, powers)]))
+
+    def scene(self, described):
+        """The file that `--describe' prints for a scene, in which each entry has
+        its unit in the comment before it."""
+        lines, comment = [], ""
+        self.has_counts = "set Generator = subdivided" in described
+        exponent = {"n": 1.0, "m": 1.0}
+        # Where materials have numbers, the one without is not used.
+        if re.search(r"(?m)^subsection Material \d", described):
+            described = re.sub(r"(?ms)^subsection Material\n.*?^end\n", "", described)
+        for line in re.sub(r"\\\n *", "", described).splitlines():
+            word = line.strip()
+            if word.startswith("#"):
+                comment += " " + word[1:].strip()
+                continue
+            entry = re.fullmatch(r"set (.*?) =\s*(.*)", word)
+            if entry:
+                unit = re.search(r".*Unit: ([^.]*)\.", comment)
+                lines.append((entry[1], entry[2], unit[1] if unit else ""))
+            else:
+                lines.append((word, None, None))
+            comment = ""
+        text = []
+        for i, (name, value, unit) in enumerate(lines):
+            if value is None:
+                text.append(name)
+                continue
+            # The exponents stand beside what they are those of.
+            for other in ("Exponent", "Compliance exponent"):
+                near = [row[1] for row in lines[i : i + 3] if row[0] == other]
+                if near:
+                    exponent["n"] = exponent["m"] = float(near[0])
+            text.append(f"set {name} = {self.value(name, value, unit, exponent)}")
+        return "\n".join(text) + "\n"
+
+    def value(self, name, value, unit, exponent):
+        powers = {
+            "": (0, 0, 0),
+            "1": (0, 0, 0),
+            "seconds": (0, 0, 0),
+            "length": (0, 1, 0),
+            "time": (0, 0, 1),
+            "1/time": (0, 0, -1),
+            "stress": (1, 0, 0),
+            "stress times time": (1, 0, 1),
+            "force per volume": (1, -1, 0),
+            "1/(stress^n time)": (-exponent["n"], 0, -1),
+            "stress/length^m": (1, -exponent["m"], 0),
+        }[unit]
+        if not value or not unit:
+            return value
+        factor = self.power(powers)
+
+        def number(text):
+            return repr(float(text) * factor)
+
+        if name == "Phases":
+            return re.sub(rf"({NUMBER})( *:)", lambda m: number(m[1]) + m[2], value)
+        if name == "Arguments":
+            # Numbers of cells come first.
+            counts, colon, lengths = (
+                value.partition(":") if self.has_counts else ("", "", value)
+            )
+            return counts + colon + re.sub(NUMBER, lambda m: number(m[0]), lengths)
+        if name in ("Points", "Lines", "Translation", "Landing times", "Voigt matrix"):
+            return re.sub(NUMBER, lambda m: number(m[0]), value)
+        return "; ".join(self.expression(part, factor) for part in value.split(";"))
+
+    def expression(self, text, factor):
+        text = text.strip()
+        if not text or text == "free":
+            return text
+        if re.fullmatch(NUMBER, text):
+            return repr(float(text) * factor)
+        names = "|".join(self.sizes_of_names)
+        text = re.sub(
+            rf"\b({names})\b",
+            lambda match: f"({match[0]}/{self.sizes_of_names[match[0]]!r})",
+            text,
+        )
+        return text if factor == 1 else f"{factor!r}*({text})"
+
+
+# Scenes with all laws of materials, contact and friction, shortened. The
+# iterations go on to rounding: what is left of them is not in proportion.
+EXACT = {"Solver/Contact tolerance": 1e-12, "Output/Fields every": 0}
+ADAPTIVE = {"Mesh refinement/Every n steps": 2}
+SHORT = (
+    ("slab_adaptive", {"Time/Phases": "0.5: 4", **ADAPTIVE}),
+    ("pad_adaptive", {"Time/Phases": "0.2: 2", "Mesh refinement/Every n steps": 1}),
+    ("conveyor_2d", {"Time/Phases": "0.5: 3", "Material/Law": "zener"}),
+    ("conveyor_3d", {"Time/Phases": "0.5: 2"}),
+    ("partial_slip_2d", {"Time/Phases": "1: 1, 1.5: 2"}),
+    ("soft_ground_3d", {"Time/Phases": "0.5: 2"}),
+    ("perzyna_compression_2d", {"Time/Phases": "0.5: 4"}),
+    (
+        "perzyna_compression_2d",
+        {
+            "Material/Law": "norton",
+            "Material/norton/Rate factor": 3,
+            "Material/norton/Exponent": 2.5,
+            "Material/norton/Stress cap": 10,
+            "Step control/Tolerance": 0.03,
+            "Time/Scheme": "Heun",
+        },
+    ),
+    (
+        "perzyna_compression_2d",
+        {
+            "Material/Law": "parsed",
+            "Material/parsed/Strain rate": "sinh(sigma_eq)*exp(-p)/(1 + eps_eq)",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "0.5: 4",
+        },
+    ),
+    (
+        "slab_adaptive",
+        {"Error control/Tolerance": 0.2, "Time/Phases": "0.5: 4", "Output/Points": "0, 0"},
+    ),
+    (
+        "coulomb_block_3d",
+        {"Solver/Linear solver": "multigrid", "Boundary 4/Slip rate factor": "1/(1 + v)"},
+    ),
+    ("rubbing_2d", {}),
+    ("junction_2d", {}),
+    ("excavated_column", {}),
+    ("corner_coulomb_90_2d", {}),
+    ("corner_tresca_150_2d", {}),
+    ("conveyor_3d", WALL),
+    (
+        "conveyor_3d",
+        {
+            **WALL,
+            "Solver/Coulomb pressure": "fixed point",
+            "Boundary 1/Friction law": "coulomb",
+            "Boundary 1/Contact law": "normal compliance",
+            "Boundary 1/Friction bound": "",
+            "Boundary 1/Friction coefficient": 0.2,
+            "Boundary 1/Compliance": 3,
+            "Boundary 1/Gap": -0.005,
+        },
+    ),
+)
+
+
+class OtherUnits(TestCase):
+    """Stresses, lengths and times in units without a meaning: the same answer."""
+
+    def compare(self, known, result, dimension, scaled):
+        self.assertEqual(len(known["t"]), len(result["t"]))
+        documented = documented_units()
+        columns = {}
+        for column in known.statistics:
+            if column not in EFFORT | DEFECTS and not column.startswith("wall_"):
+                words = documented[documented_name(column)].removesuffix(" (`residual`)")
+                columns.setdefault(POWERS_OF_WORDS[words](dimension), []).append(column)
+        # What is zero has no size but that of others.
+        sizes = [known[name].max() for name in ("max_von_mises", "max_displacement", "t")]
+        for powers, names in columns.items():
+            finite = {name: np.isfinite(known[name]) for name in names}
+            scale = max(abs(known[name][finite[name]]).max() for name in names)
+            scale = max(scale, np.prod(np.power(sizes, powers)))
+            for name in names:
+                here = finite[name]
+                self.assertClose(
+                    result[name][here] / scaled.power(powers),
+                    known[name][here],
+                    absolute=1e-9 * scale,
+                    what=name,
+                )
+
+    def check(self, scene, more, **sizes):
+        scaled = Scaled(**sizes)
+        with tempfile.TemporaryDirectory() as work:
+            (Path(work) / "more.prm").write_text(as_prm({**EXACT, **more}))
+            files = scene_file(scene), "more.prm"
+            process = run_program(("--describe", *files), 1, Path(work))
+        self.assertEqual(process.returncode, 0, process.stderr)
+        described = process.stdout
+        dimension = int(re.search(r"set Dimension = (\d)", described)[1])
+        known = run("known", text=described)
+        result = run("scaled", text=scaled.scene(described))
+        self.compare(known, result, dimension, scaled)
+        return known, result
+
+    def test_scenes(self):
+        for scene, more in SHORT:
+            with self.subTest(scene, more=more):
+                self.check(scene, more, stress=1.7e6, length=3.1e-3, time=7.3e4)
 
 
 class Work(TestCase):

@@ -296,6 +296,38 @@ namespace
 
 
 
+  TEST(ContactSolver, FoundationsThatMove)
+  {
+    // Each point slips over its own, also where several share a node or, at 0
+    // degrees, all directions.
+    for (const unsigned int dim : {2, 3})
+      for (const double degrees : {0., 90., 30.})
+        {
+          Counts counts;
+          for (unsigned int seed = 550; seed < 562; ++seed)
+            {
+              Problem problem = corner_problem(seed, dim, degrees);
+              Random  random(seed);
+              for (const auto &point : problem.face.points)
+                {
+                  Tensor<1, 2> step;
+                  for (unsigned int i = 0; i < point.n_tangents; ++i)
+                    step[i] = random.uniform(-0.3, 0.3);
+                  problem.foundation_step.push_back(step);
+                }
+              expect_solved(problem,
+                            "dim " + std::to_string(dim) + ", seed " +
+                              std::to_string(seed) + ", degrees " +
+                              std::to_string(degrees),
+                            counts);
+            }
+          EXPECT_GT(counts.n_stick, 10u);
+          EXPECT_GT(counts.n_slip, 50u);
+        }
+  }
+
+
+
   TEST(ContactSolver, SlipsThatAreAPartOfTheMotion)
   {
     // Where another condition holds the node along a direction that is oblique

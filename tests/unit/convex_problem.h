@@ -33,14 +33,17 @@ namespace Viscoplastic::Testing
   }
 
 
-  /// J(u) = 1/2 u . A u - l . u + sum_c rho_c |s_c|, where s_c <= d_c at
-  /// obstacles, whose bound is d_c. The unknowns of the face are the last ones.
+  /// J(u) = 1/2 u . A u - l . u + sum_c rho_c |s_c| with slips relative to the
+  /// foundation of each point, where s_c <= d_c at obstacles, whose bound is
+  /// d_c. The unknowns of the face are the last ones.
   struct Problem
   {
     FullMatrix<double>  A;
     Vector<double>      load, u_prev;
     ContactLayout       face;
     std::vector<double> bounds;
+    /// Empty where no foundation moves.
+    std::vector<Tensor<1, 2>> foundation_step;
 
     unsigned int
     size() const
@@ -69,6 +72,8 @@ namespace Viscoplastic::Testing
       std::vector<Tensor<1, 2>> result;
       for (const auto &point : face.points)
         result.push_back(slip(point, face.node_values(change, point.node)));
+      for (unsigned int p = 0; p < foundation_step.size(); ++p)
+        result[p] -= foundation_step[p];
       return result;
     }
 

@@ -307,6 +307,8 @@ namespace Viscoplastic::Testing
     increment -= problem.u_prev;
     increment   = problem.on_face(increment);
     state.bound = problem.bounds;
+    if (problem.foundation_step.size() > 0)
+      state.foundation_step = problem.foundation_step;
     const ContactReport report =
       ContactSolver(max_iterations)
         .solve(bulk, problem.face, tolerance, increment, state);

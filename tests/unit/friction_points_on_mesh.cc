@@ -166,7 +166,7 @@ namespace
         Tensor<1, dim>    sum;
         DistributedVector in_frames = body->space->owned_vector();
         body->space->to_frames(body->rough_vector(), in_frames);
-        const auto slips = face.slips(in_frames, {});
+        const auto slips = face.slips(in_frames);
         for (unsigned int p = 0; p < n; ++p)
           {
             for (unsigned int i = 0; i < dim - 1; ++i)

@@ -2,8 +2,12 @@
 
 // Which cells are marked for another mesh, on any number of ranks.
 
+#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/grid_generator.h>
+
 #include "body.h"
 #include <viscoplastic_contact/error/mesh_adaptation.h>
+#include <viscoplastic_contact/mesh/mesh_refinement.h>
 
 #include <algorithm>
 #include <cmath>
@@ -221,5 +225,48 @@ namespace
     EXPECT_GT(n_cells.back(), 280u);
     for (const unsigned int n : n_cells)
       EXPECT_LT(n, 315u);
+  }
+
+
+
+  TYPED_TEST(Marking, IsThatOfTheWholeMesh)
+  {
+    // The same flags on a mesh of all ranks and on one that each has alone.
+    constexpr int dim = TypeParam::value;
+    using Mesh        = parallel::distributed::Triangulation<dim>;
+    Mesh       shared(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
+    const auto number = [](const Point<dim> &x, const double seed) {
+      const double value =
+        4711. * std::sin(seed + 37. * x[0] + 91. * x[1] + 53. * x[dim - 1]);
+      return value - std::floor(value);
+    };
+    for (Mesh *mesh : {&shared, &alone})
+      {
+        GridGenerator::subdivided_hyper_cube(*mesh, 3);
+        for (unsigned int round = 0; round < (dim == 2 ? 100 : 5); ++round)
+          {
+            for (const auto &cell : mesh->active_cell_iterators())
+              if (cell->is_locally_owned())
+                {
+                  if (cell->level() < 4 && number(cell->center(), round) < 0.1)
+                    cell->set_refine_flag();
+                  else if (cell->level() > 0 &&
+                           number(cell->parent()->center(), round) < 0.8)
+                    cell->set_coarsen_flag();
+                }
+            prepare_mesh_change(*mesh);
+            mesh->execute_coarsening_and_refinement();
+          }
+      }
+    EXPECT_GT(alone.n_active_cells(), 100u);
+    EXPECT_EQ(shared.n_global_active_cells(), alone.n_active_cells());
+    std::vector<CellId> ids;
+    for (const auto &cell : alone.active_cell_iterators())
+      ids.push_back(cell->id());
+    for (const auto &cell : shared.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          EXPECT_NE(std::find(ids.begin(), ids.end(), cell->id()), ids.end());
+        }
   }
 } // namespace

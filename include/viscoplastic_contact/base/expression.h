@@ -122,6 +122,14 @@ namespace Viscoplastic
       return entry;
     }
 
+    /// Whether both are of the same text; not of functions that have none.
+    bool
+    is_written_as(const Expression &other) const
+    {
+      return parser && other.parser && text == other.text &&
+             variables == other.variables;
+    }
+
     /// True for a constant expression of value zero.
     bool
     is_zero() const
@@ -173,6 +181,10 @@ namespace Viscoplastic
 
     bool
     is_zero() const;
+
+    /// Whether it has the same text as another one, and is the same function.
+    bool
+    is_written_as(const VectorExpression &other) const;
 
     const Expression<dim> &
     operator[](const unsigned int c) const

@@ -155,9 +155,16 @@ namespace Viscoplastic
   Tensor<1, 3>
   motion_with_slip(const ContactLayout::Point &point, const Tensor<1, 2> &slip);
 
+  /// A face vector as large as these slips, one a point; of the points of a
+  /// node the largest counts.
+  Vector<double>
+  face_motion(const ContactLayout             &face,
+              const std::vector<Tensor<1, 2>> &slips);
+
 
   /**
-   * What contact does in a step, point by point. Friction satisfies
+   * What contact does in a step, point by point. Friction, with the slip s_c =
+   * B_c (u - u_prev) - w_c against the foundation of the point, satisfies
    *
    *     |lambda_c| <= rho_c,   lambda_c = rho_c s_c/|s_c| where s_c != 0,
    *
@@ -169,6 +176,9 @@ namespace Viscoplastic
     /// The bound rho_c >= 0; infinite for glued points. Of an obstacle the
     /// distance d_c that is left at the beginning of the step.
     std::vector<double> bound;
+    /// How far w_c the foundation of the point moves in the step, along the
+    /// directions of its slip; of an obstacle zero.
+    std::vector<Tensor<1, 2>> foundation_step;
     /// The slip s_c: the tangential increment of the displacement relative to
     /// the foundation; of an obstacle the normal one.
     std::vector<Tensor<1, 2>> slip;
@@ -181,6 +191,7 @@ namespace Viscoplastic
     /// All points stick and nothing pulls at them.
     explicit ContactState(std::vector<double> bounds = {})
       : bound(std::move(bounds))
+      , foundation_step(bound.size())
       , slip(bound.size())
       , multiplier(bound.size())
       , sticks(bound.size(), true)
@@ -190,6 +201,15 @@ namespace Viscoplastic
     n_points() const
     {
       return bound.size();
+    }
+
+    /// The slip of a point whose node moves by @p change in the step.
+    Tensor<1, 2>
+    slip_with(const ContactLayout::Point &point,
+              const unsigned int          p,
+              const Tensor<1, 3>         &change) const
+    {
+      return Viscoplastic::slip(point, change) - foundation_step[p];
     }
 
     /// s_c - d_c of an obstacle.

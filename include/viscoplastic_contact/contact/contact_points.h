@@ -90,11 +90,12 @@ namespace Viscoplastic
   /**
    * How the linear system of a Newton step treats the face: sticking points
    * are held, slipping ones resist turning, obstacles that give way are
-   * springs. @p inverse_diagonal: of the blocks
-   * of the face matrix, beyond which a spring is as good as stick.
+   * springs. @p inverse_diagonal: of the blocks of the face matrix; a spring
+   * that is @p stiffest times as stiff is as good as stick.
    */
   FaceTruncation
   make_truncation(const ContactLayout             &face,
                   const ContactState              &state,
-                  const std::vector<Tensor<2, 3>> &inverse_diagonal);
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                  const double                     stiffest = 1e10);
 } // namespace Viscoplastic

@@ -49,7 +49,8 @@ namespace Viscoplastic
   /**
    * Minimizes the energy of one step,
    *
-   *     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev),
+   *     J(u) = 1/2 a(u,u) - l(u) + sum_c rho_c |s_c|,   s_c = B_c (u - u_prev)
+   * - w_c,
    *
    * where s_c <= d_c at obstacles (unilateral contact, Signorini's conditions),
    * by a primal-dual active set iteration that cannot cycle: (1) nonlinear

@@ -75,7 +75,6 @@ namespace Viscoplastic
     std::vector<double>
     step_bounds(const double               t,
                 const DistributedVector   &u,
-                const Vector<double>      &foundation_step,
                 const std::vector<double> &slip_rates = {}) const;
 
     /// Add rho_c = mu_c p_c of Coulomb's law with the pressures p of @p state.
@@ -130,6 +129,11 @@ namespace Viscoplastic
                   const DistributedVector &u,
                   ContactState            &state) const;
 
+    /// Whether the body at @p u (in frames) is beyond the gap at time t
+    /// somewhere between the nodes, where nothing keeps it out. Collective.
+    bool
+    closes_between_nodes(const double t, const DistributedVector &u) const;
+
     /// Whether bounds() depends on time.
     bool
     bounds_depend_on_time() const
@@ -165,23 +169,18 @@ namespace Viscoplastic
     resultant(const ContactState &state, const bool of_obstacles = false) const;
 
     /**
-     * How far the foundation slides between two times, as a face vector. At a
-     * node of several boundary ids it is what fits the motions of all of them
-     * best, each weighed by its share of the bound at time t: a piece without
-     * friction does not count. Empty if no foundation moves. Collective.
+     * How far the foundation of each point slides between two times, along the
+     * directions of the slip of that point. Empty if no foundation moves.
      */
-    Vector<double>
+    std::vector<Tensor<1, 2>>
     foundation_step(const double t_old, const double t) const;
 
     /// The slip that a change of the displacement (in frames, owned entries)
-    /// means at each point, relative to a step of the foundation.
+    /// means at each point, relative to a step of the foundation (empty: at
+    /// rest).
     std::vector<Tensor<1, 2>>
-    slips(const DistributedVector &change,
-          const Vector<double>    &foundation_step) const;
-
-    /// The slips that a change means, given as a face vector.
-    std::vector<Tensor<1, 2>>
-    slips(const Vector<double> &change) const;
+    slips(const DistributedVector         &change,
+          const std::vector<Tensor<1, 2>> &foundation_step = {}) const;
 
     /**
      * The multiplier as a nodal density lambda_c/m_c, Cartesian and with
@@ -247,11 +246,6 @@ namespace Viscoplastic
                const bool                       of_obstacles = false,
                const std::vector<double> *const slip_rates   = nullptr) const;
 
-    /// The bounds at time t by point and boundary id, in the order of
-    /// boundary_ids. Collective.
-    std::vector<double>
-    bounds_by_id(const double t) const;
-
     const AdmissibleSpace<dim> &space;
     FaceRestriction             face_restriction;
     std::vector<Node>           nodes;
@@ -265,7 +259,6 @@ namespace Viscoplastic
     std::vector<double>                                point_weights;
     bool bounds_vary, any_obstacles = false, any_gives_way = false,
                       any_computed_pressure = false, any_rate = false;
-    mutable std::optional<std::vector<double>> constant_bounds,
-      constant_bounds_by_id;
+    mutable std::optional<std::vector<double>> constant_bounds;
   };
 } // namespace Viscoplastic

@@ -32,6 +32,22 @@ namespace Viscoplastic
                   Load<dim>                load,
                   const State<dim>        &state);
 
+  /// What rounding leaves of a state in the energy norm: of displacements of
+  /// the whole body, as it is carried along, and of loads that cancel.
+  struct EnergyRounding
+  {
+    double size;
+    /// Whether the strains of the body are no more than that.
+    bool is_all_of_the_strain;
+  };
+
+  /// Collective.
+  template <int dim>
+  EnergyRounding
+  energy_rounding(const AdmissibleSpace<dim> &space,
+                  const DistributedMatrix    &matrix,
+                  const Forces<dim>          &forces);
+
   /**
    * The forces on the body at prescribed components, summed for each boundary
    * id. The force at a node that several conditions hold has a part along the
@@ -96,14 +112,12 @@ namespace Viscoplastic
                     const ContactState      &state,
                     const DistributedVector &change);
 
-  /// @p change of the displacement in the step, in frames, and what the
-  /// foundation moved meanwhile (empty: nothing). Collective.
+  /// @p change of the displacement in the step, in frames. Collective.
   template <int dim>
   FrictionIdentities
   check_friction(const ContactFace<dim>  &face,
                  const ContactState      &old_state,
                  const ContactState      &state,
                  const DistributedVector &change,
-                 const Vector<double>    &foundation_step,
                  const double             max_displacement);
 } // namespace Viscoplastic

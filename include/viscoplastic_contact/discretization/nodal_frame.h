@@ -14,7 +14,8 @@ namespace Viscoplastic
    * The slip that one friction point can make. At a node where Gamma_3 is flat
    * this is the tangent plane. Where pieces meet at an angle there is one point
    * a piece; its slip is the part of the piece's tangential displacement that
-   * the other conditions at the node leave free.
+   * the other conditions at the node leave free. Pieces whose foundations move
+   * in different ways have a point each, too.
    */
   template <int dim>
   struct FrictionPlane
@@ -24,7 +25,7 @@ namespace Viscoplastic
     /// slip = map u: n_tangents rows over the frame components of the node.
     std::array<Tensor<1, dim>, dim - 1> map;
     /// Boundary ids whose bounds add up here (coplanar pieces, or pieces that
-    /// leave the same direction free).
+    /// leave the same direction free); their foundations move alike.
     std::vector<types::boundary_id> boundary_ids;
   };
 

@@ -46,6 +46,8 @@ namespace Viscoplastic
    * - of the friction force, l = 0, w is the unit direction at points that
    *   stick, and w_c less this direction takes the place of w_c at those that
    *   slip: sign = 1;
+   * - of the contact force likewise, along the normals where contact is closed,
+   *   with K the slope of the pressure where a foundation gives way: sign = 1;
    * - of the work of friction in all steps, as long as what slips goes on in
    * the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
    */

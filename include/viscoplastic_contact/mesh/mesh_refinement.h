@@ -15,4 +15,14 @@ namespace Viscoplastic
   void
   refine_mesh(const GeometryParameters                  &geometry,
               parallel::distributed::Triangulation<dim> &triangulation);
+
+  /**
+   * prepare_coarsening_and_refinement() for the whole mesh: the flags that a
+   * balanced mesh asks for, whatever part each rank has. deal.II's own looks at
+   * the flags of owned cells alone: beside the cells of another rank a family
+   * stays that could go with them, and cells are refined unasked. Collective.
+   */
+  template <int dim>
+  void
+  prepare_mesh_change(parallel::distributed::Triangulation<dim> &triangulation);
 } // namespace Viscoplastic

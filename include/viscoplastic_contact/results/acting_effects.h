@@ -44,7 +44,7 @@ namespace Viscoplastic
     {
       std::vector<types::boundary_id> ids(loads.begin(), loads.end());
       archive &ids &mesh_has_changed &has_bound &foundation_has_moved
-        &has_touched &has_opened;
+        &has_touched &has_opened &closes_between_nodes;
       loads = {ids.begin(), ids.end()};
     }
 
@@ -56,6 +56,8 @@ namespace Viscoplastic
     bool has_bound = false;
     /// Whether an obstacle has been touched, and left or not reached.
     bool has_touched = false, has_opened = false;
+    /// Whether, before, the gap has closed where the mesh does not see it.
+    bool closes_between_nodes = false;
     bool foundation_has_moved = false;
   };
 } // namespace Viscoplastic

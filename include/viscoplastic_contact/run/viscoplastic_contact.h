@@ -150,6 +150,13 @@ namespace Viscoplastic
     RefinementParameters
     refinement_limits() const;
 
+    /// Whether the estimate of the mesh at the accepted state is what rounding
+    /// and iterations leave, as of a body that is carried along or strained
+    /// uniformly: that says nothing about the mesh, and differs between numbers
+    /// of ranks. Collective.
+    bool
+    estimate_is_rounding() const;
+
     /// Change the mesh, between two steps, if the estimate says so.
     void
     adapt_mesh();

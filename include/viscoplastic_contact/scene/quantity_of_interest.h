@@ -18,6 +18,7 @@ namespace Viscoplastic
     enum class Kind
     {
       friction_force,
+      contact_force, // of contact that opens
       friction_dissipation,
       reaction,
       displacement // of a point of `Output/Points'

@@ -29,8 +29,9 @@ namespace Viscoplastic
     /// rho_c(t_n) of each friction point, which make j_n, and the distance d_c
     /// to each obstacle.
     std::vector<double> bounds;
-    /// What the foundation moves in the step, as a face vector; empty at rest.
-    Vector<double> foundation_step;
+    /// How far the foundation moves in the step, see ContactState; empty if no
+    /// foundation does.
+    std::vector<Tensor<1, 2>> foundation_step;
     /// Relative to the solution, at which the iterations stop.
     double tolerance;
     /// The state at t_{n-1}, which stays as it is, and G there (null where the

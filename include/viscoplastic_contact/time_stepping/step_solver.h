@@ -100,7 +100,7 @@ namespace Viscoplastic
     struct Data
     {
       const DistributedVector &old_u, &load, &right_side;
-      const Vector<double>    &foundation_step;
+      const Vector<double>    &foundation_step; // on the face
     };
 
     /// solve() with the bounds of @p contact.

@@ -18,8 +18,6 @@ namespace Viscoplastic
     TimeStep time_step;
     /// The state that the step leads to.
     EvaluatedState<dim> end;
-    /// What the foundation moved in the step, see StepProblem.
-    Vector<double> foundation_step;
     /// How often a longer step has been tried.
     unsigned int n_rejections = 0;
 

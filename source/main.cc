@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/mpi_singleton.h>
 #include <viscoplastic_contact/base/signals.h>
+#include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
 #include <viscoplastic_contact/run/two_level.h>
@@ -24,8 +25,8 @@ namespace
 {
   using namespace Viscoplastic;
 
-  /// What @p work returns. Expressions that cannot be parsed are complained of
-  /// with the place where they stand.
+  /// What @p work returns. Complaints quote entries as the files have them;
+  /// expressions that cannot be parsed are complained of with their place.
   template <typename Work>
   std::string
   with_places(const Parameters &parameters, const Work &work)
@@ -39,9 +40,18 @@ namespace
         const std::string origin = parameters.origin_of(error.entry);
         if (origin.empty())
           throw;
-        std::string sentence = reason(error);
+        std::string sentence = parameters.quote_as_written(reason(error));
         sentence[0]          = static_cast<char>(std::tolower(sentence[0]));
         AssertThrow(false, dealii::ExcMessage(origin + ": " + sentence));
+        return "";
+      }
+    catch (const dealii::StandardExceptions::ExcMessage &error)
+      {
+        const std::string sentence = reason(error);
+        const std::string quoted   = parameters.quote_as_written(sentence);
+        if (quoted == sentence)
+          throw;
+        AssertThrow(false, dealii::ExcMessage(quoted));
         return "";
       }
   }
@@ -112,9 +122,9 @@ namespace
           console.check();
         return interruption;
       }
-    catch (const std::exception &exception)
+    catch (...)
       {
-        console.log() << reason(exception) << std::endl;
+        console.log() << reason_of_current_exception() << std::endl;
         throw;
       }
   }
@@ -210,12 +220,13 @@ main(int argc, char *argv[])
   std::string text, complaint;
   try
     {
+      const UnexpectedEnd unexpected_end("reading the parameters");
       command_line = read_command_line(arguments);
       text         = text_of(command_line);
     }
-  catch (const std::exception &exception)
+  catch (...)
     {
-      complaint = reason(exception);
+      complaint = reason_of_current_exception();
     }
 
   // A text needs no MPI, whose start takes longer, unless one of several
@@ -250,7 +261,8 @@ main(int argc, char *argv[])
     {
       if (text.empty())
         {
-          const std::string interruption = run(command_line, has_terminal);
+          const UnexpectedEnd unexpected_end("running the scene");
+          const std::string   interruption = run(command_line, has_terminal);
           if (interruption.empty())
             return 0;
           if (rank == 0)
@@ -265,12 +277,12 @@ main(int argc, char *argv[])
                                        "is the disk full?"));
       return is_guide ? 2 : 0;
     }
-  catch (const std::exception &exception)
+  catch (...)
     {
       if (is_parallel)
-        complain_in_parallel(reason(exception), of_failures);
+        complain_in_parallel(reason_of_current_exception(), of_failures);
       else
-        complain(reason(exception));
+        complain(reason_of_current_exception());
       return 1;
     }
 }

@@ -8,25 +8,14 @@
 
 #include <cmath>
 #include <iostream>
-#include <regex>
 #include <sstream>
 
 namespace Viscoplastic
 {
   namespace
   {
-    /// Whether the identifier @p name stands in @p text.
-    bool
-    mentions(const std::string &text, const std::string &name)
-    {
-      return std::regex_search(text, std::regex("\\b" + name + "\\b"));
-    }
-
-
-
     /// What muParser says in the lines that deal.II prints, `Message:  <...>'
-    /// and others; empty if there is no such line. (A regular expression would
-    /// need a stack as deep as the line is long.)
+    /// and others; empty if there is no such line.
     std::string
     message_of_parser(const std::string &printed)
     {
@@ -55,13 +44,11 @@ namespace Viscoplastic
     std::string
     unknown_name(const std::string &words, const std::string &variables)
     {
-      static const std::regex unknown(
-        "^Unexpected token \"([A-Za-z_][A-Za-z_0-9]*)");
-      std::smatch part;
-      if (!std::regex_search(words, part, unknown) ||
-          mentions(variables, part[1]))
+      const std::string introduction = "Unexpected token \"";
+      if (words.compare(0, introduction.size(), introduction) != 0)
         return "";
-      return part[1];
+      const std::string name = identifier_at(words, introduction.size());
+      return name.empty() || mentions(variables, name) ? "" : name;
     }
 
 
@@ -163,23 +150,24 @@ namespace Viscoplastic
         parser->value(Point<dim>()); // deal.II parses at the first value
         std::cerr.rdbuf(original);
       }
-    catch (const std::exception &exception)
+    catch (...) // muParser's are no std::exception
       {
         std::cerr.rdbuf(original);
         const std::string why  = message_of_parser(printed.str());
         const std::string name = unknown_name(why, variables);
-        AssertThrow(
-          false,
-          ExpressionError("The expression '" + excerpt(Utilities::trim(text)) +
-                            "' of '" + entry + "' cannot be parsed: " +
-                            (name.empty() ?
-                               as_sentence(excerpt(
-                                 why.empty() ? reason(exception) : why, 200)) :
-                               "there is no '" + excerpt(name) +
-                                 "'; its variables are " + list_of(variables) +
-                                 ", and pi and functions such as sin, exp, min "
-                                 "and if are known."),
-                          entry));
+        AssertThrow(false,
+                    ExpressionError(
+                      "The expression '" + excerpt(Utilities::trim(text)) +
+                        "' of '" + entry + "' cannot be parsed: " +
+                        (name.empty() ?
+                           as_sentence(excerpt(
+                             why.empty() ? reason_of_current_exception() : why,
+                             200)) :
+                           "there is no '" + excerpt(name) +
+                             "'; its variables are " + list_of(variables) +
+                             ", and pi and functions such as sin, exp, min "
+                             "and if are known."),
+                      entry));
       }
     return parser;
   }
@@ -207,8 +195,9 @@ namespace Viscoplastic
           break;
         }
     AssertThrow(numbers.size() == dim,
-                ExcMessage("'" + entry + "' = " + excerpt(text) + " needs " +
-                           std::to_string(dim) + " finite numbers."));
+                ExcMessage("'" + entry + "' is '" + excerpt(text) +
+                           "', but it needs " + std::to_string(dim) +
+                           " finite numbers."));
     Point<dim> result;
     for (unsigned int d = 0; d < dim; ++d)
       result[d] = numbers[d];

@@ -37,6 +37,35 @@ namespace Viscoplastic
 
 
 
+    std::string
+    kind_of(const fs::file_type type)
+    {
+      switch (type)
+        {
+          case fs::file_type::directory:
+            return "it is a directory";
+          case fs::file_type::symlink:
+            return "it is a symbolic link";
+          case fs::file_type::fifo:
+            return "it is a pipe";
+          case fs::file_type::regular:
+          case fs::file_type::not_found:
+          case fs::file_type::none:
+            return "";
+          default:
+            return "it is no regular file";
+        }
+    }
+
+
+
+    // Neither waits for the other end of a pipe nor follows a link, should one
+    // appear after the check of its type.
+    const int for_writing =
+      O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_NONBLOCK;
+
+
+
     /// An open file whose every operation is checked. Errors name @p name,
     /// which need not be the name under which it is opened.
     class Descriptor
@@ -46,8 +75,10 @@ namespace Viscoplastic
                  const std::string &path,
                  const int          flags)
         : name(name)
-        , descriptor(open(path.c_str(), flags | O_CLOEXEC, 0666))
       {
+        if (flags == for_writing)
+          require_writable_file(path);
+        descriptor = open(path.c_str(), flags | O_CLOEXEC, 0666);
         check_written(descriptor >= 0, name);
       }
 
@@ -92,15 +123,30 @@ namespace Viscoplastic
 
     private:
       const std::string name;
-      int               descriptor;
+      int               descriptor = -1;
     };
   } // namespace
+
+
+
+  void
+  require_writable_file(const std::string &name)
+  {
+    std::error_code   none;
+    const std::string kind = kind_of(fs::symlink_status(name, none).type());
+    AssertThrow(kind.empty(),
+                ExcMessage("'" + name + "' cannot be written: " + kind + "."));
+  }
 
 
 
   std::optional<std::string>
   read_file_if_any(const std::string &name)
   {
+    std::error_code   none;
+    const std::string kind = kind_of(fs::status(name, none).type());
+    AssertThrow(kind.empty(),
+                ExcMessage("'" + name + "' cannot be read: " + kind + "."));
     errno = 0;
     std::ifstream file(name, std::ios::binary);
     if (!file && (errno == ENOENT || errno == ENOTDIR))
@@ -120,7 +166,7 @@ namespace Viscoplastic
   void
   write_file(const std::string &name, const std::string &bytes)
   {
-    Descriptor file(name, name, O_WRONLY | O_CREAT | O_TRUNC);
+    Descriptor file(name, name, for_writing);
     file.write_all(bytes);
     file.synchronize();
     file.close();
@@ -133,20 +179,11 @@ namespace Viscoplastic
                const std::string &bytes,
                const bool         to_disk)
   {
-    std::error_code     none;
-    const fs::file_type type = fs::status(name, none).type();
-    if (type != fs::file_type::regular && type != fs::file_type::not_found &&
-        type != fs::file_type::none)
-      {
-        Descriptor file(name, name, O_WRONLY);
-        file.write_all(bytes);
-        file.close();
-        return;
-      }
+    require_writable_file(name);
     const std::string part = name + ".part";
     try
       {
-        Descriptor file(name, part, O_WRONLY | O_CREAT | O_TRUNC);
+        Descriptor file(name, part, for_writing);
         file.write_all(bytes);
         if (to_disk)
           file.synchronize();
@@ -155,6 +192,7 @@ namespace Viscoplastic
       }
     catch (const std::exception &)
       {
+        std::error_code none;
         fs::remove(part, none); // make room
         throw;
       }
@@ -196,11 +234,14 @@ namespace Viscoplastic
       return;
     file = directory + (directory.back() == '/' ? "" : "/") +
            "viscoplastic_contact.lock";
+    require_writable_file(file);
     // Who has had the lock removes the file: then it is made again.
     for (unsigned int i = 0; i < 10; ++i)
       {
         const int opened =
-          open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+          open(file.c_str(),
+               O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+               0666);
         if (opened < 0)
           return;
         if (flock(opened, LOCK_EX | LOCK_NB) != 0)

@@ -35,6 +35,26 @@ namespace Viscoplastic
 
 
 
+  std::string
+  reason_of_current_exception()
+  {
+    try
+      {
+        throw;
+      }
+    catch (const std::exception &exception)
+      {
+        return reason(exception);
+      }
+    catch (...)
+      {
+        return "something has been thrown that is no std::exception, as only "
+               "laws of shared libraries do.";
+      }
+  }
+
+
+
   void
   fail_together(const MPI_Comm communicator, const std::function<void()> &work)
   {
@@ -44,9 +64,9 @@ namespace Viscoplastic
       {
         work();
       }
-    catch (const std::exception &exception)
+    catch (...)
       {
-        failure = reason(exception);
+        failure = reason_of_current_exception();
       }
     const unsigned int n_ranks = MPI::n_mpi_processes(communicator);
     const unsigned int first =

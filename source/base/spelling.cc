@@ -46,6 +46,14 @@ namespace Viscoplastic
           }
       return d[a.size()][b.size()];
     }
+
+
+
+    bool
+    is_part_of_identifier(const char c)
+    {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    }
   } // namespace
 
 
@@ -74,6 +82,37 @@ namespace Viscoplastic
           }
       }
     return best;
+  }
+
+
+
+  // Not by regular expressions, which need a stack as deep as a text is long.
+  std::string
+  identifier_at(const std::string &text, const std::size_t begin)
+  {
+    if (begin >= text.size() ||
+        std::isdigit(static_cast<unsigned char>(text[begin])) != 0)
+      return "";
+    std::size_t end = begin;
+    while (end < text.size() && is_part_of_identifier(text[end]))
+      ++end;
+    return text.substr(begin, end - begin);
+  }
+
+
+
+  bool
+  mentions(const std::string &text, const std::string &name)
+  {
+    for (std::size_t begin = text.find(name); begin != std::string::npos;
+         begin             = text.find(name, begin + 1))
+      {
+                    const std::size_t end = begin + name.size();
+                    if ((begin == 0 || !is_part_of_identifier(text[begin - 1])) &&
+            (end == text.size() || !is_part_of_identifier(text[end])))
+          return true;
+      }
+    return false;
   }
 
 

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <sstream>
 
 namespace Viscoplastic
@@ -50,10 +49,16 @@ namespace Viscoplastic
 
 
 
+    // That muParser takes.
+    const std::size_t longest_name = 100;
+
+
+
     bool
     is_name(const std::string &text)
     {
-      return std::regex_match(text, std::regex("[A-Za-z][A-Za-z0-9_]*"));
+      return !text.empty() && text.size() <= longest_name && text[0] != '_' &&
+             identifier_at(text, 0) == text;
     }
 
 
@@ -105,8 +110,10 @@ namespace Viscoplastic
               require(is_name(name),
                       "'" + excerpt(name) +
                         "' is no name of a column; the first line of a table "
-                        "has names of letters, digits and underscores, "
-                        "separated by commas.");
+                        "has names of at most " +
+                        std::to_string(longest_name) +
+                        " letters, digits and underscores, separated by "
+                        "commas.");
             require(names.size() > 1,
                     "there is one column; a table needs that of the argument "
                     "and others after it.");
@@ -130,13 +137,13 @@ namespace Viscoplastic
             catch (const std::exception &)
               {} // refused below
             require(std::isfinite(number),
-                    "'" + excerpt(row[c]) + "' in the column '" + names[c] +
-                      "' is no finite number.");
+                    "'" + excerpt(row[c]) + "' in the column '" +
+                      excerpt(names[c]) + "' is no finite number.");
             (c == 0 ? arguments : values[c - 1]).push_back(number);
           }
         const std::size_t n = arguments.size();
         require(n == 1 || arguments[n - 1] > arguments[n - 2],
-                "'" + row[0] + "' in the column '" + names[0] +
+                "'" + row[0] + "' in the column '" + excerpt(names[0]) +
                   "' is not above the value before it; the first column has "
                   "to ascend.");
       }
@@ -179,10 +186,11 @@ namespace Viscoplastic
   DataTable::Column::explain_gap(const double argument) const
   {
     std::ostringstream message;
-    message << "'" << name << "' of '" << table.section << "' has no value at "
-            << argument << ", since '" << table.name_of_argument
-            << "' goes from " << table.arguments.front() << " to "
-            << table.arguments.back() << " in '" << table.file << "'";
+    message << "'" << excerpt(name) << "' of '" << table.section
+            << "' has no value at " << argument << ", since '"
+            << excerpt(table.name_of_argument) << "' goes from "
+            << table.arguments.front() << " to " << table.arguments.back()
+            << " in '" << table.file << "'";
     return message.str();
   }
 
@@ -208,7 +216,7 @@ namespace Viscoplastic
           AssertThrow(std::find(taken.begin(), taken.end(), column.name) ==
                         taken.end(),
                       ExcMessage("'" + table->section + "/File': the column '" +
-                                 column.name + "' of '" + table->file +
+                                 excerpt(column.name) + "' of '" + table->file +
                                  "' has a name that expressions know already, "
                                  "as those of places, functions and what laws "
                                  "are given (x, t, p, id); give it another "
@@ -234,7 +242,7 @@ namespace Viscoplastic
     std::vector<std::shared_ptr<const DataTable::Column>> columns;
     for (const auto &table : current_tables())
       for (const DataTable::Column &column : table->columns())
-        if (std::regex_search(text, std::regex("\\b" + column.name + "\\b")))
+        if (mentions(text, column.name))
           columns.emplace_back(table, &column); // keeps the table
     return columns;
   }

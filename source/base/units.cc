@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <sstream>
 
@@ -126,9 +127,53 @@ namespace Viscoplastic
             return 1.;
           }
         at += has_parentheses ? 1 : 0;
-        return std::stod(digits);
+        return std::strtod(digits.c_str(), nullptr);
       }
     };
+
+
+
+    /// The product of units in the parentheses that begin at the cursor, which
+    /// is behind them then; nothing, and the cursor where it was, if they hold
+    /// anything else.
+    std::optional<Unit>
+    read_group(Cursor &cursor)
+    {
+      const std::size_t begin = cursor.at;
+      Unit              result{"", {}, 1.};
+      double            sign = 1.;
+      if (cursor.next() == '(')
+        do
+          {
+            ++cursor.at;
+            cursor.skip_blanks();
+            const Unit *unit = find_unit(cursor.word());
+            if (unit == nullptr)
+              break;
+            const double exponent = sign * cursor.exponent();
+            result.dimension =
+              result.dimension * unit->dimension.power(exponent);
+            result.si *= std::pow(unit->si, exponent);
+            const std::size_t end = cursor.at;
+            cursor.skip_blanks();
+            if (cursor.next() == ')')
+              {
+                ++cursor.at;
+                return result;
+              }
+            sign = cursor.next() == '/' ? -1. : 1.;
+            // A blank is a product, too.
+            if (cursor.next() != '/' && cursor.next() != '*')
+              {
+                if (cursor.at == end)
+                  break;
+                --cursor.at;
+              }
+          }
+        while (true);
+      cursor.at = begin;
+      return {};
+    }
 
 
 
@@ -281,29 +326,36 @@ namespace Viscoplastic
     else if (!has_blank)
       return {};
 
-    UnitInText result{{"", {}, 1.}, begin, ""};
-    bool       is_first = true;
+    UnitInText          result{{"", {}, 1.}, begin, ""};
+    bool                is_first = true;
+    std::optional<Unit> group;
     while (true)
       {
-        const std::string name = cursor.word();
-        if (name.empty() || (cursor.is_call() && !is_first))
-          break;
-        const Unit *unit = find_unit(name);
+        const Unit *unit = group ? &*group : nullptr;
         if (unit == nullptr)
           {
-            // Behind a number, or behind a unit, a blank leads to nothing else.
-            if (sign > 0. && !cursor.is_call())
-              result.unknown_name = name;
-            break;
+            const std::string name = cursor.word();
+            if (name.empty() || (cursor.is_call() && !is_first))
+              break;
+            unit = find_unit(name);
+            if (unit == nullptr)
+              {
+                // Behind a number, or behind a unit, a blank leads to nothing
+                // else.
+                if (sign > 0. && !cursor.is_call())
+                  result.unknown_name = name;
+                break;
+              }
+            if (cursor.is_call())
+              break;
           }
-        if (cursor.is_call())
-          break;
         const double exponent = sign * cursor.exponent();
         result.unit.dimension =
           result.unit.dimension * unit->dimension.power(exponent);
         result.unit.si *= std::pow(unit->si, exponent);
         result.end = cursor.at;
         is_first   = false;
+        group.reset();
 
         cursor.skip_blanks();
         const char sign_of_next = cursor.next();
@@ -311,10 +363,11 @@ namespace Viscoplastic
           {
             ++cursor.at;
             cursor.skip_blanks();
+            group = read_group(cursor);
             // What is no unit may be anything else, unless it looks like one.
             Cursor            ahead = cursor;
             const std::string word  = ahead.word();
-            if (find_unit(word) == nullptr)
+            if (!group && find_unit(word) == nullptr)
               {
                 if (word.size() > 1 && !ahead.is_call() &&
                     !nearest_name(word, names_of_units()).empty())

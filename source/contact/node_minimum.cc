@@ -223,7 +223,9 @@ namespace Viscoplastic
     std::optional<NodeProblem::Candidate>
     NodeProblem::minimum() const
     {
-      // Newton's method from where the node would be without its points.
+      // Newton's method from where the node would be without its points. Where
+      // it ends early, the candidate is but a worse one: the contact solver
+      // looks for another if the duality gap does not accept the best.
       Tensor<1, 3> x = start + projector * (invert(stiffness) * force - start);
       double       scale = 0.;
       for (unsigned int d = 0; d < 3; ++d)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+
 #include <viscoplastic_contact/contact/normal_compliance.h>
 
 #include <algorithm>
@@ -7,11 +9,14 @@
 
 namespace Viscoplastic
 {
+  using namespace dealii;
+
   namespace
   {
     /// The root of a convex increasing function at or below @p start, to which
     /// Newton's method descends. The last step mends the rounding of the long
-    /// ones.
+    /// ones. From a start where no term is larger than the sum at the root, as
+    /// below, that takes ten iterations at most, whatever the exponents.
     template <typename Function, typename Derivative>
     double
     root_below(double            start,
@@ -21,13 +26,13 @@ namespace Viscoplastic
       for (unsigned int iteration = 0; iteration < 200; ++iteration)
         {
           const double next = start - function(start) / derivative(start);
-          if (!(next > 0.))
-            break;
-          const bool descends = next < start;
-          start               = next;
-          if (!descends)
-            break;
+          if (!(next > 0. && next < start))
+            return next > 0. ? next : start;
+          start = next;
         }
+      AssertThrow(false,
+                  ExcMessage("The penetration of normal compliance cannot be "
+                             "found for its 'Compliance exponent'."));
       return start;
     }
   } // namespace

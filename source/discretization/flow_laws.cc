@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -217,6 +218,25 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// A NaN compares as no limit at all.
+    void
+    require_rate(const double r, const Point<3> &x, const double t)
+    {
+      if (r >= 0.)
+        return;
+      std::ostringstream message;
+      message << "The relaxation rate is " << r << " at x = (" << x
+              << "), t = " << t
+              << "; relaxation_rate() of a law must be zero or positive, since "
+                 "it limits the time step.";
+      AssertThrow(false, ExcMessage(message.str()));
+    }
+  } // namespace
+
+
+
   template <int dim>
   FlowRate
   evaluate_flow(const FlowLaws<dim>                    &laws,
@@ -253,6 +273,7 @@ namespace Viscoplastic
               result.rate[i] += law->rate(stress, strain[s], stiffness, point);
               const double r =
                 law->relaxation_rate(stress, strain[s], stiffness, point);
+              require_rate(r, position(stress_space, c, s), t);
               worst.add(r, position(stress_space, c, s));
               if (law->is_beyond_cap(stress, point))
                 result.capped_volume += stress_space.weight(c, s);

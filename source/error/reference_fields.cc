@@ -10,7 +10,6 @@
 #include <viscoplastic_contact/error/reference_fields.h>
 #include <viscoplastic_contact/laws/strain.h>
 
-#include <fstream>
 #include <sstream>
 
 namespace Viscoplastic
@@ -380,13 +379,12 @@ namespace Viscoplastic
     std::string       complaint;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       {
-        std::ifstream      stream(file, std::ios::binary);
-        std::ostringstream bytes;
-        bytes << stream.rdbuf();
-        bool is_good = stream.is_open();
+        bool is_good = false;
         try
           {
-            BinaryReader        archive(bytes.str());
+            const auto bytes = read_file_if_any(file);
+            is_good          = bytes.has_value();
+            BinaryReader        archive(bytes.value_or(""));
             double              magic = 0.;
             std::vector<double> cells, faces;
             archive &magic &result.t &cells &faces;

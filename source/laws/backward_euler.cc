@@ -11,6 +11,12 @@ namespace Viscoplastic
 {
   namespace
   {
+    // Of the continuation, with those that fail. A law without jumps would have
+    // to ask for steps of a thousandth all the way to need more.
+    const unsigned int most_steps_in_k = 1000;
+
+
+
     /**
      * Radial return in an isotropic body: with the trial stress E eps + z_old,
      * whose deviator keeps its direction, sigma_eq solves
@@ -71,10 +77,11 @@ namespace Viscoplastic
       if (const auto z = equation.solve(from))
         return *z;
 
-    // From k = 0, where z = z_old, in steps that adapt.
+    // From k = 0, where z = z_old, in steps that adapt. Where the law jumps,
+    // tiny ones succeed without end.
     SymmetricTensor<2, 3> z    = old_z;
     double                done = 0., step = 0.25;
-    while (done < 1.)
+    for (unsigned int n = 1; done < 1.; ++n)
       {
         const double next = std::min(1., done + step);
         if (const auto result =
@@ -88,7 +95,7 @@ namespace Viscoplastic
             continue;
           }
         step *= 0.25;
-        if (step < 1e-8)
+        if (step < 1e-8 || n >= most_steps_in_k)
           {
             std::ostringstream message;
             message << "The stress of backward Euler at x = (" << point.x

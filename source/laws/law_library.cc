@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/laws/law_library.h>
 
 #include <dlfcn.h>
@@ -57,6 +58,8 @@ namespace Viscoplastic
   std::vector<LawDescription>
   load_laws(const std::string &file)
   {
+    const UnexpectedEnd unexpected_end("loading the shared library '" + file +
+                                       "'");
     // All symbols at once: a function that is missing must not end a run in the
     // middle. What is loaded stays, since laws are used until the end.
     void *library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -75,7 +78,8 @@ namespace Viscoplastic
                 ExcMessage("the shared library '" + file +
                            "' has no laws: VISCOPLASTIC_LAW_LIBRARY is missing "
                            "in its source."));
-    const std::string theirs = interface();
+    const char       *version = interface();
+    const std::string theirs  = version == nullptr ? "0" : version;
     AssertThrow(theirs == VISCOPLASTIC_CONTACT_LAW_INTERFACE,
                 ExcMessage("the shared library '" + file +
                            "' was built for version " + excerpt(theirs) +
@@ -84,6 +88,12 @@ namespace Viscoplastic
                            "; build it again."));
     std::vector<LawDescription> laws;
     describe(laws);
+    for (const LawDescription &law : laws)
+      AssertThrow(law.declare && law.make,
+                  ExcMessage("the law '" + excerpt(law.name) +
+                             "' of the shared library '" + file +
+                             "' has no function 'declare' or 'make' in its "
+                             "description."));
     return laws;
   }
 

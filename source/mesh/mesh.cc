@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/files/mesh_file.h>
+#include <viscoplastic_contact/mesh/hanging_vertices.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/mesh/mesh_generator.h>
@@ -82,15 +84,31 @@ namespace Viscoplastic
     move(const GeometryParameters                  &geometry,
          parallel::distributed::Triangulation<dim> &triangulation)
     {
+      const bool mapped  = !Utilities::trim(geometry.coordinates).empty();
       const bool rotated = geometry.rotation_angle != 0.;
       const bool shifted = !geometry.translation.empty();
-      if (!rotated && !shifted)
+      if (!mapped && !rotated && !shifted)
         return;
       for (const types::manifold_id id : triangulation.get_manifold_ids())
         AssertThrow(id == numbers::flat_manifold_id,
-                    ExcMessage("'Geometry/Rotation angle' and 'Translation' "
-                               "apply to meshes with straight edges only; '" +
+                    ExcMessage("'Geometry/Coordinates', 'Rotation angle' and "
+                               "'Translation' apply to meshes with straight "
+                               "edges only; '" +
                                geometry.generator + "' has curved ones."));
+      if (mapped)
+        {
+          const VectorExpression<dim> coordinates(geometry.coordinates,
+                                                  dim,
+                                                  "Geometry/Coordinates");
+          AssertThrow(!coordinates.depends_on_time(),
+                      ExcMessage("'Geometry/Coordinates' depends on t, but the "
+                                 "mesh does not change with time."));
+          GridTools::transform(
+            [&coordinates](const Point<dim> &x) {
+              return Point<dim>(coordinates.vector(x, 0.));
+            },
+            triangulation);
+        }
       if (rotated)
         {
           const double angle = geometry.rotation_angle * numbers::PI / 180.;
@@ -129,6 +147,7 @@ namespace Viscoplastic
     set_ids(geometry, triangulation);
     move(geometry, triangulation);
     check_mesh(triangulation);
+    keep_hanging_vertices_on_coarser_cells(triangulation);
     refine_mesh(geometry, triangulation);
     if (triangulation.n_global_levels() > 1)
       check_mesh(triangulation);

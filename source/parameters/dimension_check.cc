@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/parameters/dimension_check.h>
 
 #include <cctype>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <vector>
@@ -20,7 +23,7 @@ namespace Viscoplastic
     {
       /// None where numbers without unit make it fit anything.
       std::optional<Dimension> dimension;
-      /// Of a number, for exponents.
+      /// Of a constant, for exponents, whatever the dimension.
       std::optional<double> number = {};
     };
 
@@ -32,21 +35,25 @@ namespace Viscoplastic
       std::string words;
     };
 
+    // Deeper expressions would need a deep stack of this reader; muParser has
+    // none.
+    const unsigned int deepest = 1000;
+
     /// The text is none that is known here.
     struct Unreadable
     {};
 
-    const std::map<std::string, Value> variables{{"x", {Dimension{1., 0., 0.}}},
-                                                 {"y", {Dimension{1., 0., 0.}}},
-                                                 {"z", {Dimension{1., 0., 0.}}},
-                                                 {"t", {Dimension{0., 1., 0.}}},
-                                                 {"sigma_eq",
-                                                  {Dimension{0., 0., 1.}}},
-                                                 {"p", {Dimension{0., 0., 1.}}},
-                                                 {"eps_eq", pure_number},
-                                                 {"id", pure_number},
-                                                 {"pi", pure_number},
-                                                 {"Pi", pure_number}};
+    const std::map<std::string, Value> variables{
+      {"x", {Dimension{1., 0., 0.}}},
+      {"y", {Dimension{1., 0., 0.}}},
+      {"z", {Dimension{1., 0., 0.}}},
+      {"t", {Dimension{0., 1., 0.}}},
+      {"sigma_eq", {Dimension{0., 0., 1.}}},
+      {"p", {Dimension{0., 0., 1.}}},
+      {"eps_eq", pure_number},
+      {"id", pure_number},
+      {"pi", {Dimension(), numbers::PI}},
+      {"Pi", {Dimension(), numbers::PI}}};
 
     const std::set<std::string> of_pure_numbers{
       "sin",   "cos",   "tan",  "cot",  "csc",  "sec",   "asin",
@@ -128,16 +135,21 @@ namespace Viscoplastic
                               in_words(*exponent.dimension) +
                               "; put a number that a unit follows in the form "
                               "of 1e6"};
+        const auto number =
+          base.number && exponent.number ?
+            std::make_optional(std::pow(*base.number, *exponent.number)) :
+            std::nullopt;
         if (!base.dimension || *base.dimension == Dimension())
-          return {base.dimension};
+          return {base.dimension, number};
         if (!exponent.number)
           return anything;
-        return {base.dimension->power(*exponent.number)};
+        return {base.dimension->power(*exponent.number), number};
       }
 
       Value
       choice()
       {
+        const Level       level(*this);
         const std::size_t begin = at;
         const Value       value = condition();
         if (!takes({"?"}))
@@ -180,8 +192,13 @@ namespace Viscoplastic
         Value             value = product();
         while (next() == '+' || next() == '-')
           {
+            const double sign   = text[at] == '+' ? 1. : -1.;
+            const auto   number = value.number;
             ++at;
-            value = common(value, product(), begin);
+            const Value other = product();
+            value             = common(value, other, begin);
+            if (number && other.number)
+              value.number = *number + sign * *other.number;
           }
         return value;
       }
@@ -195,7 +212,10 @@ namespace Viscoplastic
             const double exponent = text[at] == '*' ? 1. : -1.;
             ++at;
             const Value other = factor();
-            value.number.reset();
+            if (value.number && other.number)
+              value.number = *value.number * std::pow(*other.number, exponent);
+            else
+              value.number.reset();
             if (value.dimension && other.dimension)
               value.dimension =
                 *value.dimension * other.dimension->power(exponent);
@@ -208,6 +228,7 @@ namespace Viscoplastic
       Value
       factor()
       {
+        const Level level(*this);
         if (takes({"-"}))
           {
             Value value = factor();
@@ -234,7 +255,7 @@ namespace Viscoplastic
         next();
         if (const std::size_t end = end_of_number(text, at); end > at)
           {
-            const double number = std::stod(text.substr(at, end - at));
+            const double number = std::strtod(&text[at], nullptr);
             at                  = end;
             if (const auto found = read_unit(text, end))
               {
@@ -244,11 +265,8 @@ namespace Viscoplastic
             return {{}, number};
           }
         const std::size_t begin = at;
-        while (std::isalnum(static_cast<unsigned char>(
-                 at < text.size() ? text[at] : ' ')) != 0 ||
-               (at < text.size() && text[at] == '_'))
-          ++at;
-        const std::string name = text.substr(begin, at - begin);
+        const std::string name  = identifier_at(text, begin);
+        at += name.size();
         if (name.empty())
           throw Unreadable();
         if (takes({"("}))
@@ -299,8 +317,29 @@ namespace Viscoplastic
         return anything; // sign, columns of tables, what muParser will refuse
       }
 
+      /// One more part within a part, as long as it is read.
+      struct Level
+      {
+        explicit Level(DimensionReader &reader)
+          : depth(reader.depth)
+        {
+          if (++depth > deepest)
+            throw Contradiction{"'" + excerpt(reader.text) + "' is nested " +
+                                "more than " + std::to_string(deepest) +
+                                " deep, too deep for its units"};
+        }
+
+        ~Level()
+        {
+          --depth;
+        }
+
+        unsigned int &depth;
+      };
+
       const std::string &text;
-      std::size_t        at = 0;
+      std::size_t        at    = 0;
+      unsigned int       depth = 0;
     };
 
 

@@ -107,10 +107,11 @@ namespace Viscoplastic
       {
         laws = laws_with_libraries(shared_libraries);
       }
-    catch (const std::exception &exception)
+    catch (...)
       {
         AssertThrow(false,
-                    ExcMessage(line->origin() + ": " + reason(exception)));
+                    ExcMessage(line->origin() + ": " +
+                               reason_of_current_exception()));
       }
   }
 
@@ -360,6 +361,37 @@ namespace Viscoplastic
     const auto all = values();
     for (auto &[path, value] : result)
       value = all.at(path);
+    return result;
+  }
+
+
+
+  std::string
+  Parameters::quote_as_written(const std::string &sentence) const
+  {
+    std::string result = sentence;
+    if (as_written.empty())
+      return result;
+    const auto quoted = [](const std::string &value) {
+      return "'" + excerpt(Utilities::trim(value)) + "'";
+    };
+    const auto replace = [&result](const std::string &old_words,
+                                   const std::string &new_words) {
+      const std::size_t begin = result.find(old_words);
+      if (begin != std::string::npos && old_words != new_words)
+        result.replace(begin, old_words.size(), new_words);
+    };
+    const auto all = values();
+    for (const auto &[path, text] : as_written)
+      if (sentence.find("'" + path + "'") != std::string::npos)
+        {
+          const std::string &value = all.at(path);
+          replace(quoted(value), quoted(text));
+          const auto values = Utilities::split_string_list(value, ';');
+          const auto texts  = Utilities::split_string_list(text, ';');
+          for (std::size_t i = 0; i < values.size() && i < texts.size(); ++i)
+            replace(quoted(values[i]), quoted(texts[i]));
+        }
     return result;
   }
 

@@ -60,6 +60,14 @@ namespace Viscoplastic
                       material_ids,
                       "The material id of each cell of the coarse mesh, "
                       "likewise. Unit: 1.");
+    prm.add_parameter("Coordinates",
+                      coordinates,
+                      "Where the nodes of the coarse mesh go: their new "
+                      "coordinates as expressions of the present ones, "
+                      "separated by semicolons, such as `x; y^2' for a mesh "
+                      "that is graded towards y = 0; empty for none. Ids by "
+                      "expressions are those of the place before. Not of "
+                      "meshes with curved edges. Unit: length.");
     prm.add_parameter("Rotation angle",
                       rotation_angle,
                       "Rotation of the generated mesh about the origin, in "

@@ -83,8 +83,8 @@ namespace Viscoplastic
       contact_tolerance,
       "Bound on the algebraic error of each step in the energy norm, relative "
       "to the solution, at which the active set and linear iterations stop. "
-      "0: `Error control/Algebraic fraction' of the estimated discretisation "
-      "error.",
+      "0: `Error control/Algebraic fraction' of the estimated discretization "
+      "error. What lies between 0 and 1e-14, below rounding, is refused.",
       Patterns::Double(0., 0.1));
     prm.add_parameter("Maximal contact iterations",
                       maximal_iterations,
@@ -355,11 +355,11 @@ namespace Viscoplastic
       "Additional fields",
       additional_fields,
       "What the outputs of fields have besides displacements and stresses, "
-      "separated by commas. In the body, of cell means: `total strain' eps(u); "
-      "`irreversible strain' eps(u) - E^-1 sigma; `creep strain', what flow "
-      "has added to that, as the equivalent (2/3 e:e)^(1/2) of its deviator; "
-      "`creep rate', the same of -E^-1 G; `principal stresses', the largest "
-      "first. On Gamma_3: `normal traction' sigma_nu, negative in compression; "
+      "separated by commas. In the body, of cell means: the tensors `total "
+      "strain' eps(u) and `irreversible strain' eps(u) - E^-1 sigma; the scalars "
+      "`creep strain', the equivalent (2/3 e:e)^(1/2) of the deviator of what "
+      "flow has added to the irreversible strain, and `creep rate', the same of "
+      "-E^-1 G; `principal stresses', the largest first. On Gamma_3: `normal traction' sigma_nu, negative in compression; "
       "`friction work', what friction has dissipated per area since t = 0.");
   }
 

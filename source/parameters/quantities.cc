@@ -11,6 +11,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -60,7 +61,7 @@ namespace Viscoplastic
     {
       std::ostringstream text;
       text << std::setprecision(15) << number;
-      if (std::abs(std::stod(text.str()) - number) >
+      if (std::abs(std::strtod(text.str().c_str(), nullptr) - number) >
           std::numeric_limits<double>::epsilon() * std::abs(number))
         {
           text.str("");
@@ -122,7 +123,7 @@ namespace Viscoplastic
     {
       if (text.empty() || end_of_number(text, 0) != text.size())
         return {};
-      return std::stod(text);
+      return std::strtod(text.c_str(), nullptr);
     }
 
 
@@ -224,10 +225,13 @@ namespace Viscoplastic
             "`Time' and `Stress' in `subsection Units'");
         const double factor =
           unit.si / (entry.is_wall_time ? 1. : units.si(unit.dimension));
+        // Not by std::stod(), which throws also where a number is tiny.
+        const double value = factor * std::strtod(digits.c_str(), nullptr);
+        refuse_unless(std::isfinite(value),
+                      "'" + excerpt(digits) +
+                        "' leaves the range of floating-point numbers");
         result += text.substr(copied, number.begin - copied) +
-                  (std::abs(factor - 1.) < 1e-14 ?
-                     digits :
-                     shortest(std::stod(digits) * factor));
+                  (std::abs(factor - 1.) < 1e-14 ? digits : shortest(value));
         copied = end;
       }
     if (copied == 0)

@@ -115,6 +115,7 @@ namespace Viscoplastic
     fail_together(discretization->space.communicator, [this] {
       for (const std::string &name : names)
         {
+          require_writable_file(name);
           files.emplace_back(name);
           AssertThrow(files.back(),
                       ExcMessage("The file '" + name + "' cannot be written."));
@@ -133,7 +134,10 @@ namespace Viscoplastic
     fail_together(discretization->space.communicator, [&] {
       std::vector<std::uintmax_t> sizes;
       for (const std::string &name : names)
-        sizes.push_back(size_up_to(name, last_step));
+        {
+          require_writable_file(name);
+          sizes.push_back(size_up_to(name, last_step));
+        }
       for (std::size_t i = 0; i < names.size(); ++i)
         {
           std::error_code error;

@@ -17,8 +17,9 @@ namespace Viscoplastic
   Statistics::Statistics(const std::string &file_name, const Label &label)
     : name(file_name)
     , label(label)
-    , file(file_name)
   {
+    require_writable_file(name);
+    file.open(name);
     AssertThrow(file, ExcMessage("The file '" + name + "' cannot be written."));
   }
 
@@ -28,6 +29,7 @@ namespace Viscoplastic
                          const unsigned int last_step)
     : name(file_name)
   {
+    require_writable_file(name);
     std::ifstream  old_file(name, std::ios::binary);
     std::string    line;
     std::uintmax_t size     = 0;

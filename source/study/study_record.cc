@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 
+#include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/json_text.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/units.h>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -159,9 +159,9 @@ namespace Viscoplastic
   Table
   read_table(const std::string &file)
   {
-    std::ifstream in(file);
-    std::string   line, item;
-    Table         table;
+    std::istringstream in(read_file_if_any(file).value_or(""));
+    std::string        line, item;
+    Table              table;
     AssertThrow(std::getline(in, line),
                 ExcMessage("There is no table in '" + file + "'."));
     std::istringstream header(line);

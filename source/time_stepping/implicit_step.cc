@@ -48,7 +48,9 @@ namespace Viscoplastic
 
 
     /// Where an increasing function is near zero in (0, 1), given its values at
-    /// the ends, by regula falsi in the manner of Illinois.
+    /// the ends, by regula falsi in the manner of Illinois. Where the function
+    /// jumps over zero the result is near the jump, which is as far as the
+    /// energy decreases; the iteration that asks for it has an end of its own.
     template <typename Function>
     double
     find_root(const Function &f, const double f_0, const double f_1)

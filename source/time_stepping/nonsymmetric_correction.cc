@@ -314,7 +314,7 @@ namespace Viscoplastic
           }
         catch (const SolverControl::NoConvergence &)
           {
-            // What there is may do.
+            // What there is may do: it is taken if it reduces the residual.
           }
         result.iterations = std::max(result.iterations, control.last_step());
         for (double share = 1.; share > 0.1; share *= 0.5)

@@ -30,9 +30,9 @@ namespace Viscoplastic
         {
           throw; // which names the step
         }
-      catch (const std::exception &exception)
+      catch (...)
         {
-          throw StepFailure(n, t, reason(exception));
+          throw StepFailure(n, t, reason_of_current_exception());
         }
     }
   } // namespace

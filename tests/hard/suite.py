@@ -123,7 +123,9 @@ def table(outcomes, size):
         "Written by `contrib/hard`; do not edit. Every scene is in",
         "[prm/verification/hard](../prm/verification/hard), where its first lines say",
         "what is hard about it and what must hold. A figure with a bound is asserted;",
-        "`reported` ones are shown only.",
+        "`reported` ones are shown only. Contact that opens, foundations that give way and",
+        "friction of the pressure that comes out have hard cases among the regressions:",
+        "`test_opening.py`, `test_unilateral.py`, `test_compliance.py`, `test_contact_data.py`.",
         "",
         "Sizes: " + ("full (`contrib/hard`)." if size.full else "small (CTest)."),
     ]

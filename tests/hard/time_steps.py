@@ -310,7 +310,7 @@ def descendants():
 
 
 @case(GROUP, "10^5 steps: equilibrium does not drift, the energy defect keeps its share "
-             "of what is dissipated and is of second order, memory is constant")
+             "of what is dissipated and falls at least like k, memory is constant")
 def many_steps(size, report):
     defects = []
     for n_periods, steps in (250, 20), (size(250, 2500), 40):

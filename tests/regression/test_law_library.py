@@ -28,6 +28,96 @@ PARSED = {
     "Material/parsed/Factor": "1 + x",
 }
 
+# Laws that do what their names say.
+MISBEHAVING = r"""
+#include <viscoplastic_contact/laws/law_library.h>
+
+#include <cstdlib>
+#include <limits>
+
+namespace Viscoplastic
+{
+  class Misbehaving : public ViscoplasticLaw
+  {
+  public:
+    explicit Misbehaving(const std::string &name)
+      : ViscoplasticLaw({})
+      , name(name)
+    {
+      if (name == "throws_when_made")
+        throw 3;
+      if (name == "exits_when_made")
+        std::exit(0);
+    }
+
+    SymmetricTensor<2, 3>
+    rate(const SymmetricTensor<2, 3> &stress,
+         const SymmetricTensor<2, 3> &,
+         const Stiffness &,
+         const LawPoint &point) const override
+    {
+      if (name == "throws_in_a_run" && point.t > 0.)
+        throw 3;
+      if (name == "exits_in_a_run" && point.t > 0.)
+        std::exit(0);
+      return -1e-3 * stress;
+    }
+
+    Tangents
+    tangents(const SymmetricTensor<2, 3> &,
+             const SymmetricTensor<2, 3> &,
+             const Stiffness &,
+             const LawPoint &) const override
+    {
+      Tangents tangents;
+      tangents.stress = -1e-3 * identity_tensor<3>();
+      return tangents;
+    }
+
+    double
+    relaxation_rate(const SymmetricTensor<2, 3> &,
+                    const SymmetricTensor<2, 3> &,
+                    const Stiffness &,
+                    const LawPoint &) const override
+    {
+      return name == "nan_limit"      ? std::numeric_limits<double>::quiet_NaN() :
+             name == "negative_limit" ? -1. :
+                                        1e-3;
+    }
+
+    bool
+    deviatoric_flow() const override
+    {
+      return false;
+    }
+
+  private:
+    const std::string name;
+  };
+
+  LawDescription
+  describe(const std::string &name)
+  {
+    LawDescription law;
+    law.name    = name;
+    law.help    = "A law that misbehaves.";
+    law.declare = [](ParameterHandler &) {};
+    law.make    = [name](const LawSection &) {
+      return std::make_unique<Misbehaving>(name);
+    };
+    return law;
+  }
+} // namespace Viscoplastic
+
+using Viscoplastic::describe;
+VISCOPLASTIC_LAW_LIBRARY(describe("throws_when_made"),
+                         describe("exits_when_made"),
+                         describe("throws_in_a_run"),
+                         describe("exits_in_a_run"),
+                         describe("nan_limit"),
+                         describe("negative_limit"))
+"""
+
 
 class Libraries(TestCase):
     @classmethod
@@ -46,12 +136,16 @@ class Libraries(TestCase):
         )
         return path
 
-    def refused(self, libraries, *words):
+    def refused(self, libraries, *words, ranks=1, **changes):
         result = run(
-            "slab", {"Additional shared libraries": libraries}, check=False
+            "slab",
+            {"Additional shared libraries": libraries, **changes},
+            check=False,
+            ranks=ranks,
         )
         self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        if ranks == 1:
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
         for word in words:
             self.assertIn(word, result.stderr)
 
@@ -61,6 +155,11 @@ class Example(Libraries):
     def setUpClass(cls):
         super().setUpClass()
         law_example.write_project(cls.work)
+        (cls.work / "misbehaving.cc").write_text(MISBEHAVING)
+        with open(cls.work / "CMakeLists.txt", "a") as project:
+            project.write(
+                "viscoplastic_contact_add_law_library(misbehaving misbehaving.cc)\n"
+            )
         cls.library = law_example.build(
             cls.work, f"-Dviscoplastic_contact_DIR={PACKAGE}"
         )
@@ -151,6 +250,21 @@ class Example(Libraries):
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertClose(part["stored_energy"], whole["stored_energy"])
 
+    def test_laws_that_misbehave(self):
+        """A run that ends early never looks like one that has succeeded."""
+        for law, sentence, ranks in (
+            ("throws_when_made", "something has been thrown that is no std::exc", 1),
+            ("exits_when_made", "exit() has been called while running the scene", 1),
+            ("throws_in_a_run", "something has been thrown that is no std::exc", 2),
+            ("exits_in_a_run", "exit() has been called while running the scene", 1),
+            ("exits_in_a_run", "exit() has been called while running the scene", 2),
+            ("nan_limit", "The relaxation rate is nan at x = (", 1),
+            ("negative_limit", "The relaxation rate is -1 at x = (", 2),
+        ):
+            with self.subTest(law=law, ranks=ranks):
+                library = self.library.with_name("misbehaving.so")
+                self.refused(library, sentence, ranks=ranks, **{"Material/Law": law})
+
     def test_scenes_without_it_do_not_know_the_law(self):
         result = run("slab", GAROFALO, check=False)
         self.assertEqual(result.returncode, 1)
@@ -185,6 +299,20 @@ class Refused(Libraries):
     def test_library_without_laws(self):
         path = self.compile("other.so", "int f() { return 1; }")
         self.refused(path, "has no laws", "VISCOPLASTIC_LAW_LIBRARY is missing")
+
+    def test_ends_while_it_is_loaded(self):
+        path = self.compile(
+            "exits.so", "#include <cstdlib>\nstruct A { A() { std::exit(0); } } a;"
+        )
+        self.refused(path, f"exit() has been called while loading", str(path))
+        path = self.compile("throws.so", "struct A { A() { throw 3; } } a;")
+        self.refused(path, "where none can be caught", str(path))
+        path = self.compile(
+            "throws_later.so",
+            'extern "C" const char *viscoplastic_contact_law_interface() { throw 3; }'
+            'extern "C" void viscoplastic_contact_describe_laws() {}',
+        )
+        self.refused(path, "overrides.prm', line ", "that is no std::exception")
 
     def test_another_version(self):
         path = self.compile(

@@ -226,6 +226,8 @@ class Converted(TestCase):
         self.damaged(".inp", "\n1, 2, 3, 4\n", "\n1, 2, 3, 400\n", "there is no element 400")
         self.damaged(".inp", "1, 4, 5, 2", "1, 4, 5, 99", "there is no node 99")
         self.damaged(".inp", "\n2, 0.0", "\n1, 0.0", "line 6: the node 1 is there twice")
+        self.refused("*HEADING\n", ".inp", "as abaqus: it has no nodes")
+        self.refused("*NODE\n1, 0, 0\n", ".inp", "as abaqus: it has no elements")
         self.damaged(".ucd", "quad 1 4 5 2", "quad 1 4 5 99", "there is no node 99")
         self.damaged(".ucd", "1 1 line", "1 -1 line", "the id -1 is not between 0 and 999999999")
         self.damaged(".vtk", "ASCII", "BINARY", "as vtk: meshio refuses it")

@@ -2,6 +2,7 @@
 """VTU series, statistics and records, read back by independent readers."""
 
 import os
+import resource
 import subprocess
 import tempfile
 import unittest
@@ -403,14 +404,16 @@ class SinglePrecision(TestCase):
             self.assertGreater(n_cut, 0)
 
 
-class FullDisk(TestCase):
-    """/dev/full stands for a disk without space: what cannot be written is
-    named in one sentence, and the run fails."""
+class Unwritable(TestCase):
+    """What cannot be written is named in one sentence, and the run fails: a disk
+    without space (/dev/full, or a limit on the size of files), and what is no
+    file in the place of a result."""
 
     SMALL = {
         "Geometry/Arguments": "4, 2 : 0, 0 : 2, 1 : true",
         "Time/Phases": "1: 4, 2: 4",
         "Output/Fields every": 2,
+        "Output/Lines": "0, 0 : 2, 0 : 3",
     }
 
     def setUp(self):
@@ -418,11 +421,16 @@ class FullDisk(TestCase):
         self.addCleanup(place.cleanup)
         self.work = Path(place.name)
 
-    def call(self, *arguments, ranks=1, stdout=subprocess.PIPE, **overrides):
+    def call(self, *arguments, ranks=1, stdout=subprocess.PIPE, limit=None, **overrides):
         (self.work / "small.prm").write_text(as_prm({**self.SMALL, **overrides}))
         command = [EXECUTABLE, *arguments]
         if ranks > 1:
             command = MPIRUN + ["-n", str(ranks)] + command
+
+        def set_limit():
+            if limit is not None:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
         return subprocess.run(
             command,
             cwd=self.work,
@@ -430,28 +438,37 @@ class FullDisk(TestCase):
             stdout=stdout,
             stderr=subprocess.PIPE,
             text=True,
+            timeout=60,
+            preexec_fn=set_limit,
         )
 
-    def fails(self, name, *arguments, **more):
+    def fails(self, sentence, *arguments, **more):
         scene = [str(scene_file("slab")), "small.prm"]
         process = self.call(*scene, *arguments, **more)
-        self.assertEqual(process.returncode, 1, f"{name}: {process.stderr}")
+        self.assertEqual(process.returncode, 1, f"{sentence}: {process.stderr}")
         sentences = [
             line
             for line in process.stderr.splitlines()
             if line.startswith("viscoplastic_contact: ")
         ]
         if more.get("ranks", 1) == 1:
-            self.assertEqual(process.stderr.splitlines(), sentences, name)
+            self.assertEqual(process.stderr.splitlines(), sentences, sentence)
         self.assertEqual(len(sentences), 1, process.stderr)
-        self.assertRegex(sentences[0], rf"{name}.*(No space left|disk full)")
+        self.assertRegex(sentences[0], sentence)
         self.assertLess(len(sentences[0]), 200)
 
-    def test_results(self):
+    def test_full_disk(self):
+        self.fails("parameters.prm' cannot be written: File too large", limit=3000)
+        # A run of many steps: its table outgrows what has been written before.
+        many = {"Time/Phases": "2: 200", "Output/Fields every": 0, "Output/Lines": ""}
+        self.fails("'.*statistics.csv' failed; is the disk full", limit=60000, **many)
+
+    def test_places_of_results(self):
         for name in (
             "parameters.prm",
             "run.json",
             "statistics.csv",
+            "line_0.csv",
             "solution.pvd",
             "contact.pvd",
             "boundary_00000.pvtu",
@@ -462,8 +479,20 @@ class FullDisk(TestCase):
             with self.subTest(name=name):
                 results = self.work / name.replace(".", "_")
                 results.mkdir()
-                (results / name).symlink_to("/dev/full")
-                self.fails(f"'{results}/{name}'", **{"Output/Directory": results})
+                (results / name).symlink_to(self.work / "other")
+                self.fails(
+                    f"'{results}/{name}' cannot be written: it is a symbolic link",
+                    **{"Output/Directory": results},
+                )
+        self.assertFalse((self.work / "other").exists())
+
+    def test_pipe(self):
+        """Nobody reads it: a run that opened it would wait for ever."""
+        os.mkfifo(self.work / "statistics.csv")
+        self.fails(
+            "statistics.csv' cannot be written: it is a pipe",
+            **{"Output/Directory": self.work},
+        )
 
     def test_results_of_another_rank(self):
         (self.work / "solution_00001.1.vtu").symlink_to("/dev/full")
@@ -473,10 +502,10 @@ class FullDisk(TestCase):
 
     def test_messages(self):
         """The results are complete."""
-        self.fails("The log file '/dev/full'", "--log", "/dev/full")
+        self.fails("The log file '/dev/full'.*disk full", "--log", "/dev/full")
         self.assertTrue((self.work / "output/slab/solution_00004.pvtu").exists())
         with open("/dev/full", "w") as full:
-            self.fails("the standard output", stdout=full)
+            self.fails("the standard output.*disk full", stdout=full)
             process = self.call("--describe", stdout=full)
             self.assertEqual(process.returncode, 1)
             self.assertRegex(process.stderr, "^visco.*the standard output.*full")

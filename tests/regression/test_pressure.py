@@ -186,7 +186,12 @@ class Curved(TestCase):
 
     def test_uniform_compression(self):
         poisson = 0.3
-        for dim, ranks, flat in (2, 1, (2, 3)), (2, 3, (2, 3)), (3, 2, (2, 3, 4)):
+        for dim, ranks, flat, more in (
+            (2, 1, (2, 3), ""),
+            (2, 3, (2, 3), "0: 1"),
+            (3, 1, (2, 3, 4), "1: 1"),
+            (3, 2, (2, 3, 4), "0: 2"),
+        ):
             arguments = f"{', '.join(['0'] * dim)} : 1 : 2 : 0 : true"
             roles = {i: pressed("0.2*min(t, 1)") for i in (0, 1)}
             roles.update({i: SYMMETRY for i in flat})
@@ -197,6 +202,7 @@ class Curved(TestCase):
                     "Geometry/Generator": "quarter_hyper_shell",
                     "Geometry/Arguments": arguments,
                     "Geometry/Global refinements": 1,
+                    "Geometry/Boundary refinements": more,
                     "Material/Poisson's ratio": poisson,
                     "Time/Phases": "2: 2",
                     "Solver/Contact tolerance": 1e-13,
@@ -212,6 +218,36 @@ class Curved(TestCase):
             )
             stress = result.fields().cell_data["stress_xx"]
             self.assertClose(stress, -0.2, absolute=1e-7)  # single precision
+
+    def test_initial_stress_in_balance(self):
+        """Also where cells of different size meet on a curved boundary."""
+        for dim, generator, arguments, more, pieces, ranks in (
+            (2, "hyper_shell", "0, 0 : 1 : 2 : 8 : true", "0: 2", (0,), 1),
+            (3, "cylinder", "1 : 2", "1: 1", (0, 2), 1),
+            (3, "hyper_shell", "0, 0, 0 : 1 : 2 : 12 : true", "0: 1", (0,), 3),
+        ):
+            roles = {i: pressed("1") for i in pieces}
+            roles[1] = {"Role": "clamped"}
+            with self.subTest(generator=generator, dim=dim):
+                result = run(
+                    "curved",
+                    {
+                        "Dimension": dim,
+                        "Geometry/Generator": generator,
+                        "Geometry/Arguments": arguments,
+                        "Geometry/Global refinements": 1,
+                        "Geometry/Boundary refinements": more,
+                        "Material/Law": "maxwell",
+                        "Initial state/Stress": "; ".join(
+                            ["-1"] * 3 + ["0"] * (2 * dim - 3)
+                        ),
+                        "Time/Phases": "1: 1",
+                        **boundaries(roles),
+                    },
+                    text="",
+                    ranks=ranks,
+                )
+                self.assertLess(result["max_displacement"].max(), ROUNDING)
 
     def test_lame(self):
         """A ring under inner pressure, u_r = A r + B/r, to second order."""

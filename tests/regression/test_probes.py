@@ -487,7 +487,7 @@ class Refused(TestCase):
             ("0, 0 : 1, 0", "is no line; write `begin : end : number of points'"),
             ("0, 0 : 1, 0 : 1", "points from 2 to 100000, not '1'"),
             ("0, 0 : 1, 0 : many", "points from 2 to 100000, not 'many'"),
-            ("0, 0 : 1, 0, 0 : 3", "needs 2 finite numbers"),
+            ("0, 0 : 1, 0, 0 : 3", "it needs 2 finite numbers"),
             ("0, 0 : 0, 0 : 3", "begins where it ends"),
         ):
             self.refuses(f"'Output/Lines'.*{why}", Lines=line)

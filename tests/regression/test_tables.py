@@ -43,6 +43,12 @@ class Formulas(Tables):
                         table[name], formula[name], absolute=1e-6 * scale, what=name
                     )
 
+    def test_longest_name(self):
+        name = "f" * 100
+        table = self.table(LOAD.replace("force", name))
+        changes = {"Table 1/File": table, "Boundary 0/Traction": f"{name}(t); 0"}
+        self.assertSameRun(run("slab", changes), run("slab"))
+
     def test_materials_and_bounds_in_place(self):
         """Argument x, y or what an expression makes of them; blanks between
         name and parenthesis; constants beyond the rows."""
@@ -174,6 +180,7 @@ class Refused(Tables):
         where = f"'{self.work}/load.csv', line "
         self.refused("", where + "0: the table ends with 0 rows")
         self.refused("t,force\n0,1\n", "ends with 1 rows of numbers; it needs two")
+        self.refused(f"t,{'f' * 50_000}\n0,1\n", "' is no name of a column", "at most 100")
         self.refused("t\n0\n1\n", where + "1: there is one column")
         self.refused("0,1\n1,2\n", where + "1: '0' is no name of a column")
         self.refused("t,force\n0,1\n1\n", where + "3: there are 1 values")

@@ -639,6 +639,11 @@ class Work(TestCase):
             "salt.prm", "--set", "Boundary 2/Friction bound=700 kpa", code=1
         ).stderr
         self.assertIn("there is no unit 'kpa'; did you mean 'kPa'?", said)
+        # Errors that come later quote what was written, too.
+        said = self.program(
+            "salt.prm", "--set", "Boundary 2/Friction bound=7 kg/(m s^2)*q", code=1
+        ).stderr
+        self.assertIn("expression '7 kg/(m s^2)*q' of 'Boundary 2/Friction bound'", said)
         # The unit would be that of the exponent.
         for value in "10^8 Pa", "2*10^8 Pa", "pow(10, 8 Pa)":
             said = self.program(

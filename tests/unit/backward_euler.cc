@@ -477,6 +477,78 @@ namespace
 
 
 
+  /// A law that counts how often it is asked for its rate.
+  struct Counting : public ViscoplasticLaw
+  {
+    explicit Counting(const ViscoplasticLaw &law)
+      : ViscoplasticLaw({})
+      , law(law)
+    {}
+
+    Tensor2
+    rate(const Tensor2   &stress,
+         const Tensor2   &strain,
+         const Stiffness &stiffness,
+         const LawPoint  &point) const override
+    {
+      ++n_calls;
+      return law.rate(stress, strain, stiffness, point);
+    }
+
+    Tangents
+    tangents(const Tensor2   &stress,
+             const Tensor2   &strain,
+             const Stiffness &stiffness,
+             const LawPoint  &point) const override
+    {
+      return law.tangents(stress, strain, stiffness, point);
+    }
+
+    double
+    relaxation_rate(const Tensor2   &stress,
+                    const Tensor2   &strain,
+                    const Stiffness &stiffness,
+                    const LawPoint  &point) const override
+    {
+      return law.relaxation_rate(stress, strain, stiffness, point);
+    }
+
+    bool
+    deviatoric_flow() const override
+    {
+      return true;
+    }
+
+    const ViscoplasticLaw &law;
+    mutable unsigned int   n_calls = 0;
+  };
+
+
+
+  TEST(BackwardEuler, JumpsEndInTime)
+  {
+    // Beyond the stress 1 flow begins at once, which stops a step in between.
+    const Sample   sample("parsed", "set Strain rate = if(sigma_eq > 1, 1, 0)");
+    const Counting law(*sample.law);
+    const double   k = 1e-3 / (3. * mu);
+    for (unsigned int i = 1; i < 100; ++i)
+      {
+        Tensor2 strain, z;
+        strain[0][1] = (1. + 1e-5 * i) / (2. * mu * std::sqrt(3.));
+        law.n_calls  = 0;
+        try
+          {
+            implicit_irreversible_stress(
+              law, strain, z, k, sample.stiffness, sample.point, z);
+          }
+        catch (const ExceptionBase &)
+          {} // there is no stress
+        EXPECT_LT(law.n_calls, 200000u) << i;
+      }
+  }
+
+
+
   TEST(BackwardEuler, SaysWhereThereIsNoStress)
   {
     // Flow that does not vanish with the stress has no answer below 3 mu k.

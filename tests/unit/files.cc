@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/base/files.h>
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -74,16 +75,39 @@ namespace
 
 
 
-  TEST(Files, FullDisk)
+  TEST(Files, OnlyRegularFiles)
   {
-    // A device is written to, and not replaced by a file.
+    // Nothing waits for the other end of a pipe, and what a link leads to stays
+    // as it is.
     const Folder      folder;
-    const std::string name = folder.path / "full";
-    std::filesystem::create_symlink("/dev/full", name);
-    const std::string sentence =
-      "'" + name + "' cannot be written: No space left on device.";
-    expect_refusal([&] { write_file(name, "a"); }, sentence);
-    expect_refusal([&] { replace_file(name, "a"); }, sentence);
+    const std::string pipe = folder.path / "pipe", link = folder.path / "link",
+                      other = folder.add("other", "of somebody else");
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0666), 0);
+    std::filesystem::create_symlink(other, link);
+    for (const auto &[name, kind] :
+         {std::make_pair(pipe, std::string("pipe")),
+          std::make_pair(link, std::string("symbolic link")),
+          std::make_pair(folder.path.string(), std::string("directory"))})
+      {
+        const std::string sentence =
+          "'" + name + "' cannot be written: it is a " + kind + ".";
+        expect_refusal([&] { write_file(name, "a"); }, sentence);
+        expect_refusal([&] { replace_file(name, "a"); }, sentence);
+        expect_refusal([&] { require_writable_file(name); }, sentence);
+      }
+    expect_refusal([&] { read_file_if_any(pipe); },
+                   "'" + pipe + "' cannot be read: it is a pipe.");
+    EXPECT_EQ(read_file_if_any(link), "of somebody else");
+
+    // What is written first, and the lock.
+    const std::string name = folder.path / "a",
+                      lock = folder.path / "viscoplastic_contact.lock";
+    std::filesystem::create_symlink(other, name + ".part");
+    expect_refusal([&] { replace_file(name, "a"); }, "it is a symbolic link.");
+    std::filesystem::create_symlink(other, lock);
+    expect_refusal([&] { DirectoryLock().acquire(folder.path); },
+                   "it is a symbolic link.");
+    EXPECT_EQ(read_file_if_any(other), "of somebody else");
   }
 
 

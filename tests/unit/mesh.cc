@@ -38,6 +38,55 @@ TEST(MeshIds, AreThoseOfThePlaceBeforeItMoves)
 
 
 
+/// A graded box has the boundaries and the volume of the box, cells of
+/// different sizes, and ids by the place before.
+TEST(MeshCoordinates, GradeAndMapTheCoarseMesh)
+{
+  GeometryParameters geometry = generated("4, 4 : 0, 0 : 1, 1 : true");
+  geometry.coordinates        = "2*x; y^2";
+  geometry.material_ids       = "y > 0.5";
+  geometry.global_refinements = 1;
+  geometry.translation        = "0, 5";
+  const auto mesh             = make<2>(geometry);
+  expect_measures(areas(*mesh), {{0, 1.}, {1, 1.}, {2, 2.}, {3, 2.}});
+  expect_measures(volumes(*mesh), {{0, 0.5}, {1, 1.5}});
+  double lowest = 1.;
+  for (const auto &cell : mesh->active_cell_iterators())
+    if (cell->is_locally_owned())
+      lowest = std::min(lowest, cell->extent_in_direction(1));
+  EXPECT_NEAR(Utilities::MPI::min(lowest, MPI_COMM_WORLD), 1. / 32., 1e-14);
+
+  geometry             = generated("2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true");
+  geometry.coordinates = "x + 0.5*z; y; 3*z";
+  // The generator colors cells by octant.
+  expect_measures(volumes(*make<3>(geometry)), {{7, 3.}});
+}
+
+
+
+TEST(MeshCoordinates, Refused)
+{
+  const auto refused = [](const std::string &text, const std::string &why) {
+    GeometryParameters geometry = generated("4, 4 : 0, 0 : 1, 1 : true");
+    geometry.coordinates        = text;
+    expect_mesh_refused<2>(geometry, why);
+  };
+  refused("x", "'Geometry/Coordinates' needs 2 components");
+  refused("x; y + t", "the mesh does not change with time");
+  refused("x; q", "there is no 'q'");
+  refused("1/x; y", "has the value inf");
+  GeometryParameters shell =
+    generated("0, 0 : 0.5 : 1 : 8 : true", "hyper_shell");
+  shell.coordinates = "x; 2*y";
+  expect_mesh_refused<2>(shell, "meshes with straight edges only");
+  // A body that lies on itself.
+  GeometryParameters folded = generated("4, 4 : -1, 0 : 1, 1 : true");
+  folded.coordinates        = "x^2; y";
+  EXPECT_NE(message_of([&] { make<2>(folded); }), "");
+}
+
+
+
 TEST(MeshIds, OnCurvedFacesUsePointsOfTheCurve)
 {
   GeometryParameters geometry =
@@ -131,6 +180,63 @@ TEST(BoundaryRefinements, OfMeshesWithTurnedLines)
       mesh->execute_coarsening_and_refinement();
       EXPECT_EQ(mesh->n_global_active_cells() % 7, 4u);
     }
+}
+
+
+
+/// Where cells of different size meet, the faces of both are the same; and
+/// when they no longer do, the nodes are where the manifold wants them.
+template <int dim>
+void
+check_hanging_vertices(const std::string &shell)
+{
+  GeometryParameters geometry = generated(shell, "hyper_shell");
+  geometry.global_refinements = 1;
+  const auto   mesh           = make<dim>(geometry);
+  unsigned int n_hanging      = 0;
+  for (const double side : {1., -1.})
+    {
+      n_hanging = 0;
+      for (const auto &cell : mesh->active_cell_iterators())
+        if (cell->is_locally_owned() && side * cell->center()[0] > 0.)
+          cell->set_refine_flag();
+      mesh->execute_coarsening_and_refinement();
+      for (const auto &cell : mesh->active_cell_iterators())
+        if (!cell->is_artificial())
+          {
+            for (const unsigned int l : cell->line_indices())
+              if (const auto line = cell->line(l); line->has_children())
+                {
+                  const Point<dim> middle = line->child(0)->vertex(1);
+                  EXPECT_LT(middle.distance(line->center()), 1e-14);
+                  ++n_hanging;
+                }
+            if constexpr (dim == 3)
+              for (const unsigned int f : cell->face_indices())
+                if (const auto face = cell->face(f); face->has_children())
+                  {
+                    const Point<3> middle = face->child(0)->vertex(3);
+                    EXPECT_LT(middle.distance(face->center()), 1e-14);
+                  }
+          }
+      n_hanging = Utilities::MPI::sum(n_hanging, MPI_COMM_WORLD);
+      EXPECT_EQ(n_hanging > 0, side > 0.);
+    }
+  for (const auto &cell : mesh->active_cell_iterators())
+    if (!cell->is_artificial())
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          const double quarters = 4. * cell->vertex(v).norm();
+          EXPECT_NEAR(quarters, std::round(quarters), 1e-12);
+        }
+}
+
+
+
+TEST(HangingVertices, OfCurvedMeshesStandOnCoarserCells)
+{
+  check_hanging_vertices<2>("0, 0 : 1 : 2 : 8 : true");
+  check_hanging_vertices<3>("0, 0, 0 : 1 : 2 : 6 : true");
 }
 
 
@@ -294,7 +400,8 @@ TEST(MeshChecks, Generators)
   expect_mesh_refused<2>(geometry, "'hyper_shell' has curved ones");
   geometry             = generated("2, 2 : 0, 0 : 1, 1 : true");
   geometry.translation = "1, 0, 0";
-  expect_mesh_refused<2>(geometry, "'Geometry/Translation' = 1, 0, 0 needs 2");
+  expect_mesh_refused<2>(geometry,
+                         "'Geometry/Translation' is '1, 0, 0', but it needs 2");
 }
 
 

@@ -109,6 +109,8 @@ namespace
     EXPECT_EQ(converted("5 mm; -3e-1 km", rock, length), "0.005; -300");
     EXPECT_EQ(converted("22 kN/m^3", rock, weight), "0.022");
     EXPECT_EQ(converted("2200 kg/m^3*9.81 m/s^2", si, weight), "2200*9.81");
+    EXPECT_EQ(converted("5 kg/(m s^2) + 2 kN/(m)^2*(x/(3 m))", si, stress),
+              "5 + 2000*(x/(3))");
     EXPECT_EQ(converted("25 MPa*(1 - x/(2 km))", machine, stress),
               "25*(1 - x/(2000000))");
     EXPECT_DOUBLE_EQ(std::stod(converted("5 mm/h*t", si, length)), 5e-3 / 3600);
@@ -127,6 +129,9 @@ namespace
   TEST(Units, DimensionsOfExpressions)
   {
     const Dimension length{1., 0., 0.}, stress{0., 0., 1.};
+    std::string     chain;
+    for (unsigned int i = 0; i < 20000; ++i)
+      chain += "^2";
     for (const std::string text : {"25 MPa",
                                    "-25 MPa; 0; free",
                                    "0.022 MPa/m*(400 m - y)",
@@ -141,6 +146,8 @@ namespace
                                    "abs(3 MPa) - max(0, 2 MPa)",
                                    "2 MPa*force(t/(1 s))",
                                    "1 MPa*10^(-4*x)",
+                                   "(1 MPa^2)^2^-1",
+                                   "(4 MPa^2)^(1 - 3/(2*3))",
                                    "3*t*1 m",
                                    "2 MPa*(("}) // for the parser of expressions
       EXPECT_EQ(wrong_dimension(text, stress), "") << text;
@@ -159,6 +166,11 @@ namespace
            {"x > 1 m ? 1 MPa : 2 m", "brings together a stress and a length"},
            {"(2 MPa)^2", "stress^2, but it must be a stress"},
            {"sqrt(2 MPa)", "stress^0.5, but it must be"},
+           {"1 MPa^2^2^2", "stress^8, but it must be"},
+           {"(1 MPa)^(2*3 - 1)", "stress^5, but it must be"},
+           {std::string(20000, '-') + "1 MPa", "nested more than 1000 deep"},
+           {std::string(20000, '(') + "1 MPa", "nested more than 1000 deep"},
+           {"1 MPa" + chain, "nested more than 1000 deep"},
            {"2 MPa/(3 MPa)", "a pure number, but it must be a stress"}})
       EXPECT_NE(wrong_dimension(text, stress).find(why), std::string::npos)
         << text << ": " << wrong_dimension(text, stress);
@@ -312,6 +324,8 @@ namespace
             "'2 s' is a time, but it must be a length"},
            {"Material/Young's modulus=25 kN",
             "a force, but it must be a stress"},
+           {"Material/Young's modulus=1e999 Pa",
+            "'1e999' leaves the range of floating-point numbers."},
            {"Material/Poisson's ratio=0.3 m",
             "a length, but it must be a pure"},
            {"Material/maxwell/Viscosity=3 Pa", "it must be a viscosity"},
@@ -330,6 +344,16 @@ namespace
                    "`Length', `Time' and `Stress' in `subsection Units'.");
     expect_refusal([] { Parameters({}, {"Units/Length=m"}); },
                    "'Units' has no Time, Stress");
+    // Errors that come later quote what stands in the file.
+    const Parameters parameters({},
+                                with_units({"Boundary 1/Traction=0; 1 kPa*q",
+                                            "Output/Points=5 mm, 1"}));
+    EXPECT_EQ(parameters.quote_as_written("'0.001*q' of 'Boundary 1/Traction', "
+                                          "not '0.001*q' of 'Loads'"),
+              "'1 kPa*q' of 'Boundary 1/Traction', not '0.001*q' of 'Loads'");
+    EXPECT_EQ(parameters.quote_as_written("'Output/Points' is '0.005, 1'"),
+              "'Output/Points' is '5 mm, 1'");
+    EXPECT_EQ(parameters.quote_as_written("'0.005, 1'"), "'0.005, 1'");
     // What takes no units says what it takes.
     expect_refusal(
       [] { Parameters({}, with_units({"Error control/Tolerance=3 m"})); },

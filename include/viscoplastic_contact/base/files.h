@@ -8,7 +8,14 @@ namespace Viscoplastic
 {
   // Files, read and written so that nothing that goes wrong is overlooked.
   // Every function throws ExcMessage with a sentence that names the file and
-  // the reason that the system gives, e.g. a full disk.
+  // the reason that the system gives, e.g. a full disk. All files are regular
+  // ones: a pipe would hang, a device has no end, and results that follow a
+  // link would overwrite the file of somebody else.
+
+  /// Throws unless @p name is a regular file and no link, or nothing yet: for
+  /// streams that are going to write into it.
+  void
+  require_writable_file(const std::string &name);
 
   /// The contents of a file; nothing if there is no such file. A file that is
   /// there and cannot be read is an error.
@@ -21,8 +28,7 @@ namespace Viscoplastic
 
   /**
    * Replace a file at once: whatever happens, it is the old one or the new one.
-   * The new one is written under the name with `.part' and renamed. A device
-   * or a pipe of that name is written to as it is.
+   * The new one is written under the name with `.part' and renamed.
    *
    * With @p to_disk that holds also if the machine loses its power, which
    * takes some milliseconds.
@@ -62,9 +68,9 @@ namespace Viscoplastic
 
     /**
      * Take the lock of a directory, unless this object has one already. Throws
-     * ExcMessage if another process has it. Without a lock goes on where
-     * there is none to be had: the directory does not exist yet or cannot be
-     * written, or its file system has no locks.
+     * ExcMessage if another process has it, or if the lock is no regular file.
+     * Without a lock goes on where there is none to be had: the directory does
+     * not exist yet or cannot be written, or its file system has no locks.
      */
     void
     acquire(const std::string &directory);

@@ -19,6 +19,14 @@ namespace Viscoplastic
 
 
   /**
+   * The same of the exception that is being handled, whatever its type: laws of
+   * shared libraries may throw anything. For a `catch (...)'.
+   */
+  std::string
+  reason_of_current_exception();
+
+
+  /**
    * Do @p work, which is not collective, and throw on all ranks if it fails on
    * some, with the reason() of the first of them: the ranks stay together, and
    * a step can be tried again. Collective; throws ExcMessage.

@@ -15,6 +15,16 @@ namespace Viscoplastic
   nearest_name(const std::string              &name,
                const std::vector<std::string> &candidates);
 
+  /// The identifier (letters, digits and underscores, no digit first) that
+  /// begins at @p begin of @p text; empty if none begins there.
+  std::string
+  identifier_at(const std::string &text, const std::size_t begin);
+
+  /// Whether the identifier @p name stands in @p text by itself, not as a part
+  /// of a longer one.
+  bool
+  mentions(const std::string &text, const std::string &name);
+
   /// A text from outside as part of a sentence: on one line, without control
   /// characters, and shortened to @p longest characters.
   std::string

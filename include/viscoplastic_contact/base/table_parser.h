@@ -12,7 +12,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -50,26 +49,42 @@ namespace Viscoplastic
       variables.resize(names.size());
       for (std::size_t i = 0; i < names.size(); ++i)
         parser.DefineVar(names[i], &variables[i]);
-      for (const auto &[name, value] : constants)
-        parser.DefineConst(name, value);
-      parser.DefineFun("if", Functions::mu_if, true);
-      parser.DefineOprt("|", Functions::mu_or, 1);
-      parser.DefineOprt("&", Functions::mu_and, 2);
-      parser.DefineFun("int", Functions::mu_int, true);
-      parser.DefineFun("ceil", Functions::mu_ceil, true);
-      parser.DefineFun("cot", Functions::mu_cot, true);
-      parser.DefineFun("csc", Functions::mu_csc, true);
-      parser.DefineFun("floor", Functions::mu_floor, true);
-      parser.DefineFun("sec", Functions::mu_sec, true);
-      parser.DefineFun("log", Functions::mu_log, true);
-      parser.DefineFun("pow", Functions::mu_pow, true);
-      parser.DefineFun("erf", Functions::mu_erf, true);
-      parser.DefineFun("erfc", Functions::mu_erfc, true);
-      for (Call &call : calls)
-        parser.DefineFunUserData(call.column->name, &evaluate, &call, false);
-      // muParser takes no blank between a function and its parenthesis.
-      parser.SetExpr(
-        std::regex_replace(expressions[0], std::regex("(\\w)\\s+\\("), "$1("));
+      try
+        {
+          for (const auto &[name, value] : constants)
+            parser.DefineConst(name, value);
+          parser.DefineFun("if", Functions::mu_if, true);
+          parser.DefineOprt("|", Functions::mu_or, 1);
+          parser.DefineOprt("&", Functions::mu_and, 2);
+          parser.DefineFun("int", Functions::mu_int, true);
+          parser.DefineFun("ceil", Functions::mu_ceil, true);
+          parser.DefineFun("cot", Functions::mu_cot, true);
+          parser.DefineFun("csc", Functions::mu_csc, true);
+          parser.DefineFun("floor", Functions::mu_floor, true);
+          parser.DefineFun("sec", Functions::mu_sec, true);
+          parser.DefineFun("log", Functions::mu_log, true);
+          parser.DefineFun("pow", Functions::mu_pow, true);
+          parser.DefineFun("erf", Functions::mu_erf, true);
+          parser.DefineFun("erfc", Functions::mu_erfc, true);
+          for (Call &call : calls)
+            parser.DefineFunUserData(call.column->name,
+                                     &evaluate,
+                                     &call,
+                                     false);
+          // muParser takes no blank between a function and its parenthesis.
+          std::string text;
+          for (const char c : expressions[0])
+            {
+              if (c == '(')
+                text.erase(text.find_last_not_of(" \t") + 1);
+              text += c;
+            }
+          parser.SetExpr(text);
+        }
+      catch (const mu::ParserError &error) // which is no std::exception
+        {
+          AssertThrow(false, ExcMessage(error.GetMsg()));
+        }
     }
 
     double

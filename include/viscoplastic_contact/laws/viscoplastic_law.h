@@ -211,9 +211,9 @@ namespace Viscoplastic
     }
 
     /**
-     * The rate r, 1/time, at which stress relaxes at fixed strain: at least
-     * the largest eigenvalue of -dG/dsigma at this stress. Forward Euler is
-     * stable for time steps up to 2/r. A law whose rate may jump to a larger
+     * The rate r >= 0, 1/time, at which stress relaxes at fixed strain: at
+     * least the largest eigenvalue of -dG/dsigma at this stress. Forward Euler
+     * is stable for time steps up to 2/r. A law whose rate may jump to a larger
      * value within one step returns the larger one.
      */
     virtual double

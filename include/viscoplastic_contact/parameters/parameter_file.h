@@ -91,6 +91,12 @@ namespace Viscoplastic
     std::map<std::string, std::string>
     entries_with_units() const;
 
+    /// A sentence that quotes the value of an entry with units, or a component
+    /// of it, as it is in the units of the scene: with what the files say in
+    /// its place.
+    std::string
+    quote_as_written(const std::string &sentence) const;
+
     /// Where an entry, given by its path, has been set last, as messages name
     /// it: file and line, or the assignment. Empty if it has its default.
     std::string

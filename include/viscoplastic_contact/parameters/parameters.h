@@ -33,6 +33,7 @@ namespace Viscoplastic
     std::string  file;
     std::string  file_format = "automatic";
     std::string  boundary_ids, material_ids;
+    std::string  coordinates;
     double       rotation_angle = 0.;
     std::string  rotation_axis  = "0, 0, 1";
     std::string  translation;

@@ -57,6 +57,7 @@ STATISTICS_2D = [
     "energy_norm",
     "estimate_space",
     "estimate_time",
+    "estimate_history",
     "estimate_algebraic",
     "estimate_initial",
     "estimate_total",

@@ -8,10 +8,6 @@
 #include <viscoplastic_contact/discretization/nodal_frame.h>
 #include <viscoplastic_contact/scene/scene.h>
 
-#include <array>
-#include <string>
-#include <vector>
-
 namespace Viscoplastic
 {
   /**
@@ -64,7 +60,7 @@ namespace Viscoplastic
     bool
     is_held_by_contact() const
     {
-      return !free_motions.empty();
+      return held_by_contact;
     }
 
     /// Degrees of freedom on the mesh that this one is refined from; 0 where it
@@ -184,15 +180,6 @@ namespace Viscoplastic
     std::vector<DistributedVector>
     rigid_body_modes() const;
 
-    /// A basis of the rigid motions that only contact can prevent, in the same
-    /// form; no point moves by more than about 1.
-    std::vector<DistributedVector>
-    motions_held_by_contact() const;
-
-    /// What a combination of these is called, by its largest part.
-    std::string
-    name_of_motion(const std::vector<double> &in_free_motions) const;
-
   private:
     void
     make_frames();
@@ -200,15 +187,9 @@ namespace Viscoplastic
     make_hanging_nodes_in_frames();
     void
     check_rigid_motions();
-    /// The mean position of the nodes. Collective.
-    Point<dim>
-    center() const;
 
-    /// The rigid motions that only contact can prevent, by translations and
-    /// rotations times `radius`, the largest distance from the center.
-    std::vector<std::array<double, 6>> free_motions;
-    double                             radius = 0.;
-    AffineConstraints<double>          hanging_cartesian, hanging_in_frames;
+    bool                      held_by_contact = false;
+    AffineConstraints<double> hanging_cartesian, hanging_in_frames;
     /// Whether any rank has hanging nodes.
     bool any_hanging;
     /// Position of the first owned entry among the relevant ones.

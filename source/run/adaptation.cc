@@ -217,7 +217,7 @@ namespace Viscoplastic
     if (keeps_displacement)
       state.initial_u -= state.u;
     // Equilibrium keeps the volume, which moves u, which makes z inconsistent.
-    const unsigned int n_rounds = scene.has_viscosity() ? 3 : 1;
+    const unsigned int n_rounds = scene.has_viscosity() ? 8 : 1;
     for (unsigned int round = 0; round < n_rounds; ++round)
       {
         if (scene.has_viscosity())

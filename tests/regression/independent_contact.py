@@ -148,6 +148,7 @@ def parameters(scene):
     }
     if "viscosity" in scene:
         entries["Material/Law"] = "maxwell"
+        entries["Material/Stress history"] = "cell means"
         entries["Material/maxwell/Viscosity"] = scene["viscosity"]
     for face in range(2 * dim - 2):
         entries[f"Boundary {face}/Role"] = "free"

@@ -786,6 +786,7 @@ class Pictures(TestCase):
             {
                 "Geometry/Global refinements": 1,
                 "Error control/Tolerance": 0.1,
+                "Material/Stress history": "quadrature points",
                 "Output/Fields every": 100,
             },
             text=(MANUFACTURED / "tresca_2d.prm").read_text(),

@@ -701,6 +701,7 @@ class Price(TestCase):
         with Folder(
             VERIFICATION / "slab.prm",
             Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
+            Material__Stress_history="quadrature points",
             Time__Phases="1: 4, 2: 4",
             Error_control__Tolerance=0.05,
             Error_control__Quantity="friction_force_x",

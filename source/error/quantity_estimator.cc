@@ -114,10 +114,12 @@ namespace Viscoplastic
     estimate.space            = safety * std::abs(estimate.space_correction);
     estimate.time             = std::abs(estimate.time_correction);
     estimate.friction         = errors.friction * estimate.dual_norm;
-    estimate.history          = errors.history * estimate.dual_error;
-    estimate.transfer         = errors.transfer * estimate.dual_error;
-    estimate.algebraic        = errors.algebraic * estimate.dual_norm;
-    estimate.initial          = errors.initial * estimate.dual_error;
+    // Of refined cells it would be a product of errors that is not known.
+    if (!d.scene().keeps_history_at_points())
+      estimate.history = errors.history * estimate.dual_error;
+    estimate.transfer  = errors.transfer * estimate.dual_error;
+    estimate.algebraic = errors.algebraic * estimate.dual_norm;
+    estimate.initial   = errors.initial * estimate.dual_error;
     if (is_sum)
       for (const auto part : {&ErrorParts::history,
                               &ErrorParts::friction,

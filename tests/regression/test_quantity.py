@@ -9,15 +9,14 @@ from harness import TestCase, main, run
 from test_error_bar import manufactured
 from test_restart import EVERY_STEP, Job, without_wall_times
 
+# What cell means leave out of the history is known without its sign only.
+POINTS = {"Material/Stress history": "quadrature points"}
 COARSE_SLAB = {
+    **POINTS,
     "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
     "Output/Fields every": 0,
     "Solver/Contact tolerance": 0,
 }
-
-
-# What cell means leave out of the history is known without its sign only.
-POINTS = {"Material/Stress history": "quadrature points"}
 
 
 def of(column, tolerance=0, **more):

@@ -257,8 +257,9 @@ class Held(TestCase):
         of its bed than a beam would (Weitsman): pi/(2 lambda) on either side of
         its load, and sinks in by (F lambda/2c) (2 + cosh pi - 1)/sinh pi."""
         for stiffness in (2e-6, 4e-9):  # c h / E
-            for ranks, solver in ((1, "direct"), (2, "multigrid")):
+            for solver in "direct", "multigrid":
                 with self.subTest(stiffness=stiffness, solver=solver):
+                    ranks = 2 if solver == "multigrid" and stiffness < 1e-8 else 1
                     compliance = 12000 * stiffness / 0.25
                     block = {
                         "Geometry/Arguments": "32, 4 : 0, 0 : 8, 1 : true",
@@ -271,7 +272,7 @@ class Held(TestCase):
                         "Boundary 2/Gap": 0,
                         "Boundary 3/Traction": f"0; -{0.2 * compliance}*t",
                         "Solver/Linear solver": solver,
-                        "Time/Phases": "1: 2",
+                        "Time/Phases": "1: 1",
                     }
                     entries = {**self.BLOCK, **block}
                     for name in (
@@ -316,7 +317,7 @@ class Held(TestCase):
 
     def test_more_friction_than_the_pressure_before_allows(self):
         """The push of each step is held by the pressure of that step alone."""
-        for steps in (2, 5):
+        for steps in (2, 3):
             with self.subTest(steps=steps):
                 result = self.run_block(
                     {

@@ -117,7 +117,9 @@ def values_at_corners(fields, order):
 def paired(one, other, name, result):
     """[(time, fields of one, fields of the other)], in the same order."""
     a, b = one.series(name), other.series(name)
-    if [time for time, _ in a] != [time for time, _ in b]:
+    # lengths of steps that errors choose hold what the solves leave
+    times = [np.array([time for time, _ in run]) for run in (a, b)]
+    if len(a) != len(b) or not np.allclose(*times, rtol=1e-7, atol=0):
         result.unlike.append(f"times of {name}.pvd")
         return []
     pairs = []

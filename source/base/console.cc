@@ -6,6 +6,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 
@@ -84,6 +85,10 @@ namespace Viscoplastic
   void
   Console::remark(const std::string &sentence)
   {
+    // Two passes may say the same.
+    if (std::find(all_remarks.begin(), all_remarks.end(), sentence) !=
+        all_remarks.end())
+      return;
     all_remarks.push_back(sentence);
     everywhere << sentence << std::endl;
   }

@@ -58,7 +58,9 @@ namespace Viscoplastic
   turning_work(const ContactLayout             &face,
                const ContactState              &old_state,
                const ContactState              &state,
-               const std::vector<Tensor<1, 2>> &slips)
+               const std::vector<Tensor<1, 2>> &slips,
+               const double                     k,
+               const double                     old_k)
   {
     AssertDimension(slips.size(), state.n_points());
     double work = 0.;
@@ -71,7 +73,16 @@ namespace Viscoplastic
             state.sticks[p] || force == 0. || stable_norm(old) == 0.)
           continue;
         const double cosine = (old / stable_norm(old)) * (now / force);
-        work += force * stable_norm(slips[p]) * std::clamp(1. - cosine, 0., 1.);
+        const double slip   = stable_norm(slips[p]);
+        // In the plane it turns back only, through rest.
+        if (face.points[p].n_tangents > 1)
+          work += force * slip * std::clamp(1. - cosine, 0., 1.);
+        const double rate     = slip / k,
+                     old_rate = stable_norm(old_state.slip[p]) / old_k,
+                     slope    = 2. * (rate - old_rate) * k / (k + old_k),
+                     last     = rate + slope;
+        if (last < 0.)
+          work += force * k * last * last / (-4. * slope);
       }
     return face.sum(work);
   }

@@ -139,7 +139,8 @@ namespace Viscoplastic
     ErrorEstimate &estimate    = end.errors;
     const bool     is_second   = n_sample_fields(scene) > 2;
     const bool     is_measured = scene.parameters.step_control.is_on() ||
-                             scene.parameters.error_control.has_tolerance();
+                             scene.parameters.error_control.has_tolerance() ||
+                             scene.quantity;
     const double k   = state.k;
     state.time_error = accepted.time_error;
     if (is_second)

@@ -69,7 +69,8 @@ namespace Viscoplastic
     const ErrorEstimate       &errors   = end.errors;
     const QuantityEstimate    &before   = accepted.errors.quantity;
     QuantityEstimate          &estimate = end.errors.quantity;
-    const bool                 is_sum   = d.scene().quantity->is_sum();
+    const QuantityOfInterest  &quantity = *d.scene().quantity;
+    const bool                 is_sum   = quantity.is_sum();
     estimate.value                      = dual_problem.value(state, end.forces);
     if (is_sum)
       {
@@ -86,20 +87,33 @@ namespace Viscoplastic
     if (dual.norm > 0.)
       {
         const auto          products = space_estimator.multiply(state, dual);
-        std::vector<double> sums(3, 0.);
+        std::vector<double> sums(4, 0.);
         Vector<double>      indicators(products.of_both);
+        // Rates that are wrong for long have moved the point, which residuals
+        // of the present stress do not know; forces forget them.
+        const double creep =
+          quantity.kind == QuantityOfInterest::Kind::displacement &&
+              errors.energy_norm > 0. ?
+            std::min(1., errors.irreversible_norm / errors.energy_norm) :
+            0.;
+        Vector<double> of_creep(indicators.size());
+        if (creep > 0.)
+          of_creep = space_estimator.multiply_recovered(state, dual);
         for (unsigned int c = 0; c < indicators.size(); ++c)
           {
             sums[0] += products.of_both[c];
             sums[1] += products.of_dual[c];
-            indicators[c] = std::abs(indicators[c]);
-            sums[2] += indicators[c];
+            sums[2] += std::abs(products.of_both[c]);
+            sums[3] += creep * std::abs(of_creep[c]);
+            indicators[c] = std::max(safety * std::abs(products.of_both[c]),
+                                     creep * std::abs(of_creep[c]));
           }
         Utilities::MPI::sum(sums, d.space.communicator, sums);
         mesh                    = dual_problem.sign() * sums[0];
         estimate.dual_norm      = dual.norm;
         estimate.dual_error     = std::sqrt(sums[1]);
-        estimate.unsigned_space = safety * sums[2];
+        estimate.space_of_creep = sums[3];
+        estimate.unsigned_space = std::max(safety * sums[2], sums[3]);
         if (d.scene().has_viscosity()) // collective
           {
             DistributedVector load = d.space.owned_vector();
@@ -111,9 +125,19 @@ namespace Viscoplastic
       }
     estimate.space_correction = estimate.settled_space + mesh;
     estimate.time_correction  = estimate.settled_time + time;
-    estimate.space            = safety * std::abs(estimate.space_correction);
-    estimate.time             = std::abs(estimate.time_correction);
-    estimate.friction         = errors.friction * estimate.dual_norm;
+    estimate.space = std::max(safety * std::abs(estimate.space_correction),
+                              estimate.space_of_creep);
+    estimate.time  = std::abs(estimate.time_correction);
+    if (quantity.kind == QuantityOfInterest::Kind::friction_force &&
+        errors.friction > accepted.errors.friction)
+      {
+        // The force of what slips is known, unless some of it is at rest.
+        ContactState held = state.contact;
+        held.sticks.assign(held.n_points(), true);
+        estimate.dual_norm =
+          std::max(estimate.dual_norm, dual_problem.solve(solver, held).norm);
+      }
+    estimate.friction = errors.friction * estimate.dual_norm;
     // Of refined cells it would be a product of errors that is not known.
     if (!d.scene().keeps_history_at_points())
       estimate.history = errors.history * estimate.dual_error;

@@ -133,16 +133,13 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  RecoveryEstimator<dim>::squared_distance(const unsigned int       c,
-                                           const DistributedVector &u) const
+  std::array<SymmetricTensor<2, 3>, RecoveryEstimator<dim>::n_points>
+  RecoveryEstimator<dim>::defects(const unsigned int       c,
+                                  const DistributedVector &u) const
   {
-    const Cell &cell    = local.cells[c];
-    const auto &weights = local.shapes[cell.shape].weights;
-    const auto  strains =
-      local.strains(cell, local.displacements(cell, u.begin()));
-    const double *nodal  = values.begin();
-    double        result = 0.;
+    const Cell &cell = local.cells[c];
+    auto result = local.strains(cell, local.displacements(cell, u.begin()));
+    const double *nodal = values.begin();
     for (unsigned int q = 0; q < n_points; ++q)
       {
         SymmetricTensor<2, dim> recovered;
@@ -150,11 +147,10 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < n_components; ++i)
             recovered.access_raw_entry(i) +=
               shape_values[q][v] * nodal[nodes[c][v] + i];
-        SymmetricTensor<2, 3> defect = -strains[q];
+        result[q] *= -1.;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = i; j < dim; ++j)
-            defect[i][j] += recovered[i][j];
-        result += weights[q] * (cell.stiffness.stress(defect) * defect);
+            result[q][i][j] += recovered[i][j];
       }
     return result;
   }
@@ -165,14 +161,40 @@ namespace Viscoplastic
   Vector<double>
   RecoveryEstimator<dim>::estimate(const DistributedVector &u) const
   {
-    std::vector<double> squared(local.cells.size());
+    return multiply(u, u);
+  }
+
+
+
+  template <int dim>
+  Vector<double>
+  RecoveryEstimator<dim>::multiply(const DistributedVector &u,
+                                   const DistributedVector &w) const
+  {
+    std::vector<double> products(local.cells.size());
+    std::vector<std::array<SymmetricTensor<2, 3>, n_points>> of_u;
     for (const Part &part : parts)
       {
         recover(part, u);
-        for (const unsigned int c : part.cells)
-          squared[c] = squared_distance(c, u);
+        if (&u != &w)
+          {
+            of_u.clear();
+            for (const unsigned int c : part.cells)
+              of_u.push_back(defects(c, u));
+            recover(part, w);
+          }
+        for (unsigned int i = 0; i < part.cells.size(); ++i)
+          {
+            const unsigned int c       = part.cells[i];
+            const Cell        &cell    = local.cells[c];
+            const auto        &weights = local.shapes[cell.shape].weights;
+            const auto         of_w    = defects(c, w);
+            for (unsigned int q = 0; q < n_points; ++q)
+              products[c] += weights[q] * (cell.stiffness.stress(of_w[q]) *
+                                           (of_u.empty() ? of_w : of_u[i])[q]);
+          }
       }
-    return local.by_active_index(squared);
+    return local.by_active_index(products);
   }
 
 

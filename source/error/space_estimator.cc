@@ -101,6 +101,16 @@ namespace Viscoplastic
 
   template <int dim>
   Vector<double>
+  SpaceEstimator<dim>::multiply_recovered(const State<dim>        &state,
+                                          const DualSolution<dim> &dual) const
+  {
+    return recovery_estimator->multiply(state.u, dual.cartesian);
+  }
+
+
+
+  template <int dim>
+  Vector<double>
   squared_recovery_estimate(const StressSpace<dim> &stress_space,
                             const State<dim>       &state)
   {

@@ -224,6 +224,46 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  refine_like(const parallel::distributed::Triangulation<dim> &model,
+              parallel::distributed::Triangulation<dim>       &triangulation)
+  {
+    std::set<CellId> refined;
+    for (const auto &active : model.active_cell_iterators())
+      if (active->is_locally_owned())
+        {
+          auto cell =
+            typename Triangulation<dim>::cell_iterator(&model,
+                                                       active->level(),
+                                                       active->index());
+          while (cell->level() > 0)
+            {
+              cell = cell->parent();
+              refined.insert(cell->id());
+            }
+        }
+    const MPI_Comm comm = triangulation.get_communicator();
+    for (const std::vector<CellId> &of_rank : Utilities::MPI::all_gather(
+           comm, std::vector<CellId>(refined.begin(), refined.end())))
+      refined.insert(of_rank.begin(), of_rank.end());
+    for (bool changes = true; changes;)
+      {
+        changes = false;
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (cell->is_locally_owned() && refined.count(cell->id()) > 0)
+            {
+              cell->set_refine_flag();
+              changes = true;
+            }
+        changes = Utilities::MPI::logical_or(changes, comm);
+        if (changes)
+          triangulation.execute_coarsening_and_refinement();
+      }
+  }
+
+
+
+  template <int dim>
+  void
   prepare_mesh_change(parallel::distributed::Triangulation<dim> &triangulation)
   {
     const auto marks = [&triangulation] {
@@ -254,6 +294,12 @@ namespace Viscoplastic
               parallel::distributed::Triangulation<2> &);
   template void
   refine_mesh(const GeometryParameters &,
+              parallel::distributed::Triangulation<3> &);
+  template void
+  refine_like(const parallel::distributed::Triangulation<2> &,
+              parallel::distributed::Triangulation<2> &);
+  template void
+  refine_like(const parallel::distributed::Triangulation<3> &,
               parallel::distributed::Triangulation<3> &);
   template void
   prepare_mesh_change(parallel::distributed::Triangulation<2> &);

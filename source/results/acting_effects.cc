@@ -150,7 +150,9 @@ namespace Viscoplastic
     if (scene.body_force && loads.count(body_force_id) == 0)
       result.push_back("the body force has never acted: 'Loads/Body force' has "
                        "been zero everywhere and at all times, and can go.");
-    if (scene.is_adaptive() && !mesh_has_changed)
+    // To a tolerance of a quantity, a first pass has found the mesh.
+    if (scene.is_adaptive() && !mesh_has_changed &&
+        !(scene.quantity && scene.parameters.error_control.has_tolerance()))
       result.push_back("adaptivity has never acted: the mesh has never "
                        "changed, and 'Mesh refinement/Strategy' = none gives "
                        "the same for less.");

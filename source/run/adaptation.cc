@@ -106,9 +106,11 @@ namespace Viscoplastic
     constexpr double safety  = QuantityEstimator<dim>::safety;
     const double     settled = safety * std::abs(quantity.settled_space),
                  open        = std::max(0.1 * allowed, allowed - settled),
-                 of_mesh     = safety * std::abs(quantity.space_correction -
-                                             quantity.settled_space),
-                 ratio       = std::sqrt(
+                 of_mesh =
+                   std::max(safety * std::abs(quantity.space_correction -
+                                              quantity.settled_space),
+                            quantity.space_of_creep),
+                 ratio = std::sqrt(
                    std::max(of_mesh,
                             std::min(quantity.unsigned_space, 0.9 * open)) /
                    open);
@@ -122,6 +124,10 @@ namespace Viscoplastic
   std::function<void()>
   ViscoplasticContact<dim>::keep_memory()
   {
+    // What creeps or slips remembers each mesh, which the estimate of a
+    // quantity does not see: its mesh never becomes coarser.
+    if (scene.quantity)
+      return nullptr;
     return [this] {
       const double size =
         budget->size(recorder.summary().controlled_errors().size);

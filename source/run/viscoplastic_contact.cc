@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/mesh/mesh_refinement.h>
 #include <viscoplastic_contact/results/unit_labels.h>
 #include <viscoplastic_contact/run/pilot_run.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
@@ -139,6 +140,21 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ViscoplasticContact<dim>::take_mesh_of_first_pass()
+  {
+    out << "First without files, to find a mesh for all times:" << std::endl;
+    ViscoplasticContact<dim> first(parameters, console);
+    first.is_first_pass = true;
+    first.run_without_files();
+    refine_like(first.triangulation, triangulation);
+    out << "Again from the beginning, on the mesh that has been found:"
+        << std::endl;
+  }
+
+
+
+  template <int dim>
+  void
   ViscoplasticContact<dim>::begin_state()
   {
     std::string failure;
@@ -147,6 +163,11 @@ namespace Viscoplastic
         TimerOutput::Scope phase(timer, "pilot run");
         budget->expect_size(size_in_pilot_run<dim>(parameters, failure));
         control.expect_size(budget->expected_size);
+      }
+    if (scene.quantity && scene.is_adaptive() && budget && !is_first_pass)
+      {
+        TimerOutput::Scope phase(timer, "pilot run");
+        take_mesh_of_first_pass();
       }
     check_stages();
     set_up();
@@ -211,7 +232,8 @@ namespace Viscoplastic
                 ExcMessage("'Step control/Tolerance' needs an estimate of the "
                            "error; set 'Error control/Error bar' = true."));
     control.set_has_estimate(scene.has_viscosity());
-    announcer.announce(scene);
+    if (!is_first_pass)
+      announcer.announce(scene);
     land_on_kinks();
   }
 
@@ -227,7 +249,8 @@ namespace Viscoplastic
     const KinksOfScene found = find_kinks(scene, triangulation);
     if (found.kinks.empty())
       return;
-    announcer.announce(found);
+    if (!is_first_pass)
+      announcer.announce(found);
     std::vector<double> kinks, jumps;
     for (const Kink &kink : found.kinks)
       (kink.is_jump ? jumps : kinks).push_back(kink.t);

@@ -156,7 +156,8 @@ namespace Viscoplastic
               has_contact_event(discretization.face->layout(),
                                 state.contact,
                                 step.end.state.contact,
-                                control.is_kink(time_step.t_old));
+                                control.is_kink(time_step.t_old) ||
+                                  !accepted.is_solution);
             if (control.accepts(time_step, errors, has_event))
               {
                 step.n_rejections = n_rejections;
@@ -315,7 +316,9 @@ namespace Viscoplastic
     double             turning = 0., missed_work = 0.;
     if (discretization.face && scene.has_bounds_of_step_before())
       missed_work = discretization.face->missed_bounds(state).work;
-    if (dim == 3 && discretization.face)
+    // What slip turns by on a new mesh, it does in any step.
+    if (discretization.slipping_face() != nullptr && accepted.state.k > 0. &&
+        accepted.is_solution && !control.has_kink_at(step.time_step.t_old))
       {
         DistributedVector change = end.forces.u;
         change -= accepted.forces.u;
@@ -323,7 +326,9 @@ namespace Viscoplastic
           discretization.face->layout(),
           accepted.state.contact,
           state.contact,
-          discretization.face->slips(change, state.contact.foundation_step));
+          discretization.face->slips(change, state.contact.foundation_step),
+          state.k,
+          accepted.state.k);
       }
     error_estimator->assess(discretization.stress_space,
                             time_defect(step.is_implicit ?

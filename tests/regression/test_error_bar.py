@@ -106,6 +106,17 @@ class LongCreep(TestCase):
         self.assertGreater(record["history"], record["space"])
         self.assertIn("mesh, in the history", result.stdout)
 
+    def test_quantity_to_a_tolerance(self):
+        """A point remembers what rates have been wrong by."""
+        result = self.cylinder(
+            1,
+            **{"Error control/Quantity": "point0_x", "Error control/Tolerance": 0.02},
+        )
+        self.assertIn("has been kept", result.stdout)
+        self.assertClose(self.velocity(result), self.VELOCITY, relative=0.02)
+        # one mesh from the beginning
+        self.assertEqual(result["cells"][0], result["cells"][-1])
+
     def test_run_to_a_tolerance(self):
         """New meshes bring neither stresses beyond those there were nor short steps,
         and what they leave in z counts."""

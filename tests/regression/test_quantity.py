@@ -123,7 +123,7 @@ class Estimated(TestCase):
                 error = (kept[column] - fine[column])[-1] / fine[column][-1]
                 self.assertLess(abs(error), 0.002)
                 self.assertGreater(abs(error), 0.0002)
-                self.assertGreater(kept["cells"][-1], kept["cells"][1])
+                self.assertGreater(kept["cells"][-1], coarse["cells"][-1])
 
     def test_of_time_steps(self):
         """Few steps on a fine mesh, until all of the face slips."""
@@ -191,10 +191,8 @@ class Kept(TestCase):
         error = np.abs(exact - result[column]).max() / size
         estimate = result["quantity_total"].max() / np.abs(result[column]).max()
         self.assertLess(estimate, tolerance)
-        # A front of slip that passes nodes of a coarse mesh in one step is more
-        # than the linearised friction of the estimate sees.
-        self.assertLess(error, 1.3 * tolerance, column)
-        self.assertGreater(error, tolerance / 4, column)
+        self.assertLess(error, tolerance, column)
+        self.assertGreater(error, tolerance / 5, column)
         self.assertIn(f"Estimated error of {column}", result.stdout)
         self.assertIn("has been kept", result.stdout)
         return result
@@ -212,6 +210,22 @@ class Kept(TestCase):
         for law in "elastic", "maxwell":
             self.check("friction_dissipation", 0.01, law)
 
+    def test_slip_that_comes_to_rest_in_a_step(self):
+        """A load that slackens while the bound grows, the same at all points:
+        the force is that of the bound until all is at rest."""
+        scene = {
+            **COARSE_SLAB,
+            "Geometry/Arguments": "8, 8 : 0, 0 : 1, 1 : true",
+            "Boundary 0/Traction": "0.2*sin(3*t); 0",
+            "Boundary 2/Friction bound": "0.08*min(2*t, 1)",
+            "Time/Phases": "0.5: 4",
+        }
+        result = run("slab", of("friction_force_x", 0.02, **scene))
+        fine = {**scene, "Geometry/Global refinements": 2, "Time/Phases": "0.5: 200"}
+        fine = run("slab", fine)["friction_force_x"]
+        self.assertClose(result["friction_force_x"][-1], fine[-1], 0.02)
+        self.assertIn("has been kept", result.stdout)
+
     def test_refines_where_the_quantity_feels_it(self):
         point = run("slab", of("point0_x", 0.005, **COARSE_SLAB))
         force = run("slab", of("friction_force_x", 0.005, **COARSE_SLAB))
@@ -219,13 +233,14 @@ class Kept(TestCase):
 
     def test_on_1_2_3_ranks(self):
         scene = {**COARSE_SLAB, "Solver/Linear solver": "multigrid"}
-        # The dual problem is solved to 1e-3, by which steps are chosen.
-        for column, of_t in ("reaction_3_x", 1e-4), ("friction_dissipation", 1e-3):
+        for column in "reaction_3_x", "friction_dissipation":
             one = run("slab", of(column, 0.005, **scene))
             for ranks in 2, 3:
                 several = run("slab", of(column, 0.005, **scene), ranks=ranks)
                 self.assertEqual(list(several["cells"]), list(one["cells"]))
-                self.assertClose(several["t"], one["t"], of_t)
+                # Steps are chosen by the dual problem, which is solved to 1e-3,
+                # and each begins where the one before has ended.
+                self.assertClose(several["t"], one["t"], 5e-3)
                 # Where signs cancel, what is left is as inexact as its parts.
                 bars = one["quantity_total"]
                 difference = several["quantity_total"] - bars

@@ -122,11 +122,13 @@ namespace
     };
     ContactLayout face;
     face.points.resize(3); // of friction
+    for (auto &point : face.points)
+      point.n_tangents = 2;
     const auto work = [&](const ContactState &from, const ContactState &to) {
       std::vector<Tensor<1, 2>> slips(to.multiplier);
       for (Tensor<1, 2> &slip : slips)
         slip *= 1.5;
-      return turning_work(face, from, to, slips);
+      return turning_work(face, from, to, slips, 1., 1.);
     };
     const double n_ranks = face.sum(1.);
     EXPECT_NEAR(work(state({0., 1.}), state({0., 1.})), 0., 1e-14);
@@ -140,5 +142,29 @@ namespace
     at_rest.sticks[0]    = true;
     EXPECT_EQ(work(at_rest, state({0.5})), 0.);
     EXPECT_EQ(work(state({0.5}), at_rest), 0.);
+  }
+
+
+
+  TEST(ContactEvent, SlipThatComesToRestInAStep)
+  {
+    // Mean rates 3 and 1 of steps of equal length: 3 and -1 at the ends.
+    ContactLayout face;
+    face.points.resize(1);
+    face.points[0].n_tangents = 1;
+    const auto work = [&face](const double rate, const double old_rate) {
+      const double k = 0.1;
+      ContactState from(std::vector<double>(1, 2.)), to = from;
+      from.sticks[0] = to.sticks[0] = false;
+      from.multiplier[0][0] = to.multiplier[0][0] = -2.;
+      from.slip[0][0]                             = -k * old_rate;
+      std::vector<Tensor<1, 2>> slips(1);
+      slips[0][0] = -k * rate;
+      return turning_work(face, from, to, slips, k, k);
+    };
+    const double n_ranks = face.sum(1.);
+    EXPECT_NEAR(work(1., 3.), 2. * n_ranks * 0.1 / 8., 1e-14);
+    EXPECT_EQ(work(1., 2.), 0.);
+    EXPECT_EQ(work(3., 1.), 0.);
   }
 } // namespace

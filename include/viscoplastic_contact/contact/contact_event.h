@@ -28,11 +28,20 @@ namespace Viscoplastic
    * sum of |lambda| |s| (1 - cos theta) over the points that slip in a step and
    * in the one before, with theta the angle between their multipliers, or pi/2
    * if it is larger: how much more work slip in the old direction would have
-   * asked for. @p slips: of the step. Collective.
+   * asked for. And |lambda| times the slip that is missed by points that slow
+   * down so fast that they come to rest before the end, where the step sees
+   * them slip: k v_1^2 / (2 (v_0 - v_1)) with the rates v_0 > 0 > v_1 of a line
+   * through the mean rate of the step, twice as steep as the one through the
+   * mean rates of both steps, since slip may slow down faster towards its end.
+   *
+   * @p slips: of the step; @p k and @p old_k: its length and that of the one
+   * before. Collective.
    */
   double
   turning_work(const ContactLayout             &face,
                const ContactState              &old_state,
                const ContactState              &state,
-               const std::vector<Tensor<1, 2>> &slips);
+               const std::vector<Tensor<1, 2>> &slips,
+               const double                     k,
+               const double                     old_k);
 } // namespace Viscoplastic

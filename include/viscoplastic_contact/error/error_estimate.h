@@ -62,6 +62,9 @@ namespace Viscoplastic
     /// The sum of what the cells contribute to the error of the mesh, without
     /// signs.
     double unsigned_space = 0.;
+    /// Of a displacement: what creep has made of the error of the mesh, without
+    /// signs.
+    double space_of_creep = 0.;
     /// a(w, w)^{1/2} of the dual solution w, and its own estimated error.
     double dual_norm = 0., dual_error = 0.;
 
@@ -72,7 +75,7 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       archive &value &space_correction &time_correction &settled_space
-        &settled_time &unsigned_space &dual_norm &dual_error;
+        &settled_time &unsigned_space &space_of_creep &dual_norm &dual_error;
     }
   };
 

@@ -35,6 +35,11 @@ namespace Viscoplastic
     Vector<double>
     estimate(const DistributedVector &u) const;
 
+    /// a(e_u, e_w) by active cell, of the errors of two displacements with
+    /// their signs; arguments and result as of estimate(). Collective.
+    Vector<double>
+    multiply(const DistributedVector &u, const DistributedVector &w) const;
+
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
                                   n_points   = LocalCells<dim>::n_points;
@@ -66,9 +71,9 @@ namespace Viscoplastic
     void
     recover(const Part &part, const DistributedVector &u) const;
 
-    /// eta_K^2 of an owned cell, from what has been recovered.
-    double
-    squared_distance(const unsigned int cell, const DistributedVector &u) const;
+    /// eps* - eps_h at the points of an owned cell, from what is recovered.
+    std::array<SymmetricTensor<2, 3>, n_points>
+    defects(const unsigned int cell, const DistributedVector &u) const;
 
     const LocalCells<dim> &local;
     const FESystem<dim>    fe;

@@ -68,6 +68,12 @@ namespace Viscoplastic
     typename ResidualEstimator<dim>::Products
     multiply(const State<dim> &state, const DualSolution<dim> &dual) const;
 
+    /// The same by RecoveryEstimator, which sees what creep has made of errors
+    /// of the rates. Collective.
+    Vector<double>
+    multiply_recovered(const State<dim>        &state,
+                       const DualSolution<dim> &dual) const;
+
   private:
     const Discretization<dim> &discretization;
     const bool                 refines_by_kelly, refines_by_residual;

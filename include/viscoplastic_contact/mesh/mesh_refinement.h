@@ -16,6 +16,12 @@ namespace Viscoplastic
   refine_mesh(const GeometryParameters                  &geometry,
               parallel::distributed::Triangulation<dim> &triangulation);
 
+  /// Refine a mesh as another one of the same coarse cells is. Collective.
+  template <int dim>
+  void
+  refine_like(const parallel::distributed::Triangulation<dim> &model,
+              parallel::distributed::Triangulation<dim>       &triangulation);
+
   /**
    * prepare_coarsening_and_refinement() for the whole mesh: the flags that a
    * balanced mesh asks for, whatever part each rank has. deal.II's own looks at

@@ -87,6 +87,12 @@ namespace Viscoplastic
     void
     begin_state();
 
+    /// Refine the first mesh of a run to a tolerance of a quantity as the last
+    /// one of another such run is. What creeps or slips remembers each mesh, as
+    /// the estimate of a quantity does not.
+    void
+    take_mesh_of_first_pass();
+
     /// Begin from the start: everything up to the initial state.
     void
     begin();
@@ -251,6 +257,7 @@ namespace Viscoplastic
     EvaluatedState<dim> accepted;
     /// How often the mesh has been refined for the step that is being made.
     unsigned int               n_refinements = 0;
+    bool                       is_first_pass = false;
     ContactReport              initial_report;
     std::optional<Output<dim>> output; // absent without files
     LineOutput<dim>            lines;

@@ -28,10 +28,15 @@ namespace Viscoplastic
     NormalContact<dim> contact;
     /// The reaction on each boundary with prescribed displacements.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
-    /// Loads, reactions and friction on the body, which add up to zero, and the
-    /// largest of them, or what rounding makes of them if that is more.
+    /// Loads, reactions, friction and contact on the body, which add up to
+    /// zero, the size of the loads and of the largest of all of them.
     Tensor<1, dim> sum_of_forces;
-    double         largest_force = 0.;
+    double         load_size = 0., largest_force = 0.;
+    /// A force beside which the sum counts as well: where all of them are
+    /// nothing beside the nodal forces that cancel, or rounding.
+    double force_scale = 0.;
+    /// What rounding of displacements may have made of the sum, if anything.
+    double rounding_of_forces = 0.;
     /// The largest length of a displacement, and the node that has it.
     double     max_displacement = 0.;
     Point<dim> displacement_position;

@@ -3,6 +3,7 @@
 #include <deal.II/lac/householder.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
+#include <viscoplastic_contact/contact/kink_search.h>
 #include <viscoplastic_contact/contact/statics.h>
 
 #include <algorithm>
@@ -216,30 +217,26 @@ namespace Viscoplastic
 
 
 
-    /// The directions of a symmetric matrix in which it is at least @p least,
-    /// relative to its largest eigenvalue, and its values there.
+    /// The eigenvalues and eigenvectors of a symmetric matrix; what is nothing
+    /// beside the largest one is zero.
     std::vector<std::pair<double, Generalized>>
-    range(const FullMatrix<double> &matrix)
+    eigenpairs(const FullMatrix<double> &matrix)
     {
       const unsigned int       n = matrix.m();
       LAPACKFullMatrix<double> lapack(n, n);
       lapack = matrix;
-      Vector<double>     eigenvalues;
-      FullMatrix<double> eigenvectors;
-      lapack.compute_eigenvalues_symmetric(-std::numeric_limits<double>::max(),
-                                           std::numeric_limits<double>::max(),
-                                           0.,
-                                           eigenvalues,
-                                           eigenvectors);
-      std::vector<std::pair<double, Generalized>> result;
-      for (unsigned int e = 0; e < eigenvalues.size(); ++e)
-        if (eigenvalues[e] > 1e-10 * eigenvalues.linfty_norm())
-          {
-            Generalized direction;
-            for (unsigned int i = 0; i < n; ++i)
-              direction.push_back(eigenvectors(i, e));
-            result.emplace_back(eigenvalues[e], direction);
-          }
+      Vector<double>     values;
+      FullMatrix<double> vectors;
+      const double       most = std::numeric_limits<double>::max();
+      lapack.compute_eigenvalues_symmetric(-most, most, 0., values, vectors);
+      std::vector<std::pair<double, Generalized>> result(n);
+      for (unsigned int e = 0; e < n; ++e)
+        {
+          if (values[e] > 1e-10 * values.linfty_norm())
+            result[e].first = values[e];
+          for (unsigned int i = 0; i < n; ++i)
+            result[e].second.push_back(vectors(i, e));
+        }
       return result;
     }
   } // namespace
@@ -333,150 +330,89 @@ namespace Viscoplastic
          const ContactState              &contact,
          const std::vector<Tensor<1, 2>> &slips)
   {
-    const ContactLayout &face   = body.face;
-    const unsigned int   n      = body.load.size();
-    const auto           works  = work_of_forces(body);
-    const auto           add_to = [&](FullMatrix<double> &matrix,
-                            const unsigned int  p,
-                            const double        stiffness) {
+    const ContactLayout &face  = body.face;
+    const unsigned int   n     = body.load.size();
+    const auto           works = work_of_forces(body);
+    const auto           add   = [&](FullMatrix<double> &matrix,
+                         const unsigned int  p,
+                         const double        stiffness) {
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
           matrix(i, j) += stiffness * (works[p][i] * works[p][j]);
     };
-    const auto after = [&](const unsigned int p, const Generalized &motion) {
-      Tensor<1, 2> s = slips[p];
-      for (unsigned int i = 0; i < n; ++i)
-        s += motion[i] * works[p][i];
-      return s;
-    };
-
-    // What is prevented.
-    FullMatrix<double> held(n, n);
+    FullMatrix<double> prevented(n, n);
     for (unsigned int p = 0; p < face.points.size(); ++p)
       if (!face.points[p].gives_way() && contact.sticks[p])
-        add_to(held, p, 1.);
-    Utilities::MPI::sum(held, face.communicator, held);
-    const auto prevented = range(held);
-    const auto project   = [&](Generalized &x) {
-      for (const auto &[value, direction] : prevented)
-        {
-          const double part = dot(direction, x);
-          for (unsigned int i = 0; i < n; ++i)
-            x[i] -= part * direction[i];
-        }
-    };
+        add(prevented, p, 1.);
+    Utilities::MPI::sum(prevented, face.communicator, prevented);
+    std::vector<Generalized> free;
+    for (const auto &[value, motion] : eigenpairs(prevented))
+      if (value == 0.)
+        free.push_back(motion);
 
-    // The force that is left after a motion, its size and the stiffness there.
-    double             size = 0.;
-    FullMatrix<double> stiffness(n, n);
-    const auto         force_after = [&](const Generalized &motion) {
-      Generalized force(n, 0.);
-      stiffness = 0.;
-      for (unsigned int p = 0; p < face.points.size(); ++p)
-        {
-          const ContactLayout::Point &point = face.points[p];
-          const Tensor<1, 2>          s     = after(p, motion);
-          Tensor<1, 2>                multiplier;
-          if (point.gives_way())
-            {
-              const double w = s[0] - contact.bound[p];
-              multiplier[0]  = point.compliance.force(w);
-              add_to(stiffness, p, point.compliance.slope(w));
-            }
-          else if (!point.is_obstacle && !contact.sticks[p] &&
-                   contact.bound[p] > 0. && s.norm() > 0.)
-            multiplier = contact.bound[p] / s.norm() * s;
-          for (unsigned int i = 0; i < n; ++i)
-            force[i] -= multiplier * works[p][i];
-        }
-      Utilities::MPI::sum(force, face.communicator, force);
-      Utilities::MPI::sum(stiffness, face.communicator, stiffness);
-      size = norm(body.load) + norm(force);
-      for (unsigned int i = 0; i < n; ++i)
-        force[i] += body.load[i];
-      project(force);
-      return force;
-    };
-
-    Generalized motion(n, 0.), force = force_after(motion);
-    bool        is_stopped = false;
-    for (unsigned int iteration = 0; iteration < max_iterations && !is_stopped;
+    Generalized  motion(n, 0.);
+    ContactState state(contact);
+    state.slip = slips;
+    // Newton's method; the line search makes it converge.
+    for (unsigned int iteration = 0; iteration < 100 && !free.empty();
          ++iteration)
       {
-        if (norm(force) <= 1e-14 * size)
-          break;
-        // P K P step = P force.
-        FullMatrix<double> projected(n, n);
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            Generalized row;
-            for (unsigned int j = 0; j < n; ++j)
-              row.push_back(stiffness(i, j));
-            project(row);
-            for (unsigned int j = 0; j < n; ++j)
-              projected(j, i) = row[j];
-          }
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            Generalized row;
-            for (unsigned int j = 0; j < n; ++j)
-              row.push_back(projected(i, j));
-            project(row);
-            for (unsigned int j = 0; j < n; ++j)
-              projected(i, j) = row[j];
-          }
-        projected.symmetrize();
-        Generalized step(n, 0.);
-        for (const auto &[value, direction] : range(projected))
-          {
-            const double part = dot(direction, force) / value;
-            for (unsigned int i = 0; i < n; ++i)
-              step[i] += part * direction[i];
-          }
-        const double slope = dot(step, force);
-        if (!(slope > 0.))
-          break;
-
-        // No further than to the next rigid obstacle; and where hardly anything
-        // resists, in steps of the distances that there are.
-        double length = 1., longest = 0., distance = 0.;
+        Generalized        force(n, 0.);
+        FullMatrix<double> stiffness(n, n);
         for (unsigned int p = 0; p < face.points.size(); ++p)
-          if (face.points[p].is_obstacle)
+          {
+            const Tensor<1, 2> &s = state.slip[p];
+            Tensor<1, 2>        multiplier;
+            if (face.points[p].gives_way())
+              {
+                const NormalCompliance &compliance = face.points[p].compliance;
+                multiplier[0] = compliance.force(state.penetration(p));
+                add(stiffness, p, compliance.slope(state.penetration(p)));
+              }
+            else if (!face.points[p].is_obstacle && !state.sticks[p] &&
+                     state.bound[p] > 0. && s.norm() > 0.)
+              multiplier = state.bound[p] / s.norm() * s;
+            for (unsigned int i = 0; i < n; ++i)
+              force[i] -= multiplier * works[p][i];
+          }
+        Utilities::MPI::sum(force, face.communicator, force);
+        Utilities::MPI::sum(stiffness, face.communicator, stiffness);
+        const double size = norm(body.load) + norm(force);
+        for (unsigned int i = 0; i < n; ++i)
+          force[i] += body.load[i];
+
+        FullMatrix<double> reduced(free.size(), free.size());
+        for (unsigned int a = 0; a < free.size(); ++a)
+          for (unsigned int b = 0; b < free.size(); ++b)
+            for (unsigned int i = 0; i < n; ++i)
+              for (unsigned int j = 0; j < n; ++j)
+                reduced(a, b) += free[a][i] * stiffness(i, j) * free[b][j];
+        reduced.symmetrize();
+        Generalized step(n, 0.);
+        for (const auto &[value, direction] : eigenpairs(reduced))
+          if (value > 0.)
             {
-              double way = 0.;
-              for (unsigned int i = 0; i < n; ++i)
-                way += step[i] * works[p][i][0];
-              const double left = contact.bound[p] - after(p, motion)[0];
-              longest           = std::max(longest, std::abs(way));
-              distance          = std::max(distance, std::abs(left));
-              if (way > 0. && !face.points[p].gives_way())
-                length = std::min(length, std::max(0., left) / way);
+              Generalized in_motions(n, 0.);
+              for (unsigned int a = 0; a < free.size(); ++a)
+                for (unsigned int i = 0; i < n; ++i)
+                  in_motions[i] += direction[a] * free[a][i];
+              const double part = dot(in_motions, force);
+              if (std::abs(part) > 1e-14 * size)
+                for (unsigned int i = 0; i < n; ++i)
+                  step[i] += part / value * in_motions[i];
             }
-        length     = Utilities::MPI::min(length, face.communicator);
-        longest    = Utilities::MPI::max(longest, face.communicator);
-        distance   = Utilities::MPI::max(distance, face.communicator);
-        is_stopped = length < 1.;
-        if (length * longest > 2. * distance)
-          {
-            is_stopped = false;
-            length     = 2. * distance / longest;
-          }
-        // The force falls along the step: not much beyond where it ends.
-        const auto there = [&](const double s) {
-          Generalized result(motion);
+        Vector<double> change(face.n_dofs());
+        for (unsigned int i = 0; i < n; ++i)
+          face.add(step[i], body.motions[i], change);
+        const double length =
+          repetitions({dot(step, force), 0.}, face, state, change);
+        if (length == 0.)
+          break;
+        for (unsigned int i = 0; i < n; ++i)
+          motion[i] += length * step[i];
+        for (unsigned int p = 0; p < face.points.size(); ++p)
           for (unsigned int i = 0; i < n; ++i)
-            result[i] += s * step[i];
-          return result;
-        };
-        force = force_after(there(length));
-        for (unsigned int cut = 0; cut < 60 && dot(step, force) < -0.5 * slope;
-             ++cut)
-          {
-            length *= 0.5;
-            is_stopped = false;
-            force      = force_after(there(length));
-          }
-        motion = there(length);
+            state.slip[p] += length * step[i] * works[p][i];
       }
     return motion;
   }

@@ -136,7 +136,8 @@ namespace Viscoplastic
       scene.parameters.units.suffix(Quantity::time, dim);
     // Loads that are not rounding, of which rounding loses a part.
     if (const double missing = stable_norm(quantities.sum_of_forces);
-        missing > 1e-3 * largest_force && missing < quantities.load_size &&
+        missing > 1e-3 * std::max(largest_force, quantities.load_size) &&
+        missing < quantities.load_size &&
         missing <= quantities.rounding_of_forces)
       {
         std::ostringstream text;

@@ -134,8 +134,7 @@ namespace Viscoplastic
     result.reactions = reactions(d.space, forces);
     result.sum_of_forces =
       forces.load.resultant - result.friction_force - result.contact.force;
-    result.load_size     = stable_norm(forces.load.resultant);
-    result.largest_force = std::max({result.load_size,
+    result.largest_force = std::max({stable_norm(forces.load.resultant),
                                      stable_norm(result.friction_force),
                                      stable_norm(result.contact.force)});
     for (const auto &pair : result.reactions)
@@ -163,6 +162,7 @@ namespace Viscoplastic
                                     face_motion(d.face->layout(),
                                                 state.contact.foundation_step),
                                     moves);
+        result.load_size          = forces.load.values.l1_norm();
         result.rounding_of_forces = force_of_rounding(d, moves);
         if (result.largest_force <= result.rounding_of_forces)
           result.force_scale =

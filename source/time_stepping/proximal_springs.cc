@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/contact/kink_search.h>
 #include <viscoplastic_contact/time_stepping/proximal_springs.h>
 
 #include <algorithm>
@@ -18,16 +19,6 @@ namespace Viscoplastic
     constexpr double spring_stiffness = 1e-3;
     /// A body that still moves after so many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
-
-
-
-    /// The sum of a geometric series without its first term.
-    double
-    geometric_sum(const double ratio)
-    {
-      const double bounded = std::min(ratio, 0.99);
-      return bounded / (1. - bounded);
-    }
   } // namespace
 
 
@@ -278,33 +269,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  ProximalSprings<dim>::way_to_obstacles(const StepProblem<dim>  &problem,
-                                         const ContactState      &contact,
-                                         const DistributedVector &u,
-                                         const DistributedVector &motion) const
-  {
-    const ContactFace<dim> &face = *discretization.face;
-    DistributedVector       increment(u);
-    increment -= problem.old_u();
-    const auto here   = face.slips(increment);
-    const auto steps  = face.slips(motion);
-    double     result = std::numeric_limits<double>::max();
-    for (unsigned int p = 0; p < here.size(); ++p)
-      if (const ContactLayout::Point &point = face.layout().points[p];
-          point.is_obstacle && steps[p][0] > 0.)
-        {
-          const double left = contact.bound[p] - here[p][0];
-          // One that gives way ends nothing once it presses.
-          if (!point.gives_way() || left > 0.)
-            result = std::min(result, std::max(0., left) / steps[p][0]);
-        }
-    return Utilities::MPI::min(result, discretization.space.communicator);
-  }
-
-
-
-  template <int dim>
   ContactReport
   ProximalSprings<dim>::solve(const StepProblem<dim>  &problem,
                               const DistributedVector &right_side,
@@ -316,32 +280,15 @@ namespace Viscoplastic
   {
     // The error of the solver is measured with the springs, relative to a norm
     // in which the body's way to the foundation counts, too.
-    ContactReport report;
-    double        inner_tolerance = tolerance, last_in_springs = 0., reach = 0.;
-    bool          goes_on  = false;
-    const HeldBody    body = held_body(problem);
-    DistributedVector center(u), right(u), change(u), rest(u);
-    ContactState      contact_at_rest;
-    bool              is_at_rest = false;
+    ContactReport     report;
+    double            inner_tolerance = tolerance;
+    const HeldBody    body            = held_body(problem);
+    DistributedVector center(u), right(u), change(u);
     for (unsigned int n = 0; n < max_proximal_steps; ++n)
       {
         right = right_side;
         add_load(center, right);
-        ContactReport again;
-        try
-          {
-            again = solve(right, inner_tolerance);
-          }
-        catch (const ExceptionBase &)
-          {
-            // A solve to less than the tolerance may meet rounding. Then the
-            // one before is the solution, with the error that it reports.
-            if (!is_at_rest)
-              throw;
-            u       = rest;
-            contact = contact_at_rest;
-            return report;
-          }
+        ContactReport again = solve(right, inner_tolerance);
         again.add_earlier(report);
         report = again;
 
@@ -365,36 +312,20 @@ namespace Viscoplastic
         if (in_balance &&
             report.error <= std::max(tolerance * size, bulk.rounding_error()))
           return report;
-        is_at_rest = in_balance && in_springs <= tolerance * size;
-        if (is_at_rest)
-          {
-            rest            = u;
-            contact_at_rest = contact;
-          }
         if (in_springs < 0.5 * report.error)
           inner_tolerance *=
             std::clamp(0.3 * tolerance * size / report.error, 1e-3, 0.5);
         // A body on its way to the foundation goes on as it goes, until it
-        // touches it. One that is held comes to rest like a geometric series,
-        // slowly where a soft part of itself or of the ground holds it; two
-        // steps without a reach tell its ratio.
-        const double ratio = in_springs / last_in_springs;
-        if (n > 0 && (goes_on || reach == 0.))
-          {
-            goes_on = ratio > 0.99 && ratio < 1.1 && in_springs > 0.01 * size;
-            reach   = goes_on                    ? 4. * reach + 3. :
-                      reach == 0. && ratio > 0.2 ? geometric_sum(ratio) :
-                                                   0.;
-          }
-        else
-          reach = 0.;
-        last_in_springs = in_springs;
-        center          = u;
-        center.add(goes_on ?
-                     std::min(reach,
-                              way_to_obstacles(problem, contact, u, change)) :
-                     reach,
-                   change);
+        // touches it; one that a soft part of itself or of the ground holds, or
+        // friction that is small, until its energy has its minimum there.
+        singular_matrix->vmult(right, change);
+        center = u;
+        center.add(
+          repetitions({in_springs * in_springs, std::max(0., change * right)},
+                      discretization.face->layout(),
+                      contact,
+                      discretization.face_restriction().gather(change)),
+          change);
         // A body on soft ground is where its loads are in balance as a whole,
         // long before springs have let it go there.
         if (discretization.face->gives_way())

@@ -29,14 +29,14 @@ namespace Viscoplastic
     /// The reaction on each boundary with prescribed displacements.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
     /// Loads, reactions, friction and contact on the body, which add up to
-    /// zero, the size of the loads and of the largest of all of them.
+    /// zero, and the largest of them.
     Tensor<1, dim> sum_of_forces;
-    double         load_size = 0., largest_force = 0.;
-    /// A force beside which the sum counts as well: where all of them are
-    /// nothing beside the nodal forces that cancel, or rounding.
-    double force_scale = 0.;
-    /// What rounding of displacements may have made of the sum, if anything.
-    double rounding_of_forces = 0.;
+    double         largest_force = 0.;
+    /// Where the sum is more than 1e-9 of that, what it may be small beside:
+    /// nodal forces of the body that cancel, or rounding; the sum of the nodal
+    /// loads without their signs; what rounding of displacements may have made
+    /// of the sum.
+    double force_scale = 0., load_size = 0., rounding_of_forces = 0.;
     /// The largest length of a displacement, and the node that has it.
     double     max_displacement = 0.;
     Point<dim> displacement_position;

@@ -72,14 +72,6 @@ namespace Viscoplastic
     HeldBody
     held_body(const StepProblem<dim> &problem) const;
 
-    /// How far a motion can be repeated from @p u without entering an obstacle.
-    /// Collective.
-    double
-    way_to_obstacles(const StepProblem<dim>  &problem,
-                     const ContactState      &contact,
-                     const DistributedVector &u,
-                     const DistributedVector &motion) const;
-
     /// The norm of a displacement in the springs. Collective.
     double
     norm(const DistributedVector &u) const;

@@ -348,8 +348,9 @@ namespace Viscoplastic
                 ExcMessage(
                   "The body that only contact holds has not come to rest in " +
                   std::to_string(max_proximal_steps) +
-                  " solves of a step, although contact can balance its loads, "
-                  "or nearly so. Prescribe displacements that hold it."));
+                  " solves of a step, although contact could balance its loads "
+                  "if it were closed everywhere, or nearly so. Prescribe "
+                  "displacements that hold it."));
     return report;
   }
 

@@ -225,8 +225,6 @@ namespace Viscoplastic
                                  contact,
                                  bounds,
                                  problem.slip_rates);
-        if (springs)
-          bounds = springs->bounds_that_hold(problem, bounds);
         std::vector<double> missing(bounds.size(), 0.);
         double              change = 0., sum = 0.;
         for (unsigned int p = 0; p < bounds.size(); ++p)
@@ -285,9 +283,10 @@ namespace Viscoplastic
             for (unsigned int p = 0; p < bounds.size(); ++p)
               bounds[p] -= (1. - share) * missing[p];
           }
-        last_missing  = missing;
-        last_change   = change;
-        contact.bound = bounds;
+        last_missing = missing;
+        last_change  = change;
+        contact.bound =
+          springs ? springs->bounds_that_hold(problem, bounds) : bounds;
         ContactReport again =
           solve_with_given_bounds(problem, right_side, tolerance, u, contact);
         ++again.bound_iterations;

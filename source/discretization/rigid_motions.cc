@@ -38,7 +38,7 @@ namespace Viscoplastic
     public:
       /// Givens rotations take a row into the triangle.
       void
-      add(std::array<double, 6> row)
+      add(RigidMotion row)
       {
         for (unsigned int i = 0; i < n; ++i)
           {
@@ -52,18 +52,6 @@ namespace Viscoplastic
                 triangle(i, j)     = c * above + s * row[j];
                 row[j]             = c * row[j] - s * above;
               }
-          }
-      }
-
-      void
-      add(const SeenMotions &other)
-      {
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            RigidMotion row{};
-            for (unsigned int j = i; j < n; ++j)
-              row[j] = other.triangle(i, j);
-            add(row);
           }
       }
 
@@ -292,7 +280,6 @@ namespace Viscoplastic
         seen |= obstacle.map[d] != 0.;
       return seen;
     };
-    SeenMotions<dim> contact;
     for (std::size_t m = 0; m < nodes.size(); ++m)
       for (unsigned int i = 0; i < frames[nodes[m].frame].n_fixed; ++i)
         for (const unsigned int part : parts[m])
@@ -303,6 +290,7 @@ namespace Viscoplastic
 
     for (SeenMotions<dim> &of_part : seen)
       {
+        SeenMotions<dim> with_contact(of_part);
         of_part.join(communicator);
         const auto  free    = of_part.unseen();
         std::string motions = in_words<dim>(free);
@@ -313,12 +301,11 @@ namespace Viscoplastic
             for (const BoundaryNode &node : nodes)
               for (unsigned int d = 0; d < dim; ++d)
                 if (sees_contact(frames[node.frame], d))
-                  add_row(contact,
+                  add_row(with_contact,
                           node.position,
                           column(frames[node.frame].directions, d));
-            contact.join(communicator);
-            contact.add(of_part);
-            motions = in_words<dim>(contact.unseen());
+            with_contact.join(communicator);
+            motions = in_words<dim>(with_contact.unseen());
             if (motions.empty())
               free_motions = free;
           }

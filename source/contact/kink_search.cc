@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace Viscoplastic
@@ -247,7 +248,11 @@ namespace Viscoplastic
           if (right == largest && derivative(right) < 0.)
             return at(right);
         }
-      for (unsigned int bisection = 0; bisection < 60; ++bisection)
+      // As far as numbers go: the step may be much smaller than 1.
+      for (unsigned int bisection = 0;
+           bisection < 200 &&
+           right - left > std::numeric_limits<double>::epsilon() * right;
+           ++bisection)
         {
           const double middle                      = 0.5 * (left + right);
           (derivative(middle) < 0. ? left : right) = middle;

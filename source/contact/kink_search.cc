@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace Viscoplastic
@@ -131,13 +132,14 @@ namespace Viscoplastic
 
 
     /// The part of a correction that is possible without entering an obstacle,
-    /// beyond 1 if there is room. Collective.
+    /// at most @p most. Collective.
     double
     largest_step(const ContactLayout  &face,
                  const ContactState   &state,
-                 const Vector<double> &w)
+                 const Vector<double> &w,
+                 const double          most)
     {
-      double result = 2.;
+      double result = most;
       if (!face.has_obstacles)
         return result;
       for (unsigned int p = 0; p < face.points.size(); ++p)
@@ -229,7 +231,7 @@ namespace Viscoplastic
         return bulk.curvature * step - bulk.slope + face.derivative(step);
       };
       const double initial = derivative(0.);
-      if (!(initial < 0.) || !(bulk.curvature > 0.))
+      if (!(initial < 0.) || !(bulk.curvature >= 0.))
         return {0., 0.};
       double left = 0., right = std::min(1., largest);
       if (right == 1. && std::abs(derivative(1.)) <= 0.1 * std::abs(initial) &&
@@ -237,12 +239,20 @@ namespace Viscoplastic
         return at(1.);
       if (derivative(right) < 0.)
         {
-          left  = right;
-          right = largest;
-          if (derivative(right) < 0.)
+          do
+            {
+              left  = right;
+              right = std::min(2. * right, largest);
+            }
+          while (right < largest && derivative(right) < 0.);
+          if (right == largest && derivative(right) < 0.)
             return at(right);
         }
-      for (unsigned int bisection = 0; bisection < 60; ++bisection)
+      // As far as numbers go: the step may be much smaller than 1.
+      for (unsigned int bisection = 0;
+           bisection < 200 &&
+           right - left > std::numeric_limits<double>::epsilon() * right;
+           ++bisection)
         {
           const double middle                      = 0.5 * (left + right);
           (derivative(middle) < 0. ? left : right) = middle;
@@ -261,7 +271,23 @@ namespace Viscoplastic
   {
     return line_search(bulk.search_terms(w),
                        face_along(face, state, w),
-                       largest_step(face, state, w));
+                       largest_step(face, state, w, 2.));
+  }
+
+
+
+  double
+  repetitions(const BulkSolver::SearchTerms &terms,
+              const ContactLayout           &face,
+              const ContactState            &state,
+              const Vector<double>          &w)
+  {
+    // As it is, contact is in balance with the body but for the descent.
+    const FaceAlongLine line = face_along(face, state, w);
+    return line_search({terms.slope + line.derivative(0.), terms.curvature},
+                       line,
+                       largest_step(face, state, w, 1e9))
+      .step;
   }
 
 

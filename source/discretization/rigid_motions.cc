@@ -5,6 +5,8 @@
 #include <viscoplastic_contact/discretization/admissible_space.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iomanip>
 #include <set>
 #include <sstream>
@@ -21,62 +23,154 @@ namespace Viscoplastic
 
 
 
-    /// The null space of the Gram matrix of the rigid motions on the prescribed
-    /// components, in words.
+    using RigidMotion = std::array<double, 6>;
+
+
+
+    /**
+     * What conditions see of the rigid motions, row by row, as the triangle R
+     * of rows = Q R. (R^T R would not tell the width of a thin sheet from
+     * rounding.)
+     */
+    template <int dim>
+    class SeenMotions
+    {
+    public:
+      /// Givens rotations take a row into the triangle.
+      void
+      add(RigidMotion row)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const double length = std::hypot(triangle(i, i), row[i]);
+            if (row[i] == 0.)
+              continue;
+            const double c = triangle(i, i) / length, s = row[i] / length;
+            for (unsigned int j = i; j < n; ++j)
+              {
+                const double above = triangle(i, j);
+                triangle(i, j)     = c * above + s * row[j];
+                row[j]             = c * row[j] - s * above;
+              }
+          }
+      }
+
+      /// The rows of all ranks. Collective.
+      void
+      join(const MPI_Comm communicator)
+      {
+        std::vector<double> entries;
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            entries.push_back(triangle(i, j));
+        triangle = 0.;
+        for (const auto &of_rank :
+             Utilities::MPI::all_gather(communicator, entries))
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              RigidMotion row{};
+              for (unsigned int j = 0; j < n; ++j)
+                row[j] = of_rank[i * n + j];
+              add(row);
+            }
+      }
+
+      /// An orthonormal basis of the motions that no row sees, but for what
+      /// coordinates in mesh files may miss.
+      std::vector<RigidMotion>
+      unseen() const
+      {
+        LAPACKFullMatrix<double> matrix(n, n);
+        matrix = triangle;
+        matrix.compute_svd();
+        const auto              &vt = matrix.get_svd_vt();
+        std::vector<RigidMotion> result;
+        for (unsigned int e = 0; e < n; ++e)
+          if (matrix.singular_value(e) <=
+              1e-9 * std::max(matrix.singular_value(0), 1e-300))
+            {
+              RigidMotion motion{};
+              for (unsigned int a = 0; a < n; ++a)
+                motion[a] = vt(e, a);
+              result.push_back(motion);
+            }
+        return result;
+      }
+
+    private:
+      static constexpr unsigned int n        = n_rigid_motions<dim>;
+      FullMatrix<double>            triangle = FullMatrix<double>(n, n);
+    };
+
+
+
+    /// Rigid motions in words.
     template <int dim>
     std::string
-    free_motions(const FullMatrix<double> &gram)
+    in_words(const std::vector<RigidMotion> &motions)
     {
-      constexpr unsigned int   n = n_rigid_motions<dim>;
-      LAPACKFullMatrix<double> matrix(n, n);
-      matrix = gram;
-      Vector<double>     eigenvalues(n);
-      FullMatrix<double> eigenvectors(n, n);
-      matrix.compute_eigenvalues_symmetric(
-        -1., 1e300, 0., eigenvalues, eigenvectors);
-      const auto is_free = [&](const unsigned int e) {
-        return eigenvalues[e] <=
-               1e-12 * std::max(eigenvalues.linfty_norm(), 1e-300);
-      };
-      const auto is_translation = [&](const unsigned int e) {
+      constexpr unsigned int n              = n_rigid_motions<dim>;
+      const auto             is_translation = [](const RigidMotion &motion) {
         for (unsigned int a = dim; a < n; ++a)
-          if (std::abs(eigenvectors(a, e)) > 1e-8)
+          if (std::abs(motion[a]) > 1e-8)
             return false;
         return true;
       };
-      unsigned int n_translations = 0;
-      for (unsigned int e = 0; e < eigenvalues.size(); ++e)
-        n_translations += is_free(e) && is_translation(e);
+      const auto n_translations =
+        std::count_if(motions.begin(), motions.end(), is_translation);
       std::string result;
-      for (unsigned int e = 0; e < eigenvalues.size(); ++e)
-        if (is_free(e))
+      for (const RigidMotion &motion : motions)
+        {
+          // Name it by its largest part.
+          unsigned int largest = 0;
+          for (unsigned int a = 1; a < n; ++a)
+            if (std::abs(motion[a]) > std::abs(motion[largest]) + 1e-8)
+              largest = a;
+          const std::string xyz = "xyz";
+          result += result.empty() ? "" : " and ";
+          // A single translation may have any direction; of several, the
+          // axes are a basis.
+          if (n_translations == 1 && is_translation(motion) &&
+              std::abs(motion[largest]) < 1. - 1e-8)
+            {
+              std::ostringstream direction;
+              direction << std::setprecision(3) << "translation along (";
+              const double sign = motion[largest] > 0. ? 1. : -1.;
+              for (unsigned int a = 0; a < dim; ++a)
+                direction << (a == 0 ? "" : ", ") << sign * motion[a];
+              result += direction.str() + ')';
+            }
+          else if (largest < dim)
+            result += std::string("translation along ") + xyz[largest];
+          else
+            result += std::string("rotation about ") +
+                      (dim == 2 ? 'z' : xyz[largest - dim]);
+        }
+      return result;
+    }
+
+
+
+    /// The displacement of a place, relative to the center of rotations, in
+    /// each of the rigid motions.
+    template <int dim>
+    std::array<Tensor<1, dim>, n_rigid_motions<dim>>
+    rigid_displacements(const Tensor<1, dim> &x)
+    {
+      std::array<Tensor<1, dim>, n_rigid_motions<dim>> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d][d] = 1.;
+      if constexpr (dim == 2)
+        {
+          result[2][0] = -x[1];
+          result[2][1] = x[0];
+        }
+      else
+        for (unsigned int d = 0; d < dim; ++d)
           {
-            // Name the mode by its largest part.
-            unsigned int largest = 0;
-            for (unsigned int a = 1; a < n; ++a)
-              if (std::abs(eigenvectors(a, e)) >
-                  std::abs(eigenvectors(largest, e)) + 1e-8)
-                largest = a;
-            const std::string xyz = "xyz";
-            result += result.empty() ? "" : " and ";
-            // A single translation may have any direction; of several, the
-            // axes are a basis.
-            if (n_translations == 1 && is_translation(e) &&
-                std::abs(eigenvectors(largest, e)) < 1. - 1e-8)
-              {
-                std::ostringstream direction;
-                direction << std::setprecision(3) << "translation along (";
-                const double sign = eigenvectors(largest, e) > 0. ? 1. : -1.;
-                for (unsigned int a = 0; a < dim; ++a)
-                  direction << (a == 0 ? "" : ", ")
-                            << sign * eigenvectors(a, e);
-                result += direction.str() + ')';
-              }
-            else if (largest < dim)
-              result += std::string("translation along ") + xyz[largest];
-            else
-              result += std::string("rotation about ") +
-                        (dim == 2 ? 'z' : xyz[largest - dim]);
+            Tensor<1, dim> axis;
+            axis[d]         = 1.;
+            result[dim + d] = cross_product_3d(axis, x);
           }
       return result;
     }
@@ -158,41 +252,23 @@ namespace Viscoplastic
   void
   AdmissibleSpace<dim>::check_rigid_motions()
   {
-    constexpr unsigned int              n = n_rigid_motions<dim>;
     std::vector<std::set<unsigned int>> parts;
-    std::vector<FullMatrix<double>>     gram(find_parts(*this, parts),
-                                         FullMatrix<double>(n, n));
-    Point<dim>                          center;
-    double                              count = node_position.size();
-    for (const auto &x : node_position)
-      center += x;
-    center =
-      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(center), communicator) /
-                 Utilities::MPI::sum(count, communicator));
-    double radius = 0.;
+    std::vector<SeenMotions<dim>>       seen(find_parts(*this, parts));
+    const Point<dim>                    center = this->center();
     for (const auto &x : node_position)
       radius = std::max(radius, x.distance(center));
     radius = Utilities::MPI::max(radius, communicator);
 
     // What the displacement of a place along a direction sees of the motions.
-    const auto add_row = [&](FullMatrix<double>   &to,
+    const auto add_row = [&](SeenMotions<dim>     &to,
                              const Point<dim>     &position,
                              const Tensor<1, dim> &direction) {
-      const Tensor<1, dim> x = (position - center) / radius;
-      std::vector<double>  value(n);
-      for (unsigned int d = 0; d < dim; ++d)
-        value[d] = direction[d];
-      if constexpr (dim == 2)
-        value[2] = -x[1] * direction[0] + x[0] * direction[1];
-      else
-        {
-          const Tensor<1, dim> moment = cross_product_3d(x, direction);
-          for (unsigned int d = 0; d < dim; ++d)
-            value[dim + d] = moment[d];
-        }
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int b = 0; b < n; ++b)
-          to(a, b) += value[a] * value[b];
+      const auto motions =
+        rigid_displacements<dim>((position - center) / radius);
+      RigidMotion row{};
+      for (unsigned int a = 0; a < motions.size(); ++a)
+        row[a] = motions[a] * direction;
+      to.add(row);
     };
     const auto sees_contact = [](const NodalFrame<dim> &frame,
                                  const unsigned int     d) {
@@ -204,38 +280,39 @@ namespace Viscoplastic
         seen |= obstacle.map[d] != 0.;
       return seen;
     };
-    FullMatrix<double> contact(n, n);
     for (std::size_t m = 0; m < nodes.size(); ++m)
       for (unsigned int i = 0; i < frames[nodes[m].frame].n_fixed; ++i)
         for (const unsigned int part : parts[m])
-          add_row(gram[part],
+          add_row(seen[part],
                   nodes[m].position,
                   column(frames[nodes[m].frame].directions,
                          frames[nodes[m].frame].fixed[i]));
 
-    for (FullMatrix<double> &of_part : gram)
+    for (SeenMotions<dim> &of_part : seen)
       {
-        Utilities::MPI::sum(of_part, communicator, of_part);
-        std::string motions = free_motions<dim>(of_part);
+        SeenMotions<dim> with_contact(of_part);
+        of_part.join(communicator);
+        const auto  free    = of_part.unseen();
+        std::string motions = in_words<dim>(free);
         const bool  may_be_held_by_contact =
-          gram.size() == 1 && scene.has_unilateral_contact();
+          seen.size() == 1 && scene.has_unilateral_contact();
         if (!motions.empty() && may_be_held_by_contact)
           {
             for (const BoundaryNode &node : nodes)
               for (unsigned int d = 0; d < dim; ++d)
                 if (sees_contact(frames[node.frame], d))
-                  add_row(contact,
+                  add_row(with_contact,
                           node.position,
                           column(frames[node.frame].directions, d));
-            Utilities::MPI::sum(contact, communicator, contact);
-            contact.add(1., of_part);
-            motions         = free_motions<dim>(contact);
-            held_by_contact = motions.empty();
+            with_contact.join(communicator);
+            motions = in_words<dim>(with_contact.unseen());
+            if (motions.empty())
+              free_motions = free;
           }
         std::ostringstream what;
         what << "The boundary conditions leave a rigid motion free";
-        if (gram.size() > 1)
-          what << " of one of the " << gram.size() << " parts of the body";
+        if (seen.size() > 1)
+          what << " of one of the " << seen.size() << " parts of the body";
         if (scene.stage() > 0)
           what << " from t = " << scene.stage_ends[scene.stage() - 1]
                << " on, when materials are added or removed";
@@ -254,41 +331,35 @@ namespace Viscoplastic
 
 
   template <int dim>
+  Point<dim>
+  AdmissibleSpace<dim>::center() const
+  {
+    Tensor<1, dim> sum;
+    const double   count = node_position.size();
+    for (const auto &x : node_position)
+      sum += x;
+    return Point<dim>(Utilities::MPI::sum(sum, communicator) /
+                      Utilities::MPI::sum(count, communicator));
+  }
+
+
+
+  template <int dim>
   std::vector<DistributedVector>
   AdmissibleSpace<dim>::rigid_body_modes() const
   {
-    const unsigned int             n_modes = dim == 2 ? 3 : 6;
+    constexpr unsigned int         n_modes = n_rigid_motions<dim>;
     std::vector<DistributedVector> modes(n_modes, owned_vector());
-
-    Point<dim>   center;
-    const double count = node_position.size();
-    for (const auto &x : node_position)
-      center += x;
-    center =
-      Point<dim>(Utilities::MPI::sum(Tensor<1, dim>(center), communicator) /
-                 Utilities::MPI::sum(count, communicator));
-
+    const Point<dim>               center = this->center();
     for (std::size_t n = 0; n < node_position.size(); ++n)
       {
         const NodalFrame<dim> &frame =
           frames[frame_of_node[(first_owned / dim) + n]];
-        const Tensor<1, dim> x = node_position[n] - center;
+        const auto motions =
+          rigid_displacements<dim>(node_position[n] - center);
         for (unsigned int m = 0; m < n_modes; ++m)
           {
-            Tensor<1, dim> u;
-            if (m < dim)
-              u[m] = 1.;
-            else if constexpr (dim == 2)
-              {
-                u[0] = -x[1];
-                u[1] = x[0];
-              }
-            else
-              {
-                Tensor<1, dim> axis;
-                axis[m - dim] = 1.;
-                u             = cross_product_3d(axis, x);
-              }
+            Tensor<1, dim> u = motions[m];
             if (!frame.is_cartesian)
               u = transpose(frame.directions) * u;
             for (unsigned int d = 0; d < dim; ++d)
@@ -301,12 +372,58 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  std::vector<DistributedVector>
+  AdmissibleSpace<dim>::motions_held_by_contact() const
+  {
+    const auto                     modes = rigid_body_modes();
+    std::vector<DistributedVector> result(free_motions.size(), owned_vector());
+    for (std::size_t i = 0; i < free_motions.size(); ++i)
+      for (std::size_t m = 0; m < modes.size(); ++m)
+        result[i].add(free_motions[i][m] / (m < dim ? 1. : radius), modes[m]);
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::string
+  AdmissibleSpace<dim>::name_of_motion(
+    const std::vector<double> &in_free_motions) const
+  {
+    RigidMotion motion{};
+    double      norm_square = 0.;
+    for (std::size_t a = 0; a < motion.size(); ++a)
+      {
+        for (std::size_t i = 0; i < free_motions.size(); ++i)
+          motion[a] += in_free_motions[i] * free_motions[i][a];
+        norm_square += motion[a] * motion[a];
+      }
+    for (double &part : motion)
+      part /= std::sqrt(norm_square);
+    return in_words<dim>({motion});
+  }
+
+
+
   template void
   AdmissibleSpace<2>::check_rigid_motions();
   template void
   AdmissibleSpace<3>::check_rigid_motions();
+  template Point<2>
+  AdmissibleSpace<2>::center() const;
+  template Point<3>
+  AdmissibleSpace<3>::center() const;
   template std::vector<DistributedVector>
   AdmissibleSpace<2>::rigid_body_modes() const;
   template std::vector<DistributedVector>
   AdmissibleSpace<3>::rigid_body_modes() const;
+  template std::vector<DistributedVector>
+  AdmissibleSpace<2>::motions_held_by_contact() const;
+  template std::vector<DistributedVector>
+  AdmissibleSpace<3>::motions_held_by_contact() const;
+  template std::string
+  AdmissibleSpace<2>::name_of_motion(const std::vector<double> &) const;
+  template std::string
+  AdmissibleSpace<3>::name_of_motion(const std::vector<double> &) const;
 } // namespace Viscoplastic

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/results/run_phases.h>
+#include <viscoplastic_contact/time_stepping/step_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -133,6 +134,19 @@ namespace Viscoplastic
     const double      defect = balance_defect(quantities);
     const std::string time_unit =
       scene.parameters.units.suffix(Quantity::time, dim);
+    // Loads that are not rounding, of which rounding loses a part.
+    if (const double missing = stable_norm(quantities.sum_of_forces);
+        missing > 1e-3 * std::max(largest_force, quantities.load_size) &&
+        missing < quantities.load_size &&
+        missing <= quantities.rounding_of_forces)
+      {
+        std::ostringstream text;
+        text << "forces miss the loads by " << missing / quantities.load_size
+             << " of them, which is rounding of displacements where the body "
+                "is stiffest: materials whose stiffness differs by less, or "
+                "prescribed displacements where it is stiff, mend that.";
+        throw StepFailure(step.time_step.n, step.time_step.t, text.str());
+      }
     // Beside stresses that balance each other the forces may be nothing.
     const bool is_beside_stresses =
       quantities.largest_force * quantities.max_displacement <

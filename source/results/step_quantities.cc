@@ -143,20 +143,30 @@ namespace Viscoplastic
         result.largest_force =
           std::max(result.largest_force, stable_norm(pair.second));
       }
-    // Of a body that is carried along without strain nothing but rounding
-    // remains, which need not add up to zero: it counts as a defect of 1e-8 at
-    // most. Looked for rarely, since it takes the whole matrix.
+    // Forces may be nothing beside the nodal ones that cancel: of stresses that
+    // balance each other, to the tolerance of the solve. And of a body that is
+    // carried along without strain nothing but rounding remains, which need not
+    // add up to zero: it counts as a defect of 1e-8 at most. Looked for rarely,
+    // since it takes the whole matrix.
     if (stable_norm(result.sum_of_forces) > 1e-9 * result.largest_force)
       {
+        DistributedVector irreversible(forces.internal);
+        irreversible -= forces.elastic;
+        if (const double cancels =
+              forces.elastic.l1_norm() + irreversible.l1_norm();
+            result.largest_force <= 1e-6 * cancels)
+          result.force_scale = cancels;
         DistributedVector moves(forces.u);
         if (d.face)
           d.face->restriction().add(1.,
                                     face_motion(d.face->layout(),
                                                 state.contact.foundation_step),
                                     moves);
-        if (const double rounding = force_of_rounding(d, moves);
-            result.largest_force <= rounding)
-          result.largest_force = 1e8 * rounding;
+        result.load_size          = forces.load.values.l1_norm();
+        result.rounding_of_forces = force_of_rounding(d, moves);
+        if (result.largest_force <= result.rounding_of_forces)
+          result.force_scale =
+            std::max(result.force_scale, 1e8 * result.rounding_of_forces);
       }
     if (!is_initial)
       result.external_work = external_work(d.space, old.forces, forces) +

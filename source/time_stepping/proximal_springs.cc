@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
-#include <deal.II/grid/grid_tools.h>
 
+#include <viscoplastic_contact/contact/kink_search.h>
 #include <viscoplastic_contact/time_stepping/proximal_springs.h>
 
 #include <algorithm>
@@ -13,22 +13,12 @@ namespace Viscoplastic
   namespace
   {
     /// The springs of the proximal point method, relative to the diagonal of
-    /// the matrix, of up to fifty nodes; more of them share it. What they carry
-    /// is reduced by something like this factor each time that the step is
-    /// solved.
-    constexpr double spring_stiffness = 1e-4;
+    /// the matrix. What they carry is reduced by something like this factor
+    /// each time that the step is solved; softer ones would magnify rounding
+    /// of resultants beyond StepSolver::rounding_error().
+    constexpr double spring_stiffness = 1e-3;
     /// A body that still moves after so many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
-
-
-
-    /// The sum of a geometric series without its first term.
-    double
-    geometric_sum(const double ratio)
-    {
-      const double bounded = std::min(ratio, 0.99);
-      return bounded / (1. - bounded);
-    }
   } // namespace
 
 
@@ -37,7 +27,69 @@ namespace Viscoplastic
   ProximalSprings<dim>::ProximalSprings(
     const Discretization<dim> &discretization)
     : discretization(discretization)
-  {}
+    , motions(discretization.space.motions_held_by_contact())
+  {
+    // Elimination with pivots: the component that moves most in what those
+    // before have left free.
+    if (motions.empty())
+      return;
+    const ContactLayout &face = discretization.face->layout();
+    const auto &positions     = discretization.face_restriction().positions();
+    std::vector<Vector<double>> left;
+    for (const DistributedVector &motion : motions)
+      left.push_back(discretization.face_restriction().gather(motion));
+    const MPI_Comm communicator = discretization.space.communicator;
+    while (!left.empty())
+      {
+        double       largest = 0.;
+        unsigned int pivot   = 0;
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          for (unsigned int k = face.first_dof[node];
+               k < face.first_dof[node + 1];
+               ++k)
+            {
+              double square = 0.;
+              for (const Vector<double> &motion : left)
+                square += motion[k] * motion[k];
+              // Rather not where pieces push against each other.
+              if (face.n_node_points(node) > 1 &&
+                  !face.has_plain_friction(node))
+                square *= 0.1;
+              // Of equal ones the first.
+              if (square > (1. + 1e-10) * largest)
+                {
+                  largest = square;
+                  pivot   = k;
+                }
+            }
+        const auto of_ranks = Utilities::MPI::all_gather(communicator, largest);
+        unsigned int rank   = 0;
+        for (unsigned int i = 1; i < of_ranks.size(); ++i)
+          if (of_ranks[i] > (1. + 1e-10) * of_ranks[rank])
+            rank = i;
+        std::vector<double> row(left.size(), 0.);
+        if (rank == Utilities::MPI::this_mpi_process(communicator))
+          {
+            supports.push_back(positions[pivot]);
+            for (unsigned int i = 0; i < left.size(); ++i)
+              row[i] = left[i][pivot];
+          }
+        row = Utilities::MPI::broadcast(communicator, row, rank);
+        // The motions in which it stays where it is.
+        const unsigned int most =
+          std::max_element(row.begin(),
+                           row.end(),
+                           [](const double a, const double b) {
+                             return std::abs(a) < std::abs(b);
+                           }) -
+          row.begin();
+        const Vector<double> out = left[most];
+        for (unsigned int i = 0; i < left.size(); ++i)
+          if (i != most && out.size() > 0)
+            left[i].add(-row[i] / row[most], out);
+        left.erase(left.begin() + most);
+      }
+  }
 
 
 
@@ -48,22 +100,33 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space = discretization.space;
     singular_matrix                   = &matrix;
     regular_matrix.copy_from(matrix);
-    springs = space.owned_vector();
-    // Of all of them together, whatever the mesh.
-    const double n_nodes =
-      Utilities::MPI::sum(static_cast<double>(
-                            discretization.face->layout().n_nodes()),
-                          space.communicator);
-    const double stiffness = spring_stiffness * std::min(1., 50. / n_nodes);
-    rounding               = std::numeric_limits<double>::epsilon() / stiffness;
-    for (const unsigned int i : discretization.face_restriction().positions())
+    springs  = space.owned_vector();
+    rounding = std::numeric_limits<double>::epsilon() / spring_stiffness;
+    for (const unsigned int i : supports)
       {
         const auto   dof      = space.owned.nth_index_in_set(i);
         const double diagonal = matrix.diag_element(dof);
-        springs.begin()[i]    = stiffness * diagonal;
+        springs.begin()[i]    = spring_stiffness * diagonal;
         regular_matrix.set(dof, dof, diagonal + springs.begin()[i]);
       }
     regular_matrix.compress(VectorOperation::insert);
+
+    // A rigid motion takes no force but that of the springs.
+    DistributedVector force(springs), held(springs);
+    for (const DistributedVector &motion : motions)
+      {
+        matrix.vmult(force, motion);
+        force.scale(motion);
+        held = springs;
+        held.scale(motion);
+        AssertThrow(
+          force.l2_norm() <= 0.1 * (motion * held),
+          ExcMessage(
+            "The stiffness of the body differs so much from place to place "
+            "that its rigid motions, which only contact prevents, are lost in "
+            "rounding. Let materials differ by less (a factor of 1e8 is safe), "
+            "or prescribe displacements where the body is stiff."));
+      }
     return regular_matrix;
   }
 
@@ -93,28 +156,114 @@ namespace Viscoplastic
 
 
   template <int dim>
-  double
-  ProximalSprings<dim>::way_to_obstacles(const StepProblem<dim>  &problem,
-                                         const ContactState      &contact,
-                                         const DistributedVector &u,
-                                         const DistributedVector &motion) const
+  HeldBody
+  ProximalSprings<dim>::held_body(const StepProblem<dim> &problem) const
   {
-    const ContactFace<dim> &face = *discretization.face;
-    DistributedVector       increment(u);
-    increment -= problem.old_u();
-    const auto here   = face.slips(increment);
-    const auto steps  = face.slips(motion);
-    double     result = std::numeric_limits<double>::max();
-    for (unsigned int p = 0; p < here.size(); ++p)
-      if (const ContactLayout::Point &point = face.layout().points[p];
-          point.is_obstacle && steps[p][0] > 0.)
-        {
-          const double left = contact.bound[p] - here[p][0];
-          // One that gives way ends nothing once it presses.
-          if (!point.gives_way() || left > 0.)
-            result = std::min(result, std::max(0., left) / steps[p][0]);
-        }
-    return Utilities::MPI::min(result, discretization.space.communicator);
+    HeldBody body{discretization.face->layout(), {}, {}};
+    for (const DistributedVector &motion : motions)
+      {
+        body.motions.push_back(
+          discretization.face->restriction().gather(motion));
+        double work = 0., parts = 0.;
+        for (std::size_t i = 0; i < motion.locally_owned_size(); ++i)
+          {
+            const double part =
+              problem.load.values.begin()[i] * motion.begin()[i];
+            work += part;
+            parts += std::abs(part);
+          }
+        body.load.push_back(body.face.sum(work));
+        body.load_size = std::max(body.load_size, body.face.sum(parts));
+      }
+    return body;
+  }
+
+
+
+  template <int dim>
+  Statics
+  ProximalSprings<dim>::statics(const StepProblem<dim>    &problem,
+                                const std::vector<double> &bounds,
+                                const bool                 with_pressure) const
+  {
+    const ContactFace<dim>          &face   = *discretization.face;
+    const ContactLayout             &layout = face.layout();
+    std::vector<std::vector<double>> bounds_of_pressure;
+    if (with_pressure)
+      {
+        // Bounds are linear in the pressures of their node.
+        unsigned int n_obstacles = 0;
+        for (unsigned int node = 0; node < layout.n_nodes(); ++node)
+          n_obstacles = std::max(n_obstacles,
+                                 layout.first_point[node + 1] -
+                                   layout.first_obstacle(node));
+        n_obstacles = Utilities::MPI::max(n_obstacles, layout.communicator);
+        bounds_of_pressure.resize(bounds.size());
+        for (unsigned int k = 0; k < n_obstacles; ++k)
+          {
+            ContactState state(std::vector<double>(bounds.size()));
+            for (unsigned int node = 0; node < layout.n_nodes(); ++node)
+              if (const unsigned int o = layout.first_obstacle(node) + k;
+                  o < layout.first_point[node + 1])
+                state.multiplier[o][0] = 1.;
+            std::vector<double> of_pressure(bounds.size());
+            face.add_computed_bounds(problem.time_step.t,
+                                     state,
+                                     of_pressure,
+                                     problem.slip_rates);
+            for (unsigned int p = 0; p < bounds.size(); ++p)
+              bounds_of_pressure[p].push_back(of_pressure[p]);
+          }
+      }
+    return balance(held_body(problem), bounds, bounds_of_pressure);
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  ProximalSprings<dim>::bounds_that_hold(
+    const StepProblem<dim>    &problem,
+    const std::vector<double> &bounds) const
+  {
+    const ContactFace<dim> &face    = *discretization.face;
+    const bool              follows = problem.bounds_follow_pressure;
+    // What is found for the pressure of the step says more.
+    const auto with_pressure = [&] {
+      return statics(problem, follows ? problem.given_bounds : bounds, true);
+    };
+    const Statics own   = follows ? with_pressure() : Statics(),
+                  given = statics(problem, bounds, false);
+    if (own.is_balanced && given.is_balanced)
+      return bounds;
+    AssertThrow(
+      follows && own.is_balanced,
+      ExcMessage(
+        "No contact force balances the loads: they do work on a " +
+        discretization.space.name_of_motion(follows ? own.motion :
+                                                      given.motion) +
+        " of the body, which contact that opens and friction cannot prevent. "
+        "Let the loads press the body onto its foundation, or prescribe "
+        "displacements that hold it." +
+        (!follows && face.has_computed_pressure() &&
+             with_pressure().is_balanced ?
+           " With the pressure of the step before, Coulomb's law has no "
+           "friction in the step in which contact begins; 'Solver/Coulomb "
+           "pressure' = fixed point has." :
+           "")));
+    // Those of pressures that could be.
+    ContactState        state(bounds);
+    std::vector<double> result = problem.given_bounds;
+    for (unsigned int p = 0; p < bounds.size(); ++p)
+      state.multiplier[p][0] = own.pressures[p];
+    face.add_computed_bounds(problem.time_step.t,
+                             state,
+                             result,
+                             problem.slip_rates);
+    for (unsigned int p = 0; p < bounds.size(); ++p)
+      if (!face.layout().points[p].is_obstacle)
+        result[p] = std::max(result[p], bounds[p]);
+    return result;
   }
 
 
@@ -131,15 +280,9 @@ namespace Viscoplastic
   {
     // The error of the solver is measured with the springs, relative to a norm
     // in which the body's way to the foundation counts, too.
-    ContactReport report;
-    double        inner_tolerance = tolerance, last_in_springs = 0., reach = 0.;
-    bool          goes_on = false;
-    // Farther away rounding is all that there is.
-    const auto box = GridTools::compute_bounding_box(
-                       discretization.space.dof_handler.get_triangulation())
-                       .get_boundary_points();
-    const double longest_way =
-      1e6 * box.first.distance(box.second) + 10. * u.linfty_norm();
+    ContactReport     report;
+    double            inner_tolerance = tolerance;
+    const HeldBody    body            = held_body(problem);
     DistributedVector center(u), right(u), change(u);
     for (unsigned int n = 0; n < max_proximal_steps; ++n)
       {
@@ -164,55 +307,50 @@ namespace Viscoplastic
             0.01 * std::max(right.l1_norm(), right_side.l1_norm()) ||
           in_springs <= rounding * norm(center);
         report.error += in_springs;
+        report.relative_error = size > 0. ? report.error / size : 0.;
+        report.tolerance      = tolerance;
         if (in_balance &&
             report.error <= std::max(tolerance * size, bulk.rounding_error()))
-          {
-            report.relative_error = size > 0. ? report.error / size : 0.;
-            report.tolerance      = tolerance;
-            return report;
-          }
+          return report;
         if (in_springs < 0.5 * report.error)
           inner_tolerance *=
             std::clamp(0.3 * tolerance * size / report.error, 1e-3, 0.5);
         // A body on its way to the foundation goes on as it goes, until it
-        // touches it. One that is held comes to rest like a geometric series,
-        // slowly where a soft part of itself or of the ground holds it; two
-        // steps without a reach tell its ratio.
-        const double ratio = in_springs / last_in_springs;
-        if (n > 0 && (goes_on || reach == 0.))
-          {
-            goes_on = ratio > 0.99 && ratio < 1.1 && in_springs > 0.01 * size;
-            reach   = goes_on                    ? 4. * reach + 3. :
-                      reach == 0. && ratio > 0.2 ? geometric_sum(ratio) :
-                                                   0.;
-          }
-        else
-          reach = 0.;
-        last_in_springs = in_springs;
-        if (u.linfty_norm() > longest_way)
-          break;
+        // touches it; one that a soft part of itself or of the ground holds, or
+        // friction that is small, until its energy has its minimum there.
+        singular_matrix->vmult(right, change);
         center = u;
-        center.add(goes_on ?
-                     std::min(reach,
-                              way_to_obstacles(problem, contact, u, change)) :
-                     reach,
-                   change);
+        center.add(
+          repetitions({in_springs * in_springs, std::max(0., change * right)},
+                      discretization.face->layout(),
+                      contact,
+                      discretization.face_restriction().gather(change)),
+          change);
+        // A body on soft ground is where its loads are in balance as a whole,
+        // long before springs have let it go there.
+        if (discretization.face->gives_way())
+          {
+            change = center;
+            change -= problem.old_u();
+            const std::vector<double> way =
+              settle(body,
+                     contact,
+                     discretization.face->slips(change,
+                                                problem.foundation_step));
+            for (unsigned int i = 0; i < motions.size(); ++i)
+              {
+                center.add(way[i], motions[i]);
+                u.add(way[i], motions[i]);
+              }
+          }
       }
     AssertThrow(false,
                 ExcMessage(
-                  "No contact force balances the loads: where only "
-                  "contact that opens and friction could hold it, the "
-                  "body moves on without end. Let the loads press it "
-                  "onto its foundation, or prescribe displacements "
-                  "that hold it." +
-                  std::string(
-                    discretization.face->has_computed_pressure() &&
-                        !problem.bounds_follow_pressure ?
-                      " With the pressure of the step before, Coulomb's "
-                      "law has no friction in the step in which contact "
-                      "begins; 'Solver/Coulomb pressure' = fixed point "
-                      "has." :
-                      "")));
+                  "The body that only contact holds has not come to rest in " +
+                  std::to_string(max_proximal_steps) +
+                  " solves of a step, although contact could balance its loads "
+                  "if it were closed everywhere, or nearly so. Prescribe "
+                  "displacements that hold it."));
     return report;
   }
 

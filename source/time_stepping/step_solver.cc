@@ -205,6 +205,8 @@ namespace Viscoplastic
   {
     const SolverParameters &parameters =
       discretization.scene().parameters.solver;
+    if (springs)
+      contact.bound = springs->bounds_that_hold(problem, contact.bound);
     ContactReport report =
       solve_with_given_bounds(problem, right_side, tolerance, u, contact);
     if (!problem.bounds_follow_pressure || !discretization.slipping_face())
@@ -212,7 +214,10 @@ namespace Viscoplastic
 
     const ContactFace<dim> &face        = *discretization.face;
     double                  last_change = 0.;
-    bool                    swings      = false;
+    // How far bounds follow the pressure, once they swing; by how much they
+    // have missed it before that.
+    double              share = 1.;
+    std::vector<double> last_missing;
     for (;;)
       {
         std::vector<double> bounds = problem.given_bounds;
@@ -220,12 +225,17 @@ namespace Viscoplastic
                                  contact,
                                  bounds,
                                  problem.slip_rates);
-        double change = 0., sum = 0.;
+        std::vector<double> missing(bounds.size(), 0.);
+        double              change = 0., sum = 0.;
         for (unsigned int p = 0; p < bounds.size(); ++p)
           if (!face.layout().points[p].is_obstacle)
             {
-              change += std::abs(bounds[p] - contact.bound[p]);
-              sum += bounds[p];
+              missing[p] = bounds[p] - contact.bound[p];
+              change += std::abs(missing[p]);
+              // Both may be zero in turn.
+              sum += std::isfinite(contact.bound[p]) ?
+                       std::max(bounds[p], contact.bound[p]) :
+                       bounds[p];
             }
         change = face.layout().sum(change);
         sum    = face.layout().sum(sum);
@@ -250,16 +260,33 @@ namespace Viscoplastic
                    "the pressure of the step before.";
         AssertThrow(report.bound_iterations < parameters.maximal_iterations,
                     ExcMessage(message.str()));
-        // Where pieces meet, each holds the node against the others, and their
-        // pressures may swing between two states.
-        swings =
-          swings || (report.bound_iterations > 0 && change > last_change);
-        if (swings)
-          for (unsigned int p = 0; p < bounds.size(); ++p)
-            if (!face.layout().has_plain_friction(face.layout().points[p].node))
-              bounds[p] = 0.5 * (bounds[p] + contact.bound[p]);
-        last_change   = change;
-        contact.bound = bounds;
+        // Friction may hold what would press, and where pieces meet, each holds
+        // the node against the others: pressures may swing between two states.
+        // Then bounds follow as far as two changes tell (Aitken).
+        const bool swings = share < 1. || (report.bound_iterations > 0 &&
+                                           change >= 0.999 * last_change &&
+                                           std::isfinite(last_change));
+        if (swings && std::isfinite(change))
+          {
+            double product = 0., square = 0.;
+            for (unsigned int p = 0; p < missing.size(); ++p)
+              {
+                const double difference = missing[p] - last_missing[p];
+                product += last_missing[p] * difference;
+                square += difference * difference;
+              }
+            product = face.layout().sum(product);
+            square  = face.layout().sum(square);
+            share   = square > 0. ?
+                        std::clamp(-share * product / square, 1e-3, 0.9) :
+                        0.5;
+            for (unsigned int p = 0; p < bounds.size(); ++p)
+              bounds[p] -= (1. - share) * missing[p];
+          }
+        last_missing = missing;
+        last_change  = change;
+        contact.bound =
+          springs ? springs->bounds_that_hold(problem, bounds) : bounds;
         ContactReport again =
           solve_with_given_bounds(problem, right_side, tolerance, u, contact);
         ++again.bound_iterations;

@@ -217,9 +217,11 @@ namespace Viscoplastic
             problem.bounds_follow_pressure = true;
             problem.given_bounds           = problem.bounds;
           }
-        // Without a pressure before, a fixed point is looked for from stick.
+        // Without a pressure before, a fixed point is looked for from stick;
+        // of a body that only contact holds, from what statics needs, since
+        // foundations would carry off what nothing presses.
         const ContactState &old = accepted.state.contact;
-        if (problem.bounds_follow_pressure &&
+        if (problem.bounds_follow_pressure && !d.space.is_held_by_contact() &&
             !has_computed_bounds(d, old, time_step.t, problem.slip_rates))
           {
             // (Not where pieces meet: one may push along what another holds.)

@@ -315,6 +315,24 @@ class Refused(TestCase):
     def test_stiffness_that_vanishes_somewhere(self):
         self.refused("Young", **{"Material/Young's modulus": "x - 1"})
 
+    def test_stiffness_beside_which_forces_are_rounding(self):
+        scene = {
+            "Geometry/Arguments": "8, 8 : 0, 0 : 1, 1 : true",
+            "Geometry/Material ids": "if(y < 0.5, 1, 2)",
+            "Material 1/Young's modulus": 1,
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "clamped",
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Traction": "0; -0.05*t",
+            "Time/Phases": "1: 2",
+        }
+        softer = {**scene, "Material 2/Young's modulus": 1e8}
+        result = run("tower", softer, text="")
+        self.assertClose(result["reaction_2_y"][-1], 0.05, relative=1e-5)
+        stiffer = {**scene, "Material 2/Young's modulus": 1e13}
+        self.refused("forces miss the loads", scene="tower", text="", **stiffer)
+
     def test_negative_viscosity(self):
         self.refused("Viscosity", **{"Material/maxwell/Viscosity": -0.5})
 
@@ -358,6 +376,21 @@ class Refused(TestCase):
                 "Boundary 2/Role": "free",
             },
         )
+
+    def test_the_end_of_a_thin_sheet_holds_it(self):
+        """However thin it is: 1e-6 of its length is no rounding."""
+        sheet = {
+            "Geometry/Arguments": "4, 2 : 0, 0 : 1, 1e-6 : true",
+            "Material/Poisson's ratio": 0,
+            "Boundary 0/Role": "clamped",
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Traction": "0.01*t; 0",
+            "Boundary 2/Role": "free",
+            "Boundary 3/Role": "free",
+            "Time/Phases": "1: 1",
+        }
+        result = run("sheet", sheet, text="")
+        self.assertClose(result["max_displacement"][-1], 0.01, relative=1e-3)
 
     def test_incompatible_initial_load(self):
         """A load that is there at t = 0 with zero initial stress."""

@@ -253,6 +253,86 @@ class Held(TestCase):
                     result["max_penetration"][-1], load / stiffness, relative=1e-5
                 )
 
+    def test_beds_as_soft_as_they_may_be(self):
+        """A stiff block sinks in by p/c; a slab without weight lies on no more
+        of its bed than a beam would (Weitsman): pi/(2 lambda) on either side of
+        its load, and sinks in by (F lambda/2c) (2 + cosh pi - 1)/sinh pi."""
+        for stiffness in (2e-6, 4e-9):  # c h / E
+            for solver in "direct", "multigrid":
+                with self.subTest(stiffness=stiffness, solver=solver):
+                    ranks = 2 if solver == "multigrid" and stiffness < 1e-8 else 1
+                    compliance = 12000 * stiffness / 0.25
+                    block = {
+                        "Geometry/Arguments": "32, 4 : 0, 0 : 8, 1 : true",
+                        "Material/Young's modulus": 12000,
+                        "Material/Poisson's ratio": 0,
+                        "Boundary 0/Role": "symmetry",
+                        "Boundary 2/Contact law": "normal compliance",
+                        "Boundary 2/Compliance": compliance,
+                        "Boundary 2/Friction law": "none",
+                        "Boundary 2/Gap": 0,
+                        "Boundary 3/Traction": f"0; -{0.2 * compliance}*t",
+                        "Solver/Linear solver": solver,
+                        "Time/Phases": "1: 1",
+                    }
+                    entries = {**self.BLOCK, **block}
+                    for name in (
+                        "Boundary 0/Traction",
+                        "Boundary 2/Friction coefficient",
+                    ):
+                        entries.pop(name)
+                    result = run("bed", entries, ranks, "")
+                    self.assertClose(result["max_penetration"][-1], 0.2, relative=1e-6)
+                    self.assertClose(
+                        result["contact_force_y"][-1],
+                        -8 * 0.2 * compliance,
+                        relative=1e-6,
+                    )
+        youngs_modulus, bed, load = 30e9, 50e6, 1e6
+        slab = {
+            "Geometry/Arguments": "160, 4 : 0, 0 : 10, 0.25 : true",
+            "Geometry/Boundary ids": "if(id == 3 && x < 0.5, 5, id)",
+            "Material/Young's modulus": youngs_modulus,
+            "Material/Poisson's ratio": 0.2,
+            "Boundary 0/Role": "symmetry",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "normal compliance",
+            "Boundary 2/Compliance": bed,
+            "Boundary 2/Friction law": "none",
+            "Boundary 3/Role": "free",
+            "Boundary 5/Role": "traction",
+            "Boundary 5/Pressure": f"{load}*t",
+            "Time/Phases": "1: 1",
+        }
+        result = run("slab", slab, text="")
+        bending = youngs_modulus / (1 - 0.2**2) * 0.25**3 / 12
+        wave = (bed / 4 / bending) ** 0.25
+        self.assertClose(result["contact_force_y"][-1], -0.5 * load, relative=1e-7)
+        self.assertClose(
+            result["contact_area"][-1], np.pi / 2 / wave, relative=0.03
+        )
+        depth = load * wave / 2 / bed * (1 + np.cosh(np.pi)) / np.sinh(np.pi)
+        # the load is spread
+        self.assertClose(result["max_penetration"][-1], depth, relative=0.05)
+
+    def test_more_friction_than_the_pressure_before_allows(self):
+        """The push of each step is held by the pressure of that step alone."""
+        for steps in (2, 3):
+            with self.subTest(steps=steps):
+                result = self.run_block(
+                    {
+                        "Boundary 0/Traction": "0.005*t; 0",
+                        "Boundary 2/Gap": 0,
+                        "Boundary 3/Traction": "0; -0.01*t",
+                        "Solver/Coulomb pressure": "fixed point",
+                        "Time/Phases": f"1: {steps}",
+                    }
+                )
+                self.assertClose(
+                    result["friction_force_x"], 0.005 * result["t"], relative=1e-5
+                )
+
     def test_nearly_incompressible(self):
         result = self.run_block(
             {
@@ -268,24 +348,29 @@ class Held(TestCase):
     def test_belt_below_a_body_without_load(self):
         """Where nothing presses, nothing is carried along; and the pressure of
         the step before is told to be that."""
-        result = self.run_block(
-            {
-                "Boundary 0/Role": "free",
-                "Boundary 2/Gap": 0,
-                "Boundary 2/Foundation motion": "t; 0",
-                "Boundary 3/Traction": "0; -0.01*max(0, t - 0.6)",
-                "Solver/Coulomb pressure": "lagged",
-            }
-        )
-        still = result["t"] < 0.7
-        self.assertLess(result["max_displacement"][still].max(), 1e-12)
-        # the step in which contact begins has no friction yet
-        self.assertClose(result["max_displacement"][-1], 0.2, relative=0.05)
-        self.assertClose(result["bound_lag"][-2:], [1, 0.5], absolute=1e-6)
-        self.assertRegex(
-            " ".join(result.stdout.split()),
-            "miss those of the pressure of their step by 67 % on average",
-        )
+        belt = {
+            "Boundary 0/Role": "free",
+            "Boundary 2/Gap": 0,
+            "Boundary 2/Foundation motion": "t; 0",
+            "Boundary 3/Traction": "0; -0.01*max(0, t - 0.6)",
+        }
+        # The step in which contact begins has no friction yet of the pressure of
+        # the step before.
+        for pressure, carried in ("lagged", 0.2), ("fixed point", 0.4):
+            with self.subTest(pressure=pressure):
+                result = self.run_block({**belt, "Solver/Coulomb pressure": pressure})
+                still = result["t"] < 0.7
+                self.assertLess(result["max_displacement"][still].max(), 1e-12)
+                self.assertClose(
+                    result["max_displacement"][-1], carried, relative=0.05
+                )
+                if pressure == "fixed point":
+                    continue
+                self.assertClose(result["bound_lag"][-2:], [1, 0.5], absolute=1e-6)
+                self.assertRegex(
+                    " ".join(result.stdout.split()),
+                    "miss those of the pressure of their step by 67 % on average",
+                )
 
     def test_refusals(self):
         for changes, message in (
@@ -305,6 +390,23 @@ class Held(TestCase):
                     "Solver/Coulomb pressure": "lagged",
                 },
                 "= fixed point has",
+            ),
+            # which no pressure of its own could give
+            (
+                {
+                    "Boundary 0/Traction": "0.011*t; 0",
+                    "Solver/Coulomb pressure": "fixed point",
+                },
+                r"translation along \(0.958, 0.287\)",
+            ),
+            # stiffness that is lost in rounding
+            (
+                {
+                    "Geometry/Material ids": "if(y < 0.5, 1, 2)",
+                    "Material 1/Young's modulus": 1,
+                    "Material 2/Young's modulus": 1e11,
+                },
+                "differs so much from place to place",
             ),
             (
                 {"Boundary 2/Friction law": "none"},
@@ -486,8 +588,81 @@ class WherePiecesMeet(TestCase):
                 self.assertClose(force, resists, relative=1e-4)
 
 
+class FixedPoint(TestCase):
+    """Coulomb's law in its own step, where that is hard to find."""
+
+    def test_friction_that_holds_what_would_press(self):
+        """Without friction the foundation, which moves, presses; with the
+        friction of that pressure it would not touch: bounds that just follow
+        the pressure swing between both."""
+        result = run(
+            "swinging",
+            {
+                "Geometry/Generator": "subdivided_hyper_rectangle",
+                "Geometry/Arguments": "18, 2 : 0, 0 : 1, 1 : true",
+                "Material/Young's modulus": "1.7*exp(-y^2)",
+                "Material/Poisson's ratio": 0.499,
+                "Material/Law": "elastic",
+                "Boundary 0/Role": "traction",
+                "Boundary 0/Pressure": "0.004*10^(2*sin(y))*(1-exp(-5*t))",
+                "Boundary 1/Role": "symmetry",
+                "Boundary 2/Role": "clamped",
+                "Boundary 3/Role": "contact",
+                "Boundary 3/Contact law": "unilateral",
+                "Boundary 3/Friction law": "coulomb",
+                "Boundary 3/Friction coefficient": 3,
+                "Boundary 3/Gap": 0.0066,
+                "Boundary 3/Foundation motion": "-0.47*10^(2*sin(x))*sqrt(t); 0",
+                "Solver/Contact tolerance": 1e-10,
+                "Solver/Coulomb pressure": "fixed point",
+                "Time/Phases": "1: 3",
+            },
+            text="",
+        )
+        self.check_identities(result, 1e-8, balance=1e-6)
+        self.assertGreater(result["contact_area"].max(), 0)
+
+
 class AtRest(TestCase):
     """Where nothing happens, or nothing but what bilateral contact does."""
+
+    def test_forces_beside_stresses_that_balance_each_other(self):
+        """Of stresses that were there before, and of a body that nothing
+        touches, resultants are rounding, or what a tolerance leaves."""
+        ring = {
+            "Geometry/Generator": "concentric_hyper_shells",
+            "Geometry/Arguments": "0,0:0.125:0.25:2:0.0:8:true",
+            "Material/Young's modulus": 7.8e14,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 1e14,
+            "Boundary 0/Role": "clamped",
+            "Boundary 1/Role": "clamped",
+            "Initial state/Stress": "0; 1e13; 0; 0",
+            "Time/Phases": "1: 3",
+            "Time/Scheme": "backward Euler",
+        }
+        lies = {
+            "Geometry/Generator": "truncated_cone",
+            "Geometry/Arguments": "1:0.5:1",
+            "Geometry/Global refinements": 1,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 3,
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "contact",
+            "Boundary 1/Contact law": "normal compliance",
+            "Boundary 1/Compliance": 4,
+            "Boundary 1/Friction law": "tresca",
+            "Boundary 1/Friction bound": "0.002*(1 + 0.5*sin(3*y))",
+            "Boundary 2/Role": "free",
+            "Initial state/Equilibrate": "true",
+            "Initial state/Reset displacement": "true",
+            "Initial state/Stress": "0; 0; 0.01; 0",
+            "Time/Phases": "1: 3",
+        }
+        for name, scene in ("ring", ring), ("lies", lies):
+            with self.subTest(scene=name):
+                result = run(name, scene, text="")
+                self.assertLess(result["force_balance_defect"].max(), 1e-6)
 
     BLOCK = {
         "Dimension": 3,

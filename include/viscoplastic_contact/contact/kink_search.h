@@ -29,6 +29,19 @@ namespace Viscoplastic
                const Vector<double> &w);
 
 
+  /**
+   * How many times the change @p w of the face, after which its state is
+   * @p state, can be repeated until J has its minimum along it, or an obstacle
+   * that is not touched yet ends it. @p terms: the descent of J after the
+   * change and the curvature of the energy of the body.
+   */
+  double
+  repetitions(const BulkSolver::SearchTerms &terms,
+              const ContactLayout           &face,
+              const ContactState            &state,
+              const Vector<double>          &w);
+
+
   /// Shorten a correction @p w where it meets kinks of J: slip that would
   /// change sides comes to rest, a way into an obstacle ends at it. At corners,
   /// where points share a node, the line search alone decides. @p x: the

@@ -8,6 +8,10 @@
 #include <viscoplastic_contact/discretization/nodal_frame.h>
 #include <viscoplastic_contact/scene/scene.h>
 
+#include <array>
+#include <string>
+#include <vector>
+
 namespace Viscoplastic
 {
   /**
@@ -60,7 +64,7 @@ namespace Viscoplastic
     bool
     is_held_by_contact() const
     {
-      return held_by_contact;
+      return !free_motions.empty();
     }
 
     /// Degrees of freedom on the mesh that this one is refined from; 0 where it
@@ -180,6 +184,15 @@ namespace Viscoplastic
     std::vector<DistributedVector>
     rigid_body_modes() const;
 
+    /// A basis of the rigid motions that only contact can prevent, in the same
+    /// form; no point moves by more than about 1.
+    std::vector<DistributedVector>
+    motions_held_by_contact() const;
+
+    /// What a combination of these is called, by its largest part.
+    std::string
+    name_of_motion(const std::vector<double> &in_free_motions) const;
+
   private:
     void
     make_frames();
@@ -187,9 +200,15 @@ namespace Viscoplastic
     make_hanging_nodes_in_frames();
     void
     check_rigid_motions();
+    /// The mean position of the nodes. Collective.
+    Point<dim>
+    center() const;
 
-    bool                      held_by_contact = false;
-    AffineConstraints<double> hanging_cartesian, hanging_in_frames;
+    /// The rigid motions that only contact can prevent, by translations and
+    /// rotations times `radius`, the largest distance from the center.
+    std::vector<std::array<double, 6>> free_motions;
+    double                             radius = 0.;
+    AffineConstraints<double>          hanging_cartesian, hanging_in_frames;
     /// Whether any rank has hanging nodes.
     bool any_hanging;
     /// Position of the first owned entry among the relevant ones.

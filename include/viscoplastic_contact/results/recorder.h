@@ -175,13 +175,12 @@ namespace Viscoplastic
     }
 
     /// How far loads, reactions and friction are from adding up to zero,
-    /// relative to the largest force so far.
+    /// relative to the largest force so far, or to what it is nothing beside.
     double
     balance_defect(const StepQuantities<dim> &quantities) const
     {
-      return largest_force > 0. ?
-               stable_norm(quantities.sum_of_forces) / largest_force :
-               0.;
+      const double scale = std::max(largest_force, quantities.force_scale);
+      return scale > 0. ? stable_norm(quantities.sum_of_forces) / scale : 0.;
     }
 
     const Scene<dim>  &scene;

@@ -28,10 +28,15 @@ namespace Viscoplastic
     NormalContact<dim> contact;
     /// The reaction on each boundary with prescribed displacements.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
-    /// Loads, reactions and friction on the body, which add up to zero, and the
-    /// largest of them, or what rounding makes of them if that is more.
+    /// Loads, reactions, friction and contact on the body, which add up to
+    /// zero, and the largest of them.
     Tensor<1, dim> sum_of_forces;
     double         largest_force = 0.;
+    /// Where the sum is more than 1e-9 of that, what it may be small beside:
+    /// nodal forces of the body that cancel, or rounding; the sum of the nodal
+    /// loads without their signs; what rounding of displacements may have made
+    /// of the sum.
+    double force_scale = 0., load_size = 0., rounding_of_forces = 0.;
     /// The largest length of a displacement, and the node that has it.
     double     max_displacement = 0.;
     Point<dim> displacement_position;

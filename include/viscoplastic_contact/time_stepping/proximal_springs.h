@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/contact/statics.h>
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/time_stepping/step_problem.h>
 
@@ -14,7 +15,8 @@ namespace Viscoplastic
    * The proximal point method for bodies that only contact holds, whose matrix
    * is singular: weak springs tie the contact nodes to where they are, the step
    * is solved, and this is repeated from the solution until the springs carry
-   * nothing.
+   * nothing. Between two solves the body settles as a whole where contact
+   * balances its loads. Whether it can, statics says before the first solve.
    */
   template <int dim>
   class ProximalSprings
@@ -30,6 +32,16 @@ namespace Viscoplastic
     void
     add_load(const DistributedVector &u, DistributedVector &load) const;
 
+    /**
+     * The bounds of friction with which a step is solved: @p bounds, raised
+     * where bounds that follow the pressure could hold the body but these
+     * cannot. Throws ExcMessage where no contact force balances the loads.
+     * Collective.
+     */
+    std::vector<double>
+    bounds_that_hold(const StepProblem<dim>    &problem,
+                     const std::vector<double> &bounds) const;
+
     /// Solves the step with the springs from u and contact, for a right side
     /// and a tolerance.
     using Solve =
@@ -37,8 +49,7 @@ namespace Viscoplastic
 
     /**
      * Solve the step of @p problem by repeated calls of @p solve, which change
-     * @p u and @p contact. Throws ExcMessage where no contact force balances
-     * the loads. Collective.
+     * @p u and @p contact. Throws ExcMessage. Collective.
      */
     ContactReport
     solve(const StepProblem<dim>  &problem,
@@ -50,22 +61,30 @@ namespace Viscoplastic
           ContactState            &contact) const;
 
   private:
-    /// How far a motion can be repeated from @p u without entering an obstacle.
-    /// Collective.
-    double
-    way_to_obstacles(const StepProblem<dim>  &problem,
-                     const ContactState      &contact,
-                     const DistributedVector &u,
-                     const DistributedVector &motion) const;
+    /// Whether contact can balance the loads of a problem, with the pressure
+    /// that is to be found, or within given bounds. Collective.
+    Statics
+    statics(const StepProblem<dim>    &problem,
+            const std::vector<double> &bounds,
+            const bool                 with_pressure) const;
+
+    /// The body and its loads as statics sees them. Collective.
+    HeldBody
+    held_body(const StepProblem<dim> &problem) const;
 
     /// The norm of a displacement in the springs. Collective.
     double
     norm(const DistributedVector &u) const;
 
     const Discretization<dim> &discretization;
-    const DistributedMatrix   *singular_matrix = nullptr;
-    DistributedMatrix          regular_matrix;
-    DistributedVector          springs; // a diagonal matrix
+    /// The rigid motions that only contact can prevent.
+    const std::vector<DistributedVector> motions;
+    /// As many components of contact nodes as that, which can hold the body:
+    /// positions among the owned degrees of freedom.
+    std::vector<unsigned int> supports;
+    const DistributedMatrix  *singular_matrix = nullptr;
+    DistributedMatrix         regular_matrix;
+    DistributedVector         springs; // a diagonal matrix
     /// What rounding in the matrix leaves in the springs, relative to u.
     double rounding = 0.;
   };

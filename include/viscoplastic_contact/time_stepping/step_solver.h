@@ -119,19 +119,6 @@ namespace Viscoplastic
                   DistributedVector       &u,
                   ContactState            &contact);
 
-    /// How far a motion can be repeated from @p u without entering an obstacle.
-    /// Collective.
-    double
-    way_to_obstacles(const StepProblem<dim>  &problem,
-                     const ContactState      &contact,
-                     const DistributedVector &u,
-                     const DistributedVector &motion) const;
-
-    /// The norm of a displacement in the springs of the proximal point method.
-    /// Collective.
-    double
-    norm_in_springs(const DistributedVector &u) const;
-
     /// solve() in a unit of forces and displacements in which squares of them
     /// are ordinary numbers.
     ContactReport

@@ -94,7 +94,7 @@ namespace Viscoplastic
         const double creep =
           quantity.kind == QuantityOfInterest::Kind::displacement &&
               errors.energy_norm > 0. ?
-            std::min(1., errors.irreversible_norm / errors.energy_norm) :
+            std::min(1., errors.creep_path / errors.energy_norm) :
             0.;
         Vector<double> of_creep(indicators.size());
         if (creep > 0.)

@@ -81,7 +81,8 @@ namespace Viscoplastic
                      old_rate = stable_norm(old_state.slip[p]) / old_k,
                      slope    = 2. * (rate - old_rate) * k / (k + old_k),
                      last     = rate + slope;
-        if (last < 0.)
+        // What is at rest from the beginning may slip by rounding.
+        if (last < 0. && rate > 1e-6 * old_rate)
           work += force * k * last * last / (-4. * slope);
       }
     return face.sum(work);

@@ -142,7 +142,8 @@ namespace Viscoplastic
       "`friction_force_x', `contact_force_y', "
       "`reaction_1_y', `point0_x'. `Tolerance' is that of this "
       "quantity then, relative to its largest value, and "
-      "meshes are refined where it feels their errors. "
+      "meshes are refined where it feels their errors; all steps "
+      "are made twice, first to find one mesh for all times. "
       "Empty: the energy norm.");
     prm.add_parameter("Error bar",
                       error_estimator,

@@ -223,8 +223,33 @@ namespace Viscoplastic
     else
       failure = attempt.failure;
     if (attempt.computed)
-      of_scene.emplace(level, std::move(*attempt.computed));
+      {
+        of_scene.emplace(level, std::move(*attempt.computed));
+        if (coarser != of_scene.end() && !scene.error_control.has_tolerance())
+          compute_with_longer_steps(level);
+      }
     return interruption.empty() && of_scene.count(level) > 0;
+  }
+
+
+
+  void
+  EffectsStudy::compute_with_longer_steps(const int level)
+  {
+    RunKey key     = key_of(*base, level);
+    key.time_level = level - 1;
+    auto record    = base->find(key);
+    if (!record &&
+        is_affordable(0.5 * of_scene.at(level).record.number("seconds_total")))
+      {
+        StudyRuns::Outcome outcome = base->make(key);
+        interruption               = outcome.interruption;
+        record                     = outcome.record;
+      }
+    if (record)
+      with_longer_steps.emplace(level,
+                                read_table(base->directory + base->name(key) +
+                                           "/statistics.csv"));
   }
 
 
@@ -235,10 +260,20 @@ namespace Viscoplastic
   {
     const Computed &with    = of_scene.at(level);
     const auto      coarser = of_scene.find(level - 1);
-    // What halving mesh and steps has changed, at times of both runs, or the
-    // error bar in energy.
+    const auto      longer  = with_longer_steps.find(level);
+    // What halving the mesh and halving the steps have changed, at times of
+    // both runs: in a single difference they may cancel. Or the error bar in
+    // energy.
     std::vector<QuantityChange> errors;
-    if (coarser != of_scene.end())
+    if (longer != with_longer_steps.end() && coarser != of_scene.end())
+      {
+        errors = changes_between(longer->second, with.table);
+        const std::vector<QuantityChange> of_mesh =
+          changes_between(coarser->second.table, longer->second);
+        for (std::size_t q = 0; q < errors.size() && q < of_mesh.size(); ++q)
+          errors[q].change += of_mesh[q].change;
+      }
+    else if (coarser != of_scene.end())
       errors = changes_between(coarser->second.table, with.table);
     for (std::size_t q = 0; q < changes.size(); ++q)
       changes[q].error = q < errors.size() ?

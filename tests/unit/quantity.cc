@@ -153,8 +153,8 @@ namespace
                                   field(pair(2., -1.), pair(1., 0.5)));
         const LocalCells<dim> cells(*body.stress_space);
         const auto            products =
-          ResidualEstimator<dim>(cells)
-            .multiply({u, {}, {}, nullptr}, {w, {}, {}, nullptr});
+          ResidualEstimator<dim>(cells).multiply({u, {}, {}, nullptr},
+                                                 {w, {}, {}, nullptr});
         // Errors -x (h - x)/2 u_xx and so on: a(e_u, e_w) in a cell.
         const double mu = 1. / 2.6, lambda = 0.3 / (1.3 * 0.4);
         for (const auto &cell : body.space->cells)

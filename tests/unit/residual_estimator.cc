@@ -36,7 +36,8 @@ namespace
                     const DistributedVector  *multiplier_density)
   {
     const LocalCells<dim> cells(stress_space);
-    return ResidualEstimator<dim>(cells).estimate({u, z, t, multiplier_density});
+    return ResidualEstimator<dim>(cells).estimate(
+      {u, z, t, multiplier_density});
   }
 
 

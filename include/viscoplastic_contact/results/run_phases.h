@@ -28,7 +28,7 @@ namespace Viscoplastic
   inline const std::vector<RunPhase> run_phases{
     {"pilot run",
      "pilot run",
-     "of the tolerance: on the first mesh, for the size of the solution",
+     "of the tolerance: the size of the solution, the mesh of a quantity",
      false,
      "seconds_set_up",
      true},

@@ -18,11 +18,11 @@ namespace Viscoplastic
   /**
    * Runs a scene, and the same with one effect left out or simplified at a
    * time, and tells for each what it costs and what it changes, beside the
-   * error of the discretization: the difference to a run with twice the mesh
-   * width and time steps (or tolerance). The coarsest come first; what is
-   * settled there is not computed on finer ones. Runs are those of StudyRuns,
-   * each in a directory of its own: the same command goes on after an
-   * interruption. Member functions are collective.
+   * error of the discretization: what twice the mesh width changes and what
+   * twice the time steps change (or twice the tolerance). The coarsest come
+   * first; what is settled there is not computed on finer ones. Runs are those
+   * of StudyRuns, each in a directory of its own: the same command goes on
+   * after an interruption. Member functions are collective.
    */
   class EffectsStudy
   {
@@ -86,6 +86,11 @@ namespace Viscoplastic
     bool
     compute_scene(const int level);
 
+    /// The scene on the mesh of a level with the steps of the coarser one, if
+    /// the budget allows.
+    void
+    compute_with_longer_steps(const int level);
+
     /// Compare a variant with the scene on a level; nothing where the budget
     /// or a signal has ended the study. @p table: that of the variant.
     std::optional<EffectResult>
@@ -126,6 +131,7 @@ namespace Viscoplastic
     const std::unique_ptr<const SceneData> data;
     const std::unique_ptr<StudyRuns>       base;
     std::map<int, Computed>                of_scene;
+    std::map<int, Table>                   with_longer_steps;
     /// Why the scene could not be computed, and the sentence of a signal.
     std::string failure, interruption;
   };

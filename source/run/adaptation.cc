@@ -2,7 +2,8 @@
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/error/memory_loss.h>
-#include <viscoplastic_contact/error/mesh_adaptation.h>
+#include <viscoplastic_contact/error/state_transfer.h>
+#include <viscoplastic_contact/mesh/mesh_marking.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <deal.II/grid/grid_generator.h>
 
 #include "body.h"
-#include <viscoplastic_contact/error/mesh_adaptation.h>
+#include <viscoplastic_contact/mesh/mesh_marking.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
 
 #include <algorithm>

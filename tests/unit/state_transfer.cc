@@ -4,7 +4,7 @@
 
 #include "sampled_body.h"
 #include <viscoplastic_contact/error/memory_loss.h>
-#include <viscoplastic_contact/error/mesh_adaptation.h>
+#include <viscoplastic_contact/error/state_transfer.h>
 
 #include <cmath>
 

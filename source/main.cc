@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
+#include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/two_level.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 #include <viscoplastic_contact/study/effects.h>
@@ -65,15 +66,17 @@ namespace
       const CommandLine &command_line,
       Console           &console)
   {
-    ViscoplasticContact<dim> problem(parameters, console);
     const bool compares = parameters.error_control.two_level_comparison;
     if (compares)
       coarser_scene(parameters); // throws
     if (command_line.task == CommandLine::Task::check)
       {
-        problem.check();
+        check_scene<dim>(parameters, console);
         return "";
       }
+    ViscoplasticContact<dim> problem(parameters,
+                                     console,
+                                     runs_ahead<dim>(parameters, console));
     if (!compares)
       return problem.run(command_line.restart);
     console.stream() << "First with twice the mesh width and twice the time "

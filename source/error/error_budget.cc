@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/error/error_budget.h>
+#include <viscoplastic_contact/parameters/parameter_file.h>
 
 #include <algorithm>
 #include <limits>
@@ -14,6 +15,20 @@ namespace Viscoplastic
     , of_quantity(of_quantity)
     , time_share(1. / (1. + dimension * order))
   {}
+
+
+
+  std::optional<ErrorBudget>
+  ErrorBudget::of_run(const Parameters &parameters)
+  {
+    const ErrorControlParameters &control = parameters.error_control;
+    if (!control.has_tolerance())
+      return {};
+    return ErrorBudget(control.tolerance,
+                       parameters.dimension,
+                       order_of(parameters.time.scheme),
+                       !control.quantity.empty());
+  }
 
 
 

@@ -79,7 +79,9 @@ namespace Viscoplastic
     try
       {
         const Parameters         coarser(command_line.files, overrides);
-        ViscoplasticContact<dim> problem(coarser, silence);
+        ViscoplasticContact<dim> problem(coarser,
+                                         silence,
+                                         runs_ahead<dim>(coarser, silence));
         return problem.run_without_files();
       }
     catch (const std::exception &exception)

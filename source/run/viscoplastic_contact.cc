@@ -3,55 +3,48 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/solution_errors.h>
-#include <viscoplastic_contact/mesh/mesh.h>
-#include <viscoplastic_contact/mesh/mesh_refinement.h>
+#include <viscoplastic_contact/results/step_quantities.h>
 #include <viscoplastic_contact/results/unit_labels.h>
-#include <viscoplastic_contact/run/pilot_run.h>
+#include <viscoplastic_contact/run/scene_check.h>
+#include <viscoplastic_contact/run/state_carrier.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
-#include <viscoplastic_contact/scene/kinks_in_time.h>
 
-#include <algorithm>
-#include <cmath>
+#include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
 {
   template <int dim>
-  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
-                                                Console          &console)
+  ViscoplasticContact<dim>::ViscoplasticContact(
+    const Parameters     &parameters,
+    Console              &console,
+    const RunsAhead<dim> &runs_ahead)
     : communicator(MPI_COMM_WORLD)
     , parameters(parameters)
-    , console(console)
-    , out(console.stream())
-    , announcer(console)
     , scene(parameters)
     , triangulation(communicator)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
-    , directories(parameters, console, communicator)
-    , budget(
-        parameters.error_control.has_tolerance() ?
-          std::make_optional<ErrorBudget>(parameters.error_control.tolerance,
-                                          dim,
-                                          order_of(parameters.time.scheme),
-                                          scene.quantity.has_value()) :
-          std::nullopt)
-    , control(parameters.step_control,
-              parameters.time.stiffness_policy,
-              scene.schedule,
-              order_of(parameters.time.scheme),
-              parameters.output.fields_interval,
-              budget ? budget->time_tolerance() : 0.)
+    , runs_ahead(runs_ahead)
+    , budget(ErrorBudget::of_run(parameters))
+    , control(parameters, scene.schedule, budget ? &*budget : nullptr)
+    , mesh_controller(scene, triangulation, budget ? &*budget : nullptr)
     , error_estimator(parameters.error_control.error_estimator ?
                         std::make_unique<ErrorEstimator<dim>>(scene) :
                         nullptr)
-    , lines(scene)
+    , console(console)
+    , out(console.stream())
+    , announcer(console)
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
     , known_solution(scene, timer)
     , recorder(scene, control, console, timer, budget ? &*budget : nullptr)
+    , directories(parameters, console, communicator)
+    , lines(scene)
+    , run_state{scene, accepted, control, budget ? &*budget : nullptr, recorder}
+    , checkpoint_schedule(parameters.checkpoint)
   {}
 
 
@@ -61,7 +54,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::run(const CommandLine::Restart restart,
                                 const RunSummary<dim>     *coarser)
   {
-    make_mesh();
+    make_first_mesh(scene, triangulation, control, &announcer);
     known_solution.check();
     directories.lock();
     if (const auto checkpoint = directories.find_checkpoint(restart))
@@ -90,20 +83,16 @@ namespace Viscoplastic
   std::string
   ViscoplasticContact<dim>::make_steps(const SignalRequests *signals)
   {
-    last_step = recorder.elapsed();
+    checkpoint_schedule.begin_steps(recorder.elapsed());
     while (!is_finished())
       {
         if (scene.stage_is_over(accepted.state.t))
           enter_next_stage();
-        if (adaptation_is_due())
+        if (mesh_controller.is_due(accepted.state.n))
           adapt_mesh();
         AcceptedStep<dim> step = time_stepper->next(accepted);
         if (refine_for(step))
-          {
-            control.undo();
-            continue;
-          }
-        n_refinements = 0;
+          continue;
         announcer.announce_solver(time_stepper->method().solver_name());
         recorder.record(accepted,
                         step,
@@ -128,7 +117,7 @@ namespace Viscoplastic
   RunSummary<dim>
   ViscoplasticContact<dim>::run_without_files()
   {
-    make_mesh();
+    make_first_mesh<dim>(scene, triangulation, control, nullptr);
     begin_state();
     record_initial_state();
     make_steps(nullptr);
@@ -140,47 +129,28 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::take_mesh_of_first_pass()
-  {
-    out << "First without files, to find a mesh for all times:" << std::endl;
-    ViscoplasticContact<dim> first(parameters, console);
-    first.is_first_pass = true;
-    first.run_without_files();
-    refine_like(first.triangulation, triangulation);
-    out << "Again from the beginning, on the mesh that has been found:"
-        << std::endl;
-  }
-
-
-
-  template <int dim>
-  void
   ViscoplasticContact<dim>::begin_state()
   {
-    std::string failure;
+    Expectation expectation;
     if (budget)
       {
         TimerOutput::Scope phase(timer, "pilot run");
-        budget->expect_size(size_in_pilot_run<dim>(parameters, failure));
+        expectation = runs_ahead(triangulation);
+        budget->expect_size(expectation.size);
         control.expect_size(budget->expected_size);
       }
-    if (scene.quantity && scene.is_adaptive() && budget && !is_first_pass)
-      {
-        TimerOutput::Scope phase(timer, "pilot run");
-        take_mesh_of_first_pass();
-      }
-    check_stages();
+    check_stages(fe, dof_handler, scene);
     set_up();
     if (scene.exact_solution && scene.exact_solution->makes_data)
       check_exact_solution(discretization->space);
     set_initial_state();
-    check_steps();
+    check_steps(*discretization, control, console, accepted);
     // A scene that is wrong has been refused by now.
-    if (!failure.empty())
+    if (!expectation.failure.empty())
       console.remark("Note: the run on the first mesh that tells how large the "
                      "solution becomes has failed, so that errors will be "
                      "relative to what it has been so far: " +
-                     failure);
+                     expectation.failure);
   }
 
 
@@ -218,43 +188,6 @@ namespace Viscoplastic
     recorder.record(accepted,
                     initial,
                     known_solution.errors(*discretization, accepted.state));
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::make_mesh()
-  {
-    Viscoplastic::make_mesh(parameters.geometry, triangulation);
-    scene.inspect(triangulation);
-    AssertThrow(!control.is_on || !scene.has_viscosity() || error_estimator,
-                ExcMessage("'Step control/Tolerance' needs an estimate of the "
-                           "error; set 'Error control/Error bar' = true."));
-    control.set_has_estimate(scene.has_viscosity());
-    if (!is_first_pass)
-      announcer.announce(scene);
-    land_on_kinks();
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::land_on_kinks()
-  {
-    control.land_on(scene.stage_ends, {});
-    if (!control.is_on || !parameters.step_control.land_on_kinks)
-      return;
-    const KinksOfScene found = find_kinks(scene, triangulation);
-    if (found.kinks.empty())
-      return;
-    if (!is_first_pass)
-      announcer.announce(found);
-    std::vector<double> kinks, jumps;
-    for (const Kink &kink : found.kinks)
-      (kink.is_jump ? jumps : kinks).push_back(kink.t);
-    control.land_on(kinks, jumps);
   }
 
 
@@ -313,7 +246,7 @@ namespace Viscoplastic
         else
           {
             const Load<dim> load = d.loads.assemble(0.);
-            check_compatibility(load);
+            check_compatibility(d, accepted.state, load);
             accepted.forces =
               evaluate_forces(d.stress_space, d.matrix, load, accepted.state);
           }
@@ -340,27 +273,215 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ViscoplasticContact<dim>::check_compatibility(const Load<dim> &load)
+  ViscoplasticContact<dim>::adapt_mesh()
   {
-    const Discretization<dim> &d = *discretization;
-    const double tolerance = parameters.initial_state.compatibility_tolerance;
-    const CompatibilityViolation<dim> violation = compatibility_violation(
-      d.space, load, d.face.get(), accepted.state.u, accepted.state.contact);
-    // Data that a solution makes are compatible up to quadrature.
-    if (scene.exact_solution && scene.exact_solution->makes_data)
-      return;
-    std::ostringstream message;
-    message << "The initial data are not in equilibrium with the loads at "
-               "t = 0, (2.12): the relative violation is "
-            << violation.relative
-            << ", and 'Initial state/Compatibility tolerance' is " << tolerance
-            << "; it is largest at x = (" << violation.position << "), "
-            << (violation.boundaries.empty() ?
-                  "inside of the body" :
-                  "on boundary " + list(violation.boundaries))
-            << "; start with loads that the initial stress balances, or set "
-               "'Initial state/Equilibrate'.";
-    AssertThrow(violation.relative <= tolerance, ExcMessage(message.str()));
+    TimerOutput::Scope phase(timer, "adaptation");
+    if (mesh_controller.mark(*discretization,
+                             accepted,
+                             recorder.summary().controlled_errors().size))
+      change_mesh();
+  }
+
+
+
+  template <int dim>
+  bool
+  ViscoplasticContact<dim>::refine_for(const AcceptedStep<dim> &step)
+  {
+    if (!mesh_controller.repeats_steps())
+      return false;
+    TimerOutput::Scope phase(timer, "adaptation");
+    if (!mesh_controller.mark_for_step(
+          *discretization,
+          accepted,
+          step.end,
+          recorder.summary().controlled_errors().size))
+      {
+        mesh_controller.accept_step();
+        return false;
+      }
+    change_mesh();
+    control.undo();
+    std::ostringstream text;
+    text << "  mesh " << std::setprecision(3) << mesh_controller.excess()
+         << " times too coarse for step " << step.time_step.n << ", refined to "
+         << triangulation.n_global_active_cells() << " cells\n";
+    out << text.str() << std::flush;
+    return true;
+  }
+
+
+
+  template <int dim>
+  bool
+  ViscoplasticContact<dim>::refine_first_mesh(
+    const double          estimate,
+    const double          allowed,
+    const Vector<double> &squared_indicators)
+  {
+    TimerOutput::Scope phase(timer, "adaptation");
+    if (!mesh_controller.mark_first(
+          *discretization, estimate, allowed, squared_indicators))
+      return false;
+    triangulation.execute_coarsening_and_refinement();
+    set_up();
+    return true;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::change_mesh()
+  {
+    MeshChange<dim> change(error_estimator.get(),
+                           *discretization,
+                           *time_stepper,
+                           accepted,
+                           triangulation);
+    triangulation.execute_coarsening_and_refinement();
+    set_up();
+    change.carry(*discretization, *time_stepper, accepted);
+    recorder.record_mesh_change(change.energies,
+                                energies_on_mesh(*discretization, accepted));
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::enter_next_stage()
+  {
+    TimerOutput::Scope phase(timer, "adaptation");
+    StageChange<dim>   change(error_estimator.get(), *discretization, accepted);
+    scene.enter_stage(scene.stage() + 1);
+    set_up();
+    change.carry(*discretization, *time_stepper, accepted);
+    recorder.record_stage(change.energies,
+                          energies_on_mesh(*discretization, accepted));
+    announcer.announce_stage(scene);
+  }
+
+
+
+  template <int dim>
+  std::string
+  ViscoplasticContact<dim>::keep_checkpoints(const SignalRequests &signals)
+  {
+    const State<dim> &state   = accepted.state;
+    const bool        is_last = is_finished();
+    auto              decision =
+      checkpoint_schedule.after_step(state.n, is_last, recorder.elapsed());
+    // Steps are the same on all ranks; the clock of one rank counts.
+    if (Utilities::MPI::this_mpi_process(communicator) != 0)
+      decision = {};
+    const SignalRequests::Request request =
+      signals.agree(communicator, decision.is_due, decision.is_late);
+    const bool stops = !request.stop.empty() && !is_last;
+    if (!request.checkpoint && !stops)
+      return "";
+    write_checkpoint();
+    checkpoint_schedule.restart_clock(recorder.elapsed());
+    std::ostringstream text;
+    text << "step " << state.n << " (t = " << state.t
+         << parameters.units.suffix(Quantity::time, dim) << "): '"
+         << directories.checkpoints.path(state.n) << "'";
+    if (!stops)
+      {
+        // Regular ones need no words.
+        if (!decision.is_due)
+          out << "Checkpoint of " << text.str() << std::endl;
+        return "";
+      }
+    std::ostringstream error;
+    if (const auto relative = recorder.relative_error(accepted.errors))
+      error << " The error up to there is estimated as " << std::setprecision(2)
+            << 100. * *relative << " %.";
+    const std::string interruption = request.stop +
+                                     " has ended the run after the checkpoint "
+                                     "of " +
+                                     text.str() + "; --restart goes on." +
+                                     error.str();
+    console.log() << interruption << std::endl;
+    return interruption;
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::write_checkpoint()
+  {
+    TimerOutput::Scope phase(timer, "checkpoint");
+    const PackedRun    packed = pack_run(run_state,
+                                      triangulation,
+                                      *discretization,
+                                      *time_stepper,
+                                      output->output_times());
+    // Whose rows the checkpoint relies on.
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        recorder.synchronize();
+        lines.synchronize();
+      }
+    directories.write_checkpoint(packed.manifest, packed.files);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::resume(const CheckpointManifest &checkpoint)
+  {
+    const CheckpointStore &store = directories.checkpoints;
+    RunArchive<dim>        archive(store, checkpoint, run_state, triangulation);
+    const State<dim>      &state       = accepted.state;
+    const bool             is_solution = accepted.is_solution;
+    scene.enter_stage(scene.stage_of_step_to(state.t));
+    set_up(); // which knows of no solution
+    const Discretization<dim> &d              = *discretization;
+    const auto                 preconditioner = archive.read_fields(d);
+    time_stepper->method().restore(accepted, preconditioner);
+    // Of these data: with others nothing may stay as it is.
+    accepted.is_solution = is_solution && !archive.changes.of_data;
+    accepted.forces      = evaluate_forces(d.stress_space,
+                                      d.matrix,
+                                      d.loads.assemble(state.t),
+                                      state);
+
+    std::string failure;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        try
+          {
+            recorder.write_to(std::make_unique<Statistics>(
+              results_directory(parameters) + "statistics.csv", state.n));
+          }
+        catch (const std::exception &exception)
+          {
+            failure = reason(exception);
+          }
+      }
+    failure = Utilities::MPI::broadcast(communicator, failure);
+    AssertThrow(failure.empty(), ExcMessage(failure));
+    output.emplace(scene, communicator);
+    output->resume(archive.output_times);
+    lines.resume(output->directory(), state.n);
+    // A run without checkpoints of its own keeps those that there are.
+    const unsigned int n_kept = checkpoint_schedule.is_regular() ?
+                                  parameters.checkpoint.keep :
+                                  std::numeric_limits<unsigned int>::max();
+    for (const std::string &remark :
+         store.remove_others(state.n, n_kept).remarks)
+      console.remark(remark);
+
+    out << "Restart after step " << state.n << " (t = " << state.t
+        << parameters.units.suffix(Quantity::time, dim) << ") from '"
+        << store.path(state.n) << "'" << std::endl;
+    remark_on_changes(checkpoint, archive.changes, console);
+
+    recorder.resume(state, archive.earlier_seconds);
+    checkpoint_schedule.restart_clock(recorder.elapsed());
   }
 
 

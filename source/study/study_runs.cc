@@ -59,7 +59,9 @@ namespace Viscoplastic
                  const CommandLine::Restart restart,
                  RunMeasurements           &measurements)
     {
-      ViscoplasticContact<dim> problem(parameters, console);
+      ViscoplasticContact<dim> problem(parameters,
+                                       console,
+                                       runs_ahead<dim>(parameters, console));
       const std::string        interruption = problem.run(restart);
       measurements.seconds                  = problem.seconds();
       measurements.solver_demand            = problem.solver_demand();

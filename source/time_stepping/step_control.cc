@@ -3,6 +3,8 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/error/error_budget.h>
+#include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 
 #include <algorithm>
@@ -82,6 +84,19 @@ namespace Viscoplastic
                            const double       t,
                            const std::string &why)
     : std::runtime_error(sentence_on_step(n, t, why))
+  {}
+
+
+
+  StepControl::StepControl(const Parameters   &parameters,
+                           const TimeSchedule &schedule,
+                           const ErrorBudget  *budget)
+    : StepControl(parameters.step_control,
+                  parameters.time.stiffness_policy,
+                  schedule,
+                  order_of(parameters.time.scheme),
+                  parameters.output.fields_interval,
+                  budget != nullptr ? budget->time_tolerance() : 0.)
   {}
 
 

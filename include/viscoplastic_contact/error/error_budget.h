@@ -5,9 +5,12 @@
 #include <viscoplastic_contact/parameters/parameters.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace Viscoplastic
 {
+  class Parameters;
+
   /**
    * How much of the tolerance of a run each cause of errors may use.
    *
@@ -32,6 +35,10 @@ namespace Viscoplastic
                 const unsigned int dimension,
                 const unsigned int order,
                 const bool         of_quantity = false);
+
+    /// That of a run; nothing without a tolerance.
+    static std::optional<ErrorBudget>
+    of_run(const Parameters &parameters);
 
     /// The errors that the tolerance is for.
     const ErrorParts &

@@ -11,6 +11,9 @@
 
 namespace Viscoplastic
 {
+  class ErrorBudget;
+  class Parameters;
+
   /// A step could not be made; a shorter one may succeed.
   struct StepFailure : public std::runtime_error
   {
@@ -93,6 +96,11 @@ namespace Viscoplastic
                 const unsigned int           order,
                 const double                 output_interval,
                 const double                 tolerance_of_run = 0.);
+
+    /// That of a run. @p budget is null without a tolerance.
+    StepControl(const Parameters   &parameters,
+                const TimeSchedule &schedule,
+                const ErrorBudget  *budget);
 
     /// Whether the time error of steps is estimated, which needs viscosity.
     void

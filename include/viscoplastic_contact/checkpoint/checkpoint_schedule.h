@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/parameters/parameters.h>
+
+namespace Viscoplastic
+{
+  /**
+   * When a run writes a checkpoint by itself, and when its wall time is over.
+   * Knows nothing of other ranks: the clock of one of them has to decide for
+   * all. Times are seconds since the start of the process.
+   */
+  class CheckpointSchedule
+  {
+  public:
+    explicit CheckpointSchedule(const CheckpointParameters &wanted)
+      : wanted(wanted)
+    {}
+
+    /// The first step of this process begins.
+    void
+    begin_steps(const double now)
+    {
+      last_step = now;
+    }
+
+    struct Decision
+    {
+      /// Whether a checkpoint is due by number of steps or wall time.
+      bool is_due = false;
+      /// Whether another step as long as the last one would end too late.
+      bool is_late = false;
+    };
+
+    /// After step @p n. The last checkpoint of a run is for who adds a phase
+    /// later.
+    Decision
+    after_step(const unsigned int n, const bool is_last_step, const double now);
+
+    /// A checkpoint has been written, or a run resumed from one.
+    void
+    restart_clock(const double now)
+    {
+      last_checkpoint = now;
+    }
+
+    /// Whether the scene asks for checkpoints without a signal.
+    bool
+    is_regular() const
+    {
+      return wanted.every_n_steps > 0 || wanted.wall_time_interval > 0.;
+    }
+
+  private:
+    const CheckpointParameters wanted;
+    double                     last_checkpoint = 0., last_step = 0.;
+  };
+} // namespace Viscoplastic

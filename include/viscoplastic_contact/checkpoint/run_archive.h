@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/distributed/tria.h>
+
+#include <viscoplastic_contact/checkpoint/checkpoint.h>
+#include <viscoplastic_contact/checkpoint/checkpoint_store.h>
+#include <viscoplastic_contact/checkpoint/parameter_changes.h>
+#include <viscoplastic_contact/error/error_budget.h>
+#include <viscoplastic_contact/results/recorder.h>
+#include <viscoplastic_contact/time_stepping/time_stepper.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// What a run knows between two steps beside its mesh: all that a restart
+  /// has to bring back.
+  template <int dim>
+  struct RunState
+  {
+    const Scene<dim>    &scene;
+    EvaluatedState<dim> &accepted;
+    StepControl         &control;
+    ErrorBudget         *budget; // null without a tolerance
+    Recorder<dim>       &recorder;
+  };
+
+  /// Tell the user what is not as it was when a checkpoint was written.
+  void
+  remark_on_changes(const CheckpointManifest &checkpoint,
+                    const ParameterChanges   &changes,
+                    Console                  &console);
+
+  /// What a checkpoint is written from: its manifest, and the files of this
+  /// rank by name.
+  struct PackedRun
+  {
+    CheckpointManifest                 manifest;
+    std::map<std::string, std::string> files;
+  };
+
+  /// Pack a run. @p output_times: when fields have been written. Collective.
+  template <int dim>
+  PackedRun
+  pack_run(RunState<dim>                                   &run,
+           const parallel::distributed::Triangulation<dim> &triangulation,
+           const Discretization<dim>                       &discretization,
+           const TimeStepper<dim>                          &time_stepper,
+           const std::vector<double>                       &output_times);
+
+  /**
+   * A checkpoint that a run goes on from, read in two parts, since fields need
+   * a discretization and that needs the mesh. Errors are ExcMessage with a
+   * sentence for the user. Collective.
+   */
+  template <int dim>
+  class RunArchive
+  {
+  public:
+    /// Read what is the same on all ranks into @p run and bring back the mesh.
+    /// Throws if the checkpoint belongs to another scene. All arguments stay
+    /// in use.
+    RunArchive(const CheckpointStore                     &store,
+               const CheckpointManifest                  &checkpoint,
+               RunState<dim>                             &run,
+               parallel::distributed::Triangulation<dim> &triangulation);
+
+    /// Read the fields of the accepted state. Returns what an iterative solver
+    /// has kept, if the run had one.
+    std::optional<PreconditionerState>
+    read_fields(const Discretization<dim> &discretization);
+
+    /// What the user has changed since.
+    const ParameterChanges changes;
+    std::vector<double>    output_times;
+    double                 earlier_seconds = 0.;
+
+  private:
+    const CheckpointStore    &store;
+    const CheckpointManifest &checkpoint;
+    RunState<dim>            &run;
+
+    std::vector<std::string>           meshes; // by rank of the checkpoint
+    std::array<bool, 4>                has_nodal_field;
+    bool                               has_estimate       = false;
+    bool                               has_bytes_to_spare = false;
+    std::optional<PreconditionerState> preconditioner;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/spelling.h>
+#include <viscoplastic_contact/base/table.h>
+#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/checkpoint/run_archive.h>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    const std::string run_file = "run.bin";
+    const std::string version =
+      VISCOPLASTIC_CONTACT_VERSION " (" VISCOPLASTIC_CONTACT_GIT_REVISION ")";
+
+    std::string
+    mesh_file(const unsigned int rank)
+    {
+      return "mesh_" + Utilities::int_to_string(rank, 5) + ".bin";
+    }
+
+    std::string
+    fields_file(const unsigned int rank)
+    {
+      return "fields_" + Utilities::int_to_string(rank, 5) + ".bin";
+    }
+
+
+
+    /// The entries and, of tables, what is in their files.
+    std::map<std::string, std::string>
+    values_with_tables(const Parameters &parameters)
+    {
+      auto values = parameters.values();
+      for (const auto &table : tables_in_use())
+        values[table->section + "/Checksum of the file"] =
+          std::to_string(table->checksum);
+      return values;
+    }
+
+
+
+    /// Write to, or read from, an archive what is the same on all ranks. What
+    /// a step makes anew is not here.
+    template <int dim, typename Archive>
+    void
+    exchange_run(Archive &archive, RunState<dim> &run)
+    {
+      EvaluatedState<dim> &accepted = run.accepted;
+      State<dim>          &state    = accepted.state;
+      archive &state.n &state.t &state.k &accepted.is_solution;
+      archive &accepted.space_estimate.total &accepted.space_estimate
+        .rate_defect;
+      ContactReport &report = accepted.report;
+      archive &report.duality_gap &report.relative_error &report.error &report
+        .tolerance;
+      run.control.exchange(archive);
+      if (run.budget != nullptr)
+        archive &run.budget->expected_size;
+      if (run.scene.parameters.error_control.error_estimator)
+        accepted.errors.exchange(archive);
+      run.recorder.exchange(archive);
+    }
+
+
+
+    /// All but the truncation, which has values at nodes.
+    template <typename Archive>
+    void
+    exchange_preconditioner(Archive                            &archive,
+                            std::optional<PreconditionerState> &preconditioner)
+    {
+      bool     has_state = preconditioner.has_value();
+      archive &has_state;
+      if (!has_state)
+        return;
+      if (!preconditioner)
+        preconditioner.emplace();
+      archive & preconditioner->best_rate & preconditioner->lost_iterations &
+        preconditioner->is_fresh;
+    }
+
+
+
+    /// Throw unless the schedule of the scene has the step of the checkpoint.
+    /// Those that the run has chosen must not pass its end.
+    template <int dim>
+    void
+    check_schedule(const RunState<dim> &run, const std::string &path)
+    {
+      const State<dim> &state    = run.accepted.state;
+      const auto       &schedule = run.scene.schedule;
+      const bool        is_on_schedule =
+        state.n >= 1 &&
+        (run.control.may_reject() ? state.t <= schedule.end_time() :
+                                    state.n <= schedule.n_steps() &&
+                                      schedule.step(state.n).t == state.t &&
+                                      schedule.step(state.n).k == state.k);
+      AssertThrow(is_on_schedule,
+                  ExcMessage(
+                    "'Time/Phases' = " + run.scene.parameters.time.phases +
+                    " does not contain the step of the checkpoint '" + path +
+                    "'; change only what comes after it."));
+    }
+  } // namespace
+
+
+
+  void
+  remark_on_changes(const CheckpointManifest &checkpoint,
+                    const ParameterChanges   &changes,
+                    Console                  &console)
+  {
+    const unsigned int n_ranks =
+      Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    if (checkpoint.n_ranks != n_ranks)
+      console.remark("Note: the checkpoint is from " +
+                     std::to_string(checkpoint.n_ranks) +
+                     " MPI rank(s), this run has " + std::to_string(n_ranks) +
+                     "; results will differ by the contact tolerance.");
+    if (checkpoint.version != version)
+      console.remark("Note: the checkpoint is from version '" +
+                     excerpt(checkpoint.version) + "', this is " + version +
+                     ".");
+    if (!changes.allowed.empty())
+      console.remark("Note: changed since the checkpoint: " +
+                     enumeration(changes.allowed) + ".");
+  }
+
+
+
+  template <int dim>
+  PackedRun
+  pack_run(RunState<dim>                                   &run,
+           const parallel::distributed::Triangulation<dim> &triangulation,
+           const Discretization<dim>                       &discretization,
+           const TimeStepper<dim>                          &time_stepper,
+           const std::vector<double>                       &output_times)
+  {
+    const MPI_Comm        communicator = triangulation.get_communicator();
+    const unsigned int    rank = Utilities::MPI::this_mpi_process(communicator);
+    const State<dim>     &state = run.accepted.state;
+    const Vector<double> &indicators =
+      run.accepted.space_estimate.squared_indicators;
+    PackedRun           packed;
+    CheckpointManifest &manifest = packed.manifest;
+    manifest.n                   = state.n;
+    manifest.t                   = state.t;
+    manifest.dimension           = dim;
+    manifest.n_ranks    = Utilities::MPI::n_mpi_processes(communicator);
+    manifest.version    = version;
+    manifest.parameters = values_with_tables(run.scene.parameters);
+
+    packed.files[mesh_file(rank)] = pack_mesh(triangulation);
+    auto preconditioner = time_stepper.method().preconditioner_state();
+    packed.files[fields_file(rank)] =
+      pack_fields(discretization.stress_space,
+                  discretization.face.get(),
+                  state,
+                  preconditioner ? &preconditioner->built_for : nullptr,
+                  indicators);
+    if (rank == 0)
+      {
+        const CoarseMesh coarse_mesh = describe_coarse_mesh(triangulation);
+        BinaryWriter     archive;
+        archive &coarse_mesh.topology &coarse_mesh.vertices;
+        for (const DistributedVector *field : nodal_fields(state))
+          archive &(field->size() > 0);
+        archive &(indicators.size() > 0);
+        archive &output_times;
+        archive &run.recorder.elapsed_in_all();
+        exchange_run(archive, run);
+        exchange_preconditioner(archive, preconditioner);
+        packed.files[run_file] = archive.bytes();
+      }
+    return packed;
+  }
+
+
+
+  template <int dim>
+  RunArchive<dim>::RunArchive(
+    const CheckpointStore                     &store,
+    const CheckpointManifest                  &checkpoint,
+    RunState<dim>                             &run,
+    parallel::distributed::Triangulation<dim> &triangulation)
+    : changes(compare_parameters(checkpoint.parameters,
+                                 values_with_tables(run.scene.parameters)))
+    , store(store)
+    , checkpoint(checkpoint)
+    , run(run)
+  {
+    const std::string path = store.path(checkpoint.n),
+                      name = "The checkpoint '" + path + "'";
+    AssertThrow(checkpoint.dimension == dim && changes.forbidden.empty(),
+                ExcMessage(name + " cannot go on with other unknowns: " +
+                           enumeration(changes.forbidden) +
+                           "; undo that, or begin without --restart."));
+    BinaryReader archive(store.read(checkpoint, run_file));
+    CoarseMesh   coarse_mesh;
+    archive &coarse_mesh.topology &coarse_mesh.vertices;
+    AssertThrow(coarse_mesh.agrees_with(describe_coarse_mesh(triangulation)),
+                ExcMessage(name + " belongs to another coarse mesh."));
+    for (bool &has_field : has_nodal_field)
+      archive &has_field;
+    AssertThrow(has_nodal_field[3] == run.scene.keeps_friction_work(),
+                ExcMessage(name +
+                           " cannot go on with another sum: `friction work' "
+                           "among 'Output/Additional fields' has to be there "
+                           "from the beginning or not at all."));
+    archive &has_estimate &output_times &earlier_seconds;
+    exchange_run(archive, run);
+    exchange_preconditioner(archive, preconditioner);
+    has_bytes_to_spare = !archive.is_at_end();
+    check_schedule(run, path);
+    for (unsigned int r = 0; r < checkpoint.n_ranks; ++r)
+      meshes.push_back(store.read(checkpoint, mesh_file(r)));
+    restore_mesh(meshes, triangulation);
+  }
+
+
+
+  template <int dim>
+  std::optional<PreconditionerState>
+  RunArchive<dim>::read_fields(const Discretization<dim> &discretization)
+  {
+    const MPI_Comm communicator =
+      discretization.space.dof_handler.get_communicator();
+    const unsigned int rank    = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
+    const auto unpack = [&](const unsigned int begin, const unsigned int end) {
+      PackedFields packed{{meshes.begin() + begin, meshes.begin() + end},
+                          {},
+                          has_nodal_field,
+                          has_estimate,
+                          ErrorEstimator<dim>::n_sample_fields(run.scene)};
+      for (unsigned int r = begin; r < end; ++r)
+        packed.fields.push_back(store.read(checkpoint, fields_file(r)));
+      const bool complete =
+        unpack_fields(packed,
+                      discretization.stress_space,
+                      discretization.face.get(),
+                      run.accepted.state,
+                      preconditioner ? &preconditioner->built_for : nullptr,
+                      run.accepted.space_estimate.squared_indicators);
+      return Utilities::MPI::min(complete ? 1 : 0, communicator) == 1;
+    };
+    // On as many ranks as before, each finds all in its own file.
+    AssertThrow(((n_ranks == checkpoint.n_ranks && unpack(rank, rank + 1)) ||
+                 unpack(0, checkpoint.n_ranks)) &&
+                  !has_bytes_to_spare,
+                ExcMessage("The checkpoint '" + store.path(checkpoint.n) +
+                           "' does not fit the scene."));
+    return preconditioner;
+  }
+
+
+
+  template PackedRun
+  pack_run<2>(RunState<2> &,
+              const parallel::distributed::Triangulation<2> &,
+              const Discretization<2> &,
+              const TimeStepper<2> &,
+              const std::vector<double> &);
+  template PackedRun
+  pack_run<3>(RunState<3> &,
+              const parallel::distributed::Triangulation<3> &,
+              const Discretization<3> &,
+              const TimeStepper<3> &,
+              const std::vector<double> &);
+  template class RunArchive<2>;
+  template class RunArchive<3>;
+} // namespace Viscoplastic

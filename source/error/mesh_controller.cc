@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/memory_bound.h>
+#include <viscoplastic_contact/error/memory_loss.h>
+#include <viscoplastic_contact/error/mesh_controller.h>
+#include <viscoplastic_contact/error/quantity_estimator.h>
+#include <viscoplastic_contact/mesh/mesh_marking.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  MeshController<dim>::MeshController(
+    const Scene<dim>                          &scene,
+    parallel::distributed::Triangulation<dim> &triangulation,
+    const ErrorBudget                         *budget)
+    : scene(scene)
+    , wanted(scene.parameters.refinement)
+    , triangulation(triangulation)
+    , budget(budget)
+  {}
+
+
+
+  template <int dim>
+  bool
+  MeshController<dim>::is_due(const unsigned int n) const
+  {
+    return scene.is_adaptive() && n > 0 &&
+           (budget != nullptr ? n_refinements == 0 :
+                                n % wanted.every_n_steps == 0);
+  }
+
+
+
+  template <int dim>
+  bool
+  MeshController<dim>::repeats_steps() const
+  {
+    return budget != nullptr && scene.is_adaptive();
+  }
+
+
+
+  template <int dim>
+  bool
+  MeshController<dim>::mark(const Discretization<dim> &discretization,
+                            const EvaluatedState<dim> &accepted,
+                            const double               so_far)
+  {
+    if (estimate_is_rounding(discretization, accepted))
+      return false;
+    const Vector<double> &squared_indicators =
+      accepted.space_estimate.squared_indicators;
+    if (budget == nullptr)
+      return mark_cells(triangulation,
+                        squared_indicators,
+                        limits(discretization));
+    return mark_cells_to_tolerance(triangulation,
+                                   squared_indicators,
+                                   limits(discretization),
+                                   space_ratio(accepted.errors, so_far),
+                                   limit_coarsening(discretization,
+                                                    accepted,
+                                                    so_far));
+  }
+
+
+
+  template <int dim>
+  bool
+  MeshController<dim>::mark_for_step(const Discretization<dim> &discretization,
+                                     const EvaluatedState<dim> &accepted,
+                                     const EvaluatedState<dim> &end,
+                                     const double               so_far)
+  {
+    ratio = space_ratio(end.errors, so_far);
+    if (ratio <= 1. || !mark_cells_to_tolerance(
+                         triangulation,
+                         end.space_estimate.squared_indicators,
+                         limits(discretization),
+                         ratio,
+                         n_refinements == 0 ?
+                           limit_coarsening(discretization, accepted, so_far) :
+                           std::function<void()>()))
+      return false;
+    ++n_refinements;
+    return true;
+  }
+
+
+
+  template <int dim>
+  bool
+  MeshController<dim>::mark_first(const Discretization<dim> &discretization,
+                                  const double               estimate,
+                                  const double               allowed,
+                                  const Vector<double>      &squared_indicators)
+  {
+    return scene.is_adaptive() && allowed > 0. && estimate > allowed &&
+           mark_cells_to_tolerance(triangulation,
+                                   squared_indicators,
+                                   limits(discretization),
+                                   estimate / allowed);
+  }
+
+
+
+  template <int dim>
+  RefinementParameters
+  MeshController<dim>::limits(const Discretization<dim> &discretization) const
+  {
+    RefinementParameters limits = wanted;
+    if (limits.memory_budget > 0.)
+      limits.cell_budget =
+        std::min(limits.cell_budget,
+                 cells_in_memory(discretization, 1e9 * limits.memory_budget));
+    return limits;
+  }
+
+
+
+  template <int dim>
+  bool
+  MeshController<dim>::estimate_is_rounding(
+    const Discretization<dim> &discretization,
+    const EvaluatedState<dim> &accepted) const
+  {
+    const EnergyRounding rounding = energy_rounding(discretization.space,
+                                                    discretization.matrix,
+                                                    accepted.forces);
+    if (wanted.strategy == RefinementStrategy::kelly)
+      return rounding.is_all_of_the_strain;
+    const double energy_norm =
+      std::sqrt(2. * std::max(0., accepted.forces.strain_energy));
+    return accepted.space_estimate.total <=
+           std::max(10. *
+                      std::max(1e-10,
+                               scene.parameters.solver.strict_tolerance()) *
+                      energy_norm,
+                    rounding.size);
+  }
+
+
+
+  template <int dim>
+  double
+  MeshController<dim>::space_ratio(const ErrorEstimate &errors,
+                                   const double         size_up_to_now) const
+  {
+    const double so_far = std::max(size_up_to_now, budget->size(errors));
+    const double size   = budget->size(so_far);
+    // A body that has not moved yet says nothing about the mesh.
+    if (!(size > 0.))
+      return 1.;
+    const double allowed =
+      budget->space(budget->errors(errors), size, scene.has_time_error());
+    if (!scene.quantity)
+      {
+        // What the mesh does to a strain that is elastic, a finer one mends.
+        // What it does to creep stays, and counts against what there is of it;
+        // but the little of the beginning is not worth a mesh for itself.
+        const double creep =
+          so_far > 0. ? std::min(1., errors.creep_path / so_far) : 0.;
+        constexpr double least = 1. / 3.;
+        return errors.space /
+               (allowed *
+                (1. - creep + creep * std::max(least, so_far / size)));
+      }
+    const QuantityEstimate &quantity = errors.quantity;
+    if (quantity.unsigned_space == 0.) // nor does friction that cannot change
+      return 1.;
+    // Quantities behave like squares of the energy norm. Where contributions
+    // happen to cancel, none of them may become larger. What is settled stays
+    // as it is on any mesh.
+    constexpr double safety  = QuantityEstimator<dim>::safety;
+    const double     settled = safety * std::abs(quantity.settled_space),
+                 open        = std::max(0.1 * allowed, allowed - settled),
+                 of_mesh =
+                   std::max(safety * std::abs(quantity.space_correction -
+                                              quantity.settled_space),
+                            quantity.space_of_creep),
+                 ratio = std::sqrt(
+                   std::max(of_mesh,
+                            std::min(quantity.unsigned_space, 0.9 * open)) /
+                   open);
+    // A face that hardly slips for a while will slip again.
+    return scene.quantity->is_sum() ? std::max(1., ratio) : ratio;
+  }
+
+
+
+  template <int dim>
+  std::function<void()>
+  MeshController<dim>::limit_coarsening(
+    const Discretization<dim> &discretization,
+    const EvaluatedState<dim> &accepted,
+    const double               so_far)
+  {
+    // What creeps or slips remembers each mesh, which the estimate of a
+    // quantity does not see: its mesh never becomes coarser.
+    if (scene.quantity)
+      return nullptr;
+    return [this, &discretization, &accepted, so_far] {
+      limit_memory_loss(triangulation,
+                        discretization.stress_space,
+                        accepted.state.z,
+                        budget->transfer(accepted.errors,
+                                         budget->size(so_far)));
+    };
+  }
+
+
+
+  template class MeshController<2>;
+  template class MeshController<3>;
+} // namespace Viscoplastic

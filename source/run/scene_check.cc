@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+#include <deal.II/fe/fe_q.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/error/known_solution.h>
+#include <viscoplastic_contact/error/solution_errors.h>
+#include <viscoplastic_contact/linear_solvers/solver_choice.h>
+#include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/results/recorder.h>
+#include <viscoplastic_contact/run/plausibility.h>
+#include <viscoplastic_contact/run/scene_check.h>
+#include <viscoplastic_contact/scene/kinks_in_time.h>
+#include <viscoplastic_contact/time_stepping/explicit_step.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    template <int dim>
+    void
+    land_on_kinks(
+      const Scene<dim>                                &scene,
+      const parallel::distributed::Triangulation<dim> &triangulation,
+      StepControl                                     &control,
+      Announcer<dim>                                  *announcer)
+    {
+      control.land_on(scene.stage_ends, {});
+      if (!control.is_on || !scene.parameters.step_control.land_on_kinks)
+        return;
+      const KinksOfScene found = find_kinks(scene, triangulation);
+      if (found.kinks.empty())
+        return;
+      if (announcer != nullptr)
+        announcer->announce(found);
+      std::vector<double> kinks, jumps;
+      for (const Kink &kink : found.kinks)
+        (kink.is_jump ? jumps : kinks).push_back(kink.t);
+      control.land_on(kinks, jumps);
+    }
+
+
+
+    /// What can be said of the limit where check_steps() says nothing: where
+    /// the initial state has no stress, or has yet to be brought into
+    /// equilibrium.
+    template <int dim>
+    void
+    announce_stability_limit(const Discretization<dim> &discretization,
+                             const State<dim>          &initial,
+                             std::ostream              &out)
+    {
+      const Scene<dim> &scene = discretization.scene();
+      if (std::none_of(scene.materials.begin(),
+                       scene.materials.end(),
+                       [](const auto &material) {
+                         return material->law != nullptr;
+                       }))
+        return;
+      const State<dim> &state = initial;
+      const double      rate =
+        evaluate_flow(discretization.laws, state.u, state.z, state.t)
+          .relaxation_rate;
+      if (rate == 0.)
+        out << "Stability limit 2/r: none without stress; r grows with the "
+               "stress, and a run says where it is largest\n";
+      else if (scene.parameters.initial_state.equilibrate)
+        {
+          const TimeStep largest = scene.schedule.largest_step();
+          out << "Stability limit 2/r before the initial state is brought into "
+                 "equilibrium: "
+              << 2. / rate << scene.parameters.units.suffix(Quantity::time, dim)
+              << (scene.is_implicit() ? " of explicit schemes" : "")
+              << "; the largest step is " << largest.k
+              << scene.parameters.units.suffix(Quantity::time, dim) << '\n';
+        }
+    }
+
+
+    /// Evaluate the data of later times, of at most a hundred steps.
+    template <int dim>
+    void
+    check_later_data(const Discretization<dim> &discretization)
+    {
+      const TimeSchedule &schedule = discretization.scene().schedule;
+      const unsigned int  n_steps  = schedule.n_steps(),
+                         stride    = (n_steps + 99) / 100;
+      DistributedVector u          = discretization.space.owned_vector();
+      for (unsigned int i = 1; i < n_steps + stride; i += stride)
+        {
+          const TimeStep step = schedule.step(std::min(i, n_steps));
+          discretization.loads.assemble(step.t);
+          discretization.space.set_prescribed(step.t, u);
+          discretization.laws.check(step.t);
+          if (discretization.face)
+            {
+              discretization.face->bounds(step.t);
+              discretization.face->foundation_step(step.t_old, step.t);
+            }
+        }
+    }
+
+
+
+    /// Solver, steps and what memory a run needs beyond what this process has
+    /// now. Collective.
+    template <int dim>
+    void
+    print_size(const Discretization<dim> &discretization, std::ostream &out)
+    {
+      const Scene<dim>      &scene       = discretization.scene();
+      const DoFHandler<dim> &dof_handler = discretization.space.dof_handler;
+      const SolverDemand     demand      = discretization.solver_demand();
+      const BulkSolverKind   solver      = choose_bulk_solver(demand);
+      Utilities::System::MemoryStats now;
+      Utilities::System::get_memory_stats(now);
+      const double bytes =
+        Utilities::MPI::sum(1024. * static_cast<double>(now.VmRSS),
+                            dof_handler.get_communicator()) +
+        expected_memory(solver, demand) +
+        (scene.is_implicit() || scene.is_implicit_beyond_the_limit() ?
+           // A second matrix, and two tensors of rank 4 a sample.
+           dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
+             2. * sizeof(SymmetricTensor<4, 3>) *
+               discretization.stress_space.n_samples *
+               dof_handler.get_triangulation().n_global_active_cells() :
+           0.);
+      out << "Linear solver: "
+          << (solver == BulkSolverKind::direct ?
+                "direct (CHOLMOD)" :
+                "conjugate gradients with " + to_string(solver))
+          << "\nSteps: " << scene.schedule.n_steps()
+          << " until t = " << scene.schedule.end_time()
+          << scene.parameters.units.suffix(Quantity::time, dim)
+          << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
+          << (scene.is_adaptive() ? " on the initial mesh" : "") << '\n';
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  make_first_mesh(Scene<dim>                                &scene,
+                  parallel::distributed::Triangulation<dim> &triangulation,
+                  StepControl                               &control,
+                  Announcer<dim>                            *announcer)
+  {
+    make_mesh(scene.parameters.geometry, triangulation);
+    scene.inspect(triangulation);
+    AssertThrow(!control.is_on || !scene.has_viscosity() ||
+                  scene.parameters.error_control.error_estimator,
+                ExcMessage("'Step control/Tolerance' needs an estimate of the "
+                           "error; set 'Error control/Error bar' = true."));
+    control.set_has_estimate(scene.has_viscosity());
+    if (announcer != nullptr)
+      announcer->announce(scene);
+    land_on_kinks(scene, triangulation, control, announcer);
+  }
+
+
+
+  template <int dim>
+  void
+  check_stages(const FiniteElement<dim> &fe,
+               DoFHandler<dim>          &dof_handler,
+               Scene<dim>               &scene)
+  {
+    if (!scene.has_stages())
+      return;
+    distribute_nodes(fe, dof_handler);
+    for (unsigned int n = 1; n <= scene.stage_ends.size(); ++n)
+      {
+        scene.enter_stage(n);
+        const Discretization<dim> of_stage(dof_handler, scene);
+      }
+    scene.enter_stage(0);
+  }
+
+
+  template <int dim>
+  void
+  check_compatibility(const Discretization<dim> &discretization,
+                      State<dim>                &initial,
+                      const Load<dim>           &load)
+  {
+    const Scene<dim> &scene = discretization.scene();
+    const double      tolerance =
+      scene.parameters.initial_state.compatibility_tolerance;
+    const CompatibilityViolation<dim> violation =
+      compatibility_violation(discretization.space,
+                              load,
+                              discretization.face.get(),
+                              initial.u,
+                              initial.contact);
+    // Data that a solution makes are compatible up to quadrature.
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      return;
+    std::ostringstream message;
+    message << "The initial data are not in equilibrium with the loads at "
+               "t = 0, (2.12): the relative violation is "
+            << violation.relative
+            << ", and 'Initial state/Compatibility tolerance' is " << tolerance
+            << "; it is largest at x = (" << violation.position << "), "
+            << (violation.boundaries.empty() ?
+                  "inside of the body" :
+                  "on boundary " + list(violation.boundaries))
+            << "; start with loads that the initial stress balances, or set "
+               "'Initial state/Equilibrate'.";
+    AssertThrow(violation.relative <= tolerance, ExcMessage(message.str()));
+  }
+
+
+  template <int dim>
+  void
+  check_steps(const Discretization<dim> &discretization,
+              const StepControl         &control,
+              Console                   &console,
+              EvaluatedState<dim>       &initial)
+  {
+    const Scene<dim> &scene = discretization.scene();
+    if (!scene.has_viscosity())
+      return;
+    const State<dim> &state = initial.state;
+    initial.rate =
+      evaluate_flow(discretization.laws, state.u, state.z, state.t);
+    const double rate      = initial.rate->relaxation_rate;
+    const bool   has_limit = !scene.is_implicit() &&
+                           !scene.is_implicit_beyond_the_limit() &&
+                           !control.needs_limit();
+    if (has_limit)
+      check_stability<dim>(scene.parameters,
+                           *initial.rate,
+                           scene.schedule.step(1));
+    if (rate == 0.)
+      return;
+    const std::string time_unit =
+      scene.parameters.units.suffix(Quantity::time, dim);
+    console.stream() << "Stability limit 2/r of the initial state: "
+                     << 2. / rate << time_unit
+                     << (scene.is_implicit() ? " of explicit schemes\n" : "\n");
+    if (!has_limit)
+      return;
+    const TimeStep largest = scene.schedule.largest_step();
+    if (!is_stable(*initial.rate, largest.k))
+      {
+        std::ostringstream message;
+        message << "Warning: the time step " << largest.k << time_unit
+                << " of step " << largest.n << " (t = " << largest.t
+                << time_unit
+                << ") exceeds this limit; the run will end there unless the "
+                   "limit has grown by then. Take more steps in "
+                   "'Time/Phases', or set 'Time/Scheme' = backward Euler.";
+        console.remark(message.str());
+      }
+  }
+
+
+  template <int dim>
+  void
+  check_scene(const Parameters &parameters, Console &console)
+  {
+    std::ostream                             &out = console.stream();
+    Announcer<dim>                            announcer(console);
+    Scene<dim>                                scene(parameters);
+    parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
+    const FESystem<dim>                       fe(FE_Q<dim>(1), dim);
+    DoFHandler<dim>                           dof_handler(triangulation);
+    const auto  budget = ErrorBudget::of_run(parameters);
+    StepControl control(parameters,
+                        scene.schedule,
+                        budget ? &*budget : nullptr);
+    TimerOutput timer(out, TimerOutput::never, TimerOutput::wall_times);
+
+    make_first_mesh(scene, triangulation, control, &announcer);
+    check_stages(fe, dof_handler, scene);
+    distribute_nodes(fe, dof_handler);
+    const Discretization<dim> d(dof_handler, scene);
+    announcer.announce(d);
+    announcer.warn_of_held_faces(d);
+    // Points, lines and integrals have to be in the body.
+    Recorder<dim>(scene, control, console, timer, budget ? &*budget : nullptr)
+      .set_mesh(d);
+    const LargestStress largest_stress = largest_given_stress(d);
+    describe_materials(d, largest_stress, out);
+    for (const std::string &doubt : implausible_data(d, largest_stress))
+      console.remark("Warning: " + doubt);
+
+    KnownSolution<dim>(scene, timer).check();
+    if (scene.exact_solution && scene.exact_solution->makes_data)
+      check_exact_solution(d.space);
+    // The initial data, and where they need no solution, the first step.
+    const bool          equilibrate = parameters.initial_state.equilibrate;
+    EvaluatedState<dim> initial;
+    initial.state = make_initial_state(d.stress_space, equilibrate);
+    if (!equilibrate)
+      {
+        check_compatibility(d, initial.state, d.loads.assemble(0.));
+        check_steps(d, control, console, initial);
+      }
+    announce_stability_limit(d, initial.state, out);
+    check_later_data(d);
+    print_size(d, out);
+    out << "The scene is valid"
+        << (console.remarks().empty() ? "." : ", with the remarks above.")
+        << std::endl;
+  }
+
+
+
+  template void
+  make_first_mesh(Scene<2> &,
+                  parallel::distributed::Triangulation<2> &,
+                  StepControl &,
+                  Announcer<2> *);
+  template void
+  check_stages(const FiniteElement<2> &, DoFHandler<2> &, Scene<2> &);
+  template void
+  check_compatibility(const Discretization<2> &, State<2> &, const Load<2> &);
+  template void
+  check_steps(const Discretization<2> &,
+              const StepControl &,
+              Console &,
+              EvaluatedState<2> &);
+  template void
+  check_scene<2>(const Parameters &, Console &);
+  template void
+  make_first_mesh(Scene<3> &,
+                  parallel::distributed::Triangulation<3> &,
+                  StepControl &,
+                  Announcer<3> *);
+  template void
+  check_stages(const FiniteElement<3> &, DoFHandler<3> &, Scene<3> &);
+  template void
+  check_compatibility(const Discretization<3> &, State<3> &, const Load<3> &);
+  template void
+  check_steps(const Discretization<3> &,
+              const StepControl &,
+              Console &,
+              EvaluatedState<3> &);
+  template void
+  check_scene<3>(const Parameters &, Console &);
+} // namespace Viscoplastic

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/error/memory_loss.h>
+#include <viscoplastic_contact/results/step_quantities.h>
+#include <viscoplastic_contact/run/state_carrier.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  StateCarrier<dim>::StateCarrier(const ErrorEstimator<dim> *error_estimator,
+                                  const Discretization<dim> &discretization,
+                                  const EvaluatedState<dim> &accepted)
+    : energies(energies_on_mesh(discretization, accepted))
+    , error_estimator(error_estimator)
+  {
+    if (discretization.face)
+      density = discretization.face->density(accepted.state.contact);
+  }
+
+
+
+  template <int dim>
+  void
+  StateCarrier<dim>::complete(const Discretization<dim> &discretization,
+                              const double               loss,
+                              const double               history,
+                              EvaluatedState<dim>       &accepted) const
+  {
+    accepted.rate.reset();
+    if (error_estimator != nullptr)
+      error_estimator->change_mesh(
+        discretization.space, discretization.matrix, loss, history, accepted);
+  }
+
+
+
+  template <int dim>
+  MeshChange<dim>::MeshChange(
+    const ErrorEstimator<dim>                 *error_estimator,
+    const Discretization<dim>                 &discretization,
+    const TimeStepper<dim>                    &time_stepper,
+    const EvaluatedState<dim>                 &accepted,
+    parallel::distributed::Triangulation<dim> &triangulation)
+    : StateCarrier<dim>(error_estimator, discretization, accepted)
+    , loss(error_estimator != nullptr ? memory_loss(triangulation,
+                                                    discretization.stress_space,
+                                                    accepted.state.z) :
+                                        0.)
+    , transfer(triangulation,
+               discretization.stress_space,
+               accepted.state,
+               discretization.face ? &this->density : nullptr,
+               error_estimator != nullptr ?
+                 time_stepper.history_if_cells_are_refined(accepted.state) :
+                 Vector<double>())
+  {}
+
+
+
+  template <int dim>
+  void
+  MeshChange<dim>::carry(const Discretization<dim> &discretization,
+                         TimeStepper<dim>          &time_stepper,
+                         EvaluatedState<dim>       &accepted)
+  {
+    const Scene<dim> &scene  = discretization.scene();
+    State<dim>       &state  = accepted.state;
+    auto              result = transfer.unpack(discretization.stress_space);
+    state                    = std::move(result.state);
+    if (discretization.face)
+      state.contact =
+        contact_on_new_mesh(discretization, state, result.multiplier_density);
+    const bool keeps_displacement =
+      scene.parameters.initial_state.reset_displacement &&
+      state.initial_u.size() > 0;
+    if (keeps_displacement)
+      state.initial_u -= state.u;
+    // Equilibrium keeps the volume, which moves u, which makes z inconsistent.
+    const unsigned int n_rounds = scene.has_viscosity() ? 8 : 1;
+    for (unsigned int round = 0; round < n_rounds; ++round)
+      {
+        if (scene.has_viscosity())
+          share_mismatch(discretization.stress_space, result.stress, state);
+        time_stepper.settle(accepted);
+      }
+    // What a finer mesh finds of the initial state is no displacement since.
+    if (keeps_displacement)
+      state.initial_u += state.u;
+    this->complete(discretization, loss, result.of_refined_cells, accepted);
+  }
+
+
+
+  template <int dim>
+  StageChange<dim>::StageChange(const ErrorEstimator<dim> *error_estimator,
+                                const Discretization<dim> &discretization,
+                                const EvaluatedState<dim> &accepted)
+    : StateCarrier<dim>(error_estimator, discretization, accepted)
+    , old_u(accepted.forces.u)
+  {
+    for (const auto &cell : discretization.space.cells)
+      was_present.push_back(
+        discretization.scene().is_present(cell->material_id()));
+  }
+
+
+
+  template <int dim>
+  void
+  StageChange<dim>::carry(const Discretization<dim> &discretization,
+                          TimeStepper<dim>          &time_stepper,
+                          EvaluatedState<dim>       &accepted)
+  {
+    State<dim> &state = accepted.state;
+    // Points of friction are the same in all stages.
+    if (discretization.scene().has_unilateral_contact())
+      state.contact = contact_on_new_mesh(discretization, state, this->density);
+    enter_stage(discretization.stress_space, was_present, state);
+    time_stepper.settle(accepted);
+    this->complete(discretization, 0., 0., accepted);
+    time_stepper.estimate(accepted);
+    // The loads that are left do work; those on what is gone do not.
+    this->energies.of_loads = old_u * accepted.forces.load.values;
+  }
+
+
+
+  template class StateCarrier<2>;
+  template class StateCarrier<3>;
+  template class MeshChange<2>;
+  template class MeshChange<3>;
+  template class StageChange<2>;
+  template class StageChange<3>;
+} // namespace Viscoplastic

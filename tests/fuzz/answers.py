@@ -166,7 +166,7 @@ def is_unstressed(run, entries):
         if entry.endswith(("Young's modulus", "Voigt matrix"))
         and "Long-term" not in entry
     ]
-    return run["max_von_mises"].max() < 1e-12 * max(stiffness, default=0)
+    return run["max_von_mises"].max() < 1e-9 * max(stiffness, default=0)
 
 
 def of_energy(run, stdout, entries):

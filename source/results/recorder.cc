@@ -194,7 +194,10 @@ namespace Viscoplastic
     run.energy_balance_defect          = balance.defect();
     run.max_displacement               = quantities.max_displacement;
     run.point_displacements            = quantities.point_displacements;
-    run.tension_area.update(quantities.tension_area, t);
+    if (discretization->tension)
+      run.tension_share.update(quantities.tension_area /
+                                 discretization->tension->area(),
+                               t);
     run.missed_bounds += step.end.state.k * quantities.friction_bounds.missed;
     run.computed_bounds += step.end.state.k * quantities.friction_bounds.sum;
     if (run.displacement.update(quantities.max_displacement, t))
@@ -431,16 +434,12 @@ namespace Viscoplastic
         result.push_back(text.str());
       }
 
-    const double tension =
-      discretization->tension ?
-        run.tension_area.value / discretization->tension->area() :
-        0.;
-    if (tension > 0.01)
+    if (run.tension_share.value > 0.01)
       {
         std::ostringstream text;
-        text << "Note: at t = " << run.tension_area.t << time_unit
+        text << "Note: at t = " << run.tension_share.t << time_unit
              << " the foundation pulls at the body on "
-             << std::lround(100. * tension)
+             << std::lround(100. * run.tension_share.value)
              << " % of the face in bilateral contact, which does not open; "
                 "'Contact law' = unilateral does.";
         result.push_back(text.str());

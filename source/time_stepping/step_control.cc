@@ -162,6 +162,8 @@ namespace Viscoplastic
           const double               k     = 1e-6 * (phase.end - phase.start);
           add(t - 0.5 * k);
           add(t + 0.5 * k);
+          // Where fields are written at t, a step ends between the two.
+          data_kinks.push_back(t);
         }
     std::sort(landing_times.begin(), landing_times.end());
     std::sort(data_kinks.begin(), data_kinks.end());
@@ -229,7 +231,7 @@ namespace Viscoplastic
   bool
   StepControl::is_kink(const double t) const
   {
-    return t == 0. || schedule.phase_ending_at(t) > 0 ||
+    return t == 0. || schedule.phase_ending_at(t) > 0 || has_kink_at(t) ||
            std::binary_search(landing_times.begin(), landing_times.end(), t);
   }
 

@@ -2,53 +2,29 @@
 """A grammar of scenes: everything that a parameter file can ask for, combined
 at random, in sizes of less than two seconds.
 
-Numbers are drawn for a body of size 1 with stresses and times of size 1 and
-then multiplied by units of length, stress and time, so that one scene can be
-drawn in several systems of units.
+What is drawn with is in drawing.py, bodies in bodies.py, and scenes whose parts
+belong together in situations.py.
 """
 
-import math
-from dataclasses import dataclass, field
+import bodies
+import situations
+from drawing import Drawing, Units
 
 
-@dataclass(frozen=True)
-class Units:
-    length: float = 1.0
-    stress: float = 1.0
-    time: float = 1.0
+class Scene(Drawing):
+    """Entries of a scene, drawn part by part.
 
-
-@dataclass
-class Body:
-    """A coarse mesh: pieces says of each boundary id whether it is flat,
-    planes are its cuts in x along faces of cells, points lie inside, and
-    outwards goes out of the body at some of its boundaries."""
-
-    generator: str
-    arguments: str
-    cells: int
-    pieces: dict
-    planes: list = field(default_factory=list)
-    points: list = field(default_factory=list)
-    ids: str = ""
-    outwards: dict = field(default_factory=dict)
-
-
-def flat(*ids):
-    return {id: True for id in ids}
-
-
-def curved(*ids):
-    return {id: False for id in ids}
-
-
-class Scene:
-    """Entries of a scene, drawn part by part."""
+    promise   what is known of the answer: a name of answers.PROMISES, or ""
+    may_turn  whether the body may be turned and shifted
+    """
 
     def __init__(self, random, units=Units()):
-        self.random = random
-        self.units = units
-        self.entries = {}
+        super().__init__(random, units)
+        self.promise = ""
+        self.may_turn = True
+        if units.declared:
+            for name, unit in zip(("Length", "Stress", "Time"), units.declared):
+                self.set(f"Units/{name}", unit)
         self.dim = 2 if self.chance(0.75) else 3
         self.set("Dimension", self.dim)
         # The size of strains, on which that of all data depends.
@@ -56,217 +32,25 @@ class Scene:
         if self.chance(0.06):
             self.strain = random.choice((1e-12, 1e-8, 1.0))
         self.equilibrate = self.chance(0.3)
-        self.geometry()
+        situation = situations.draw(self)
+        self.geometry(situation.body)
         self.materials()
-        self.boundaries()
-        self.loads()
+        if situation.data:
+            situation.data(self)
+        else:
+            self.boundaries()
+            self.loads()
         self.time()
         self.solver()
         self.output()
 
-    # Words
-
-    def set(self, entry, value):
-        self.entries[entry] = str(value)
-
-    def chance(self, probability):
-        return self.random.random() < probability
-
-    def maybe(self, probability, entry, *values):
-        """One of the values, or the default of the program."""
-        value = self.random.choice(values)
-        if self.chance(probability):
-            self.set(entry, value)
-
-    def spread(self, low, high):
-        """A number between two powers of ten."""
-        return 10 ** self.random.uniform(low, high)
-
-    def number(self, value, unit=1.0):
-        """Few digits, times a unit; exact where that is a power of two."""
-        value = float(f"{value:.4g}") * unit
-        return repr(value) if math.frexp(unit)[0] == 0.5 else f"{value:.12g}"
-
-    def length(self, value):
-        return self.number(value, self.units.length)
-
-    def stress(self, value):
-        return self.number(value, self.units.stress)
-
-    def duration(self, value):
-        return self.number(value, self.units.time)
-
-    def point(self, *coordinates):
-        return ", ".join(self.length(c) for c in coordinates)
-
-    def in_units(self, text):
-        """An expression of coordinates and times of size 1."""
-        for names, unit in (("xyz", self.units.length), ("t", self.units.time)):
-            for name in names:
-                quotient = name if unit == 1 else f"({name}/{unit!r})"
-                text = text.replace(f"[{name}]", quotient)
-        return text
-
-    # Expressions
-
-    def in_space(self):
-        """A positive function of place."""
-        return self.in_units(
-            self.random.choice(
-                ("1", "1", "1", "(1 + [x]^2)", "if([x] > 0.5, 0.2, 1)")
-                + ("exp(-([y])^2)", "8^(-4*sin([x]))", "(1.5 + sin(7*[x]*[y]))")
-                + ("(1 + [y]*[y])^0.5", "([x] < 0.3 ? 2 : 0.1)", "abs([x] - 0.4)")
-            )
-        )
-
-    def from_zero(self):
-        """A function of time that is zero at the beginning."""
-        return self.in_units(
-            self.random.choice(
-                ("[t]", "[t]", "[t]", "[t]^2", "sin(4*[t])", "min([t], 1 - [t])")
-                + ("[t]*exp(-[t])", "if([t] < 0.4, 0, 1)", "min([t], 0.5)")
-                + ("sin(20*[t])", "([t] < 0.5 ? [t] : 1 - [t])", "(1 - cos(6*[t]))")
-            )
-        )
-
-    def in_time(self):
-        """A function of time for data that have to balance at the beginning."""
-        if self.equilibrate and self.chance(0.4):
-            return self.in_units(self.random.choice(("1", "(1 + [t])", "cos(5*[t])")))
-        return self.from_zero()
-
-    def not_negative_in_time(self):
-        return self.in_units(
-            self.random.choice(
-                ("1", "1", "1", "1", "(1 + sin(9*[t]))", "abs(sin(7*[t]))", "[t]")
-                + ("if([t] < 0.4, 0.5, 1)", "max(0, 0.7 - [t])", "if([t] < 0.6, 1, 0)")
-            )
-        )
-
-    def datum(self, number):
-        return f"{number}*{self.in_space()}*{self.in_time()}"
-
-    def vector(self, number, probability=0.6):
-        """Components; each is zero now and then."""
-        return "; ".join(
-            self.datum(number()) if self.chance(probability) else "0"
-            for _ in range(self.dim)
-        )
-
-    def displacement(self):
-        sign = self.random.choice((-1, 1))
-        return self.length(self.strain * sign * self.spread(-1, 0.3))
-
-    def traction(self):
-        return self.number(self.load(), self.units.stress)
-
-    def load(self):
-        return self.strain * self.random.choice((-1, 1)) * self.spread(-1, 0.5)
-
     # Parts of a scene
 
-    def body(self):
-        pick, flat_sides = self.random.choice, flat(*range(2 * self.dim))
-        count = lambda most: self.random.randint(1, most)
-        kinds = ("box",) * 5 + ("L", "cell", "half shell", "quarter shell", "shell")
-        kinds += ("hole", "half ball", "quarter ball")
-        kinds += () if self.dim == 2 else ("cylinder", "cone")
-        kind = pick(kinds)
-        radii = f"{self.length(0.5)} : {self.length(1)}"
-        origin = self.point(*[0] * self.dim)
-        if kind == "box":
-            cells = [count(6 if self.dim == 2 else 3) for _ in range(self.dim)]
-            sides = [pick((1, 1, 2, 0.5, 0.1)) for _ in range(self.dim)]
-            n = ", ".join(map(str, cells))
-            planes = [sides[0] * i / cells[0] for i in range(1, cells[0])]
-            outwards = {
-                2 * axis + end: [(2 * end - 1) * (i == axis) for i in range(self.dim)]
-                for axis in range(self.dim)
-                for end in (0, 1)
-            }
-            return Body(
-                "subdivided_hyper_rectangle",
-                f"{n} : {origin} : {self.point(*sides)} : true",
-                math.prod(cells),
-                flat_sides,
-                planes,
-                [[s * self.random.random() for s in sides] for _ in range(2)],
-                outwards=outwards,
-            )
-        if kind == "L":
-            # in 3D deal.II tells no faces apart
-            at = lambda axis, x: f"abs({axis} - {self.length(x)}) < {self.length(0.01)}"
-            planes = [at(axis, x) for x in (0, 1, 0.5) for axis in "xyz"]
-            ids = "8"
-            for id in range(7, -1, -1):
-                ids = f"if({planes[id]}, {id}, {ids})"
-            return Body(
-                "hyper_L",
-                f"0 : {self.length(1)} : true",
-                2**self.dim - 1,
-                flat(*range(6 if self.dim == 2 else 9)),
-                [0.5],
-                ids="" if self.dim == 2 else ids,
-            )
-        if kind == "cell":
-            # an affine image of the cube, so that all faces are flat
-            edges = [
-                [(i == j) + self.random.uniform(-0.4, 0.4) for j in range(self.dim)]
-                for i in range(self.dim)
-            ]
-            corners = []
-            for n in range(2**self.dim):
-                chosen = [edge for i, edge in enumerate(edges) if n >> i & 1]
-                corners.append([sum(e[j] for e in chosen) for j in range(self.dim)])
-            text = "; ".join(self.point(*corner) for corner in corners)
-            return Body("general_cell", f"{text} : true", 1, flat_sides)
-        if kind == "half shell" and self.dim == 2:
-            n = pick((2, 3, 4))
-            arguments = f"{origin} : {radii} : {n} : true"
-            pieces = curved(0, 1) | flat(2, 3)
-            outwards = {0: (-1, 0), 1: (1, 0)}
-            return Body("half_hyper_shell", arguments, n, pieces, outwards=outwards)
-        if kind in ("half shell", "quarter shell"):
-            pieces = curved(0, 1) | flat(*range(2, self.dim + 2))
-            n = 3
-            arguments = f"{origin} : {radii} : {n} : true"
-            outwards = {0: [-1] * self.dim, 1: [1] * self.dim}
-            return Body("quarter_hyper_shell", arguments, n, pieces, outwards=outwards)
-        if kind == "shell":
-            n = pick((6, 8)) if self.dim == 2 else 6
-            arguments = f"{origin} : {radii} : {n} : true"
-            return Body("hyper_shell", arguments, n, curved(0, 1))
-        if kind == "hole" and self.dim == 2:
-            lengths = " : ".join(map(self.length, (0.4, 1, 0.5, 0.5, 0.5, 0.5)))
-            arguments = f"{lengths} : {origin} : 0 : 1 : {self.length(1)} : 2 : true"
-            pieces = flat(0, 1, 2, 3) | curved(4)
-            return Body("plate_with_a_hole", arguments, 24, pieces)
-        if kind in ("hole", "half ball"):
-            n = 4 if self.dim == 2 else 6
-            arguments = f"{origin} : {self.length(1)}"
-            outwards = {0: [1] + [0] * (self.dim - 1)}
-            pieces = curved(0) | flat(1)
-            return Body("half_hyper_ball", arguments, n, pieces, outwards=outwards)
-        if kind == "quarter ball":
-            near = f"abs({{}}) < {self.length(1e-6)}"
-            ids = f"if({near.format('x')}, 1, if({near.format('y')}, 2, 3))"
-            ids = f"if(id == 0, 0, {ids})"
-            pieces = curved(0) | flat(*range(1, self.dim + 1))
-            n = 3 if self.dim == 2 else 4
-            arguments = f"{origin} : {self.length(1)}"
-            outwards = {0: [1] * self.dim}
-            return Body(
-                "quarter_hyper_ball", arguments, n, pieces, ids=ids, outwards=outwards
-            )
-        if kind == "cylinder":
-            return Body("cylinder", radii, 10, curved(0) | flat(1, 2))
-        arguments = f"{self.length(0.6)} : {self.length(0.4)} : {self.length(1)}"
-        return Body("truncated_cone", arguments, 5, curved(0) | flat(1, 2))
-
-    def geometry(self):
-        body = self.body()
+    def geometry(self, body=None):
+        body = bodies.draw(self) if body is None else body
         self.pieces = body.pieces
         self.planes = body.planes
+        self.sides = body.sides
         self.set("Geometry/Generator", body.generator)
         self.set("Geometry/Arguments", body.arguments)
         if body.ids:
@@ -276,7 +60,7 @@ class Scene:
             id = self.random.choice((2, 3))
             cut = self.length(self.random.choice(body.planes))
             self.set("Geometry/Boundary ids", f"if(id == {id} && x > {cut}, 7, id)")
-            self.pieces = self.pieces | flat(7)
+            self.pieces = self.pieces | bodies.flat(7)
         most = 130 if self.dim == 2 else 40
         cells, refinements = body.cells, 0
         while cells * 2**self.dim <= most and self.chance(0.65):
@@ -288,27 +72,28 @@ class Scene:
             id = self.random.choice(sorted(self.pieces))
             times = self.random.choice((1, 1, 2)) if cells < 20 else 1
             self.set("Geometry/Boundary refinements", f"{id}: {times}")
+        self.points = 0
         moved = False
         straight = all(body.pieces.values())
-        if straight and self.chance(0.3):
+        if straight and self.may_turn and self.chance(0.3):
             moved = True
             angle = self.random.choice((30, 90, 180, self.random.uniform(-180, 180)))
             self.set("Geometry/Rotation angle", f"{angle:.5g}")
             if self.dim == 3 and self.chance(0.6):
                 self.set("Geometry/Rotation axis", "1, 2, -0.5")
-        if straight and self.chance(0.12):
+        if straight and self.may_turn and self.chance(0.12):
             moved = True
             shift = [self.random.choice((0, 1, -3, 50)) for _ in range(self.dim)]
             self.set("Geometry/Translation", self.point(*shift))
         self.outwards = {} if moved else body.outwards
         if body.points and not moved and self.chance(0.4):
             n = self.random.randint(1, len(body.points))
+            self.points = n
             points = "; ".join(self.point(*p) for p in body.points[:n])
             self.set("Output/Points", points)
 
     def materials(self):
         self.viscous = False
-        self.rate = 0.0
         n = 1
         ids = "0"
         if self.planes and self.chance(0.25):
@@ -322,6 +107,9 @@ class Scene:
         self.policy = self.random.choice(policies)
         for i in range(n):
             self.material("Material" if n == 1 else f"Material {i + 1}")
+        if n == 2 and self.chance(0.3):
+            self.make_stiff("Material 2")
+        self.parts = n
         self.maybe(0.2, "Material/Stress history", "cell means", "quadrature points")
         modes = "automatic", "full", "mean dilatation"
         self.maybe(0.2, "Material/Volumetric integration", *modes)
@@ -352,9 +140,9 @@ class Scene:
         shear = modulus / (2 * (1 + poisson))
         size = self.strain * modulus
         vary = pick(("", "", self.in_units("*(1 + [t])"), f"*(1 + {self.in_space()})"))
-        stress_time = self.units.stress * self.units.time
+        viscosity = lambda value: self.number(value, stress=1, time=1) + vary
         if law == "maxwell":
-            self.set(entry("Viscosity"), self.number(shear * theta, stress_time) + vary)
+            self.set(entry("Viscosity"), viscosity(shear * theta))
         elif law == "zener":
             share = pick((0, 0.01, 0.3, 0.5, 1))
             long_term = self.stress(share * modulus * 0.99)
@@ -366,18 +154,18 @@ class Scene:
             self.set(entry("Yield radius"), self.stress(radius) + vary)
             moduli = map(self.stress, (0, 0.1, modulus))
             self.maybe(0.5, entry("Hardening modulus"), *moduli)
-            self.set(entry("Viscosity"), self.number(2 * shear * theta, stress_time))
+            self.set(entry("Viscosity"), viscosity(2 * shear * theta))
         elif law == "norton":
             n = pick((1, 1.5, 2, 3, 5))
             cap = pick((1, 2, 4)) if self.policy == "refuse" else 5
             factor = 1 / (3 * shear * theta * n * size ** (n - 1) * cap ** (n - 1))
-            unit = 1 / (self.units.stress**n * self.units.time)
-            self.set(entry("Rate factor"), self.number(factor, unit) + vary)
+            factor = self.number(factor, stress=-n, time=-1)
+            self.set(entry("Rate factor"), factor + vary)
             self.set(entry("Exponent"), n)
             self.set(entry("Stress cap"), self.stress(size * cap))
         else:
-            cap, unit = self.stress(size * 3), self.units.stress * self.units.time
-            slope = self.number(1 / (3 * shear * theta), 1 / unit)
+            cap = self.stress(size * 3)
+            slope = self.number(1 / (3 * shear * theta), stress=-1, time=-1)
             rate = pick(
                 (
                     f"{slope}*sigma_eq",
@@ -391,6 +179,14 @@ class Scene:
             self.set(entry("Strain rate"), rate)
             factors = self.in_space(), self.not_negative_in_time()
             self.maybe(0.4, entry("Factor"), *factors)
+
+    def make_stiff(self, section):
+        """A stiff material beside a soft one."""
+        entry = f"{section}/Young's modulus"
+        if entry in self.entries:
+            factor = self.random.choice((1e2, 1e3, 1e5, 1e7, 1e9, 1e11))
+            self.set(entry, f"{self.entries[entry]}*{factor:g}")
+            self.set(f"{section}/Law", "elastic")
 
     def voigt(self, section):
         """Orthotropic, or with a coupling that plane strain permits."""
@@ -452,6 +248,7 @@ class Scene:
             self.contact(entry, law, unilateral)
             if unilateral:
                 self.foundation(entry, id)
+            self.motion(entry, law, unilateral)
 
     def foundation(self, entry, id):
         """Where it is, of contact that opens and closes."""
@@ -472,12 +269,14 @@ class Scene:
             self.set(entry("Foundation normal"), ", ".join(f"{n:g}" for n in normal))
 
     def compliance(self, entry):
-        """A foundation from softer than the body to hardly different from rigid."""
+        """A foundation from much softer than the body to hardly different from a
+        rigid one; the stiffness of a body of size 1 is about 1."""
         exponent = self.random.choice((1, 1, 1.5, 2, 3))
-        unit = self.units.stress / self.units.length**exponent
-        size = self.strain ** (1 - exponent) * self.spread(-1, 5)
+        stiffness = self.spread(*self.random.choice(((-1, 5), (-9, 9))))
+        size = self.strain ** (1 - exponent) * stiffness
+        size = self.number(size, stress=1, length=-exponent)
         self.set(entry("Contact law"), "normal compliance")
-        self.set(entry("Compliance"), self.number(size, unit) + f"*{self.in_space()}")
+        self.set(entry("Compliance"), f"{size}*{self.in_space()}")
         self.set(entry("Compliance exponent"), str(exponent))
 
     def contact(self, entry, law, unilateral):
@@ -503,6 +302,10 @@ class Scene:
             coefficient = pick(coefficients)
             vary = f"*{self.in_space()}*{self.not_negative_in_time()}"
             self.set(entry("Friction coefficient"), f"{coefficient}{vary}")
+
+    def motion(self, entry, law, unilateral):
+        """Of a foundation, towards the body and along it."""
+        pick = self.random.choice
         if (law != "coulomb" or unilateral) and self.chance(0.35):
             self.set(entry("Foundation displacement"), self.datum(self.displacement()))
         if law != "none" and self.chance(0.35):
@@ -514,8 +317,7 @@ class Scene:
 
     def loads(self):
         if self.chance(0.3):
-            unit = self.units.stress / self.units.length
-            force = lambda: self.number(self.load(), unit)
+            force = lambda: self.number(self.load(), stress=1, length=-1)
             self.set("Loads/Body force", self.vector(force))
         if self.equilibrate:
             self.set("Initial state/Equilibrate", "true")
@@ -534,6 +336,9 @@ class Scene:
             end += pick((0.25, 0.5, 1.0))
             self.phases.append(f"{self.duration(end)}: {pick((1, 2, 3, 4, 5, 8))}")
         self.set("Time/Phases", ", ".join(self.phases))
+        if self.parts == 2 and len(self.phases) > 1 and self.chance(0.4):
+            when = self.random.choice(self.phases[:-1]).split(":")[0]
+            self.set("Material 2/Removed at", when)
         self.set("Time/Scheme", self.scheme)
         if self.policy != "refuse" and self.chance(0.9 if self.viscous else 0.2):
             self.set("Time/Stiffness policy", self.policy)
@@ -560,11 +365,7 @@ class Scene:
             self.set("Error control/Two-level comparison", "true")
         entry = lambda name: f"Mesh refinement/{name}"
         if self.chance(0.15):
-            id = self.random.randrange(2 * self.dim)
-            self.set(
-                "Error control/Quantity",
-                self.random.choice(("friction_force_x", f"reaction_{id}_y")),
-            )
+            self.set("Error control/Quantity", self.quantity())
         if self.chance(0.15) and "Step control/Tolerance" not in self.entries:
             self.set("Error control/Tolerance", self.random.choice((0.1, 0.3, 0.9)))
             self.set("Step control/Smallest step", self.duration(0.005))
@@ -579,6 +380,20 @@ class Scene:
         self.maybe(0.4, entry("Refinement fraction"), 0, 0.1, 0.6)
         self.maybe(0.4, entry("Coarsening fraction"), 0, 0.3, 0.4)
         self.set(entry("Cell budget"), 200 if self.dim == 2 else 60)
+
+    def quantity(self):
+        """A column of statistics.csv that this scene has."""
+        is_any = lambda *words: any(value in words for value in self.entries.values())
+        roles = {id: self.entries[f"Boundary {id}/Role"] for id in self.pieces}
+        held = [id for id, role in roles.items() if role in ("clamped", "symmetry")]
+        names = [f"reaction_{id}_y" for id in held]
+        if is_any("tresca", "coulomb"):
+            names += ["friction_force_x", "friction_dissipation"]
+        if is_any("unilateral", "normal compliance"):
+            names += ["contact_force_x", "contact_force_y"]
+        if self.points:
+            names += ["point0_x", "point0_y"]
+        return self.random.choice(names or ["friction_force_x"])
 
     def output(self):
         self.set("Output/Directory", "results")

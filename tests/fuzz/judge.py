@@ -19,6 +19,7 @@ FOREIGN = re.compile(
     r"|std::|__cxx|dealii::|basic_string|vector::|\bstoul\b|\bstod\b|\bstoi\b"
     r"|half-open range|failed condition|\(none\)|bad_alloc|bad_cast|segfault"
     r"|not equal to \d|invalid argument|filesystem error|regex_error|MPI_ABORT"
+    r"|traceback|invalid literal|could not convert|codec can't|ufunc|has no attribute"
     r"|assertion|no_error|<unspecified>|bad variant|bad optional|map::at)"
     r"|\bExc[A-Z]\w+"
 )

@@ -638,6 +638,31 @@ class Tension(TestCase):
         )
         self.assertClose(bent["tension_area"][1:], 1, absolute=1e-12)
 
+    def test_share_of_a_round_face(self):
+        """A disc of fewer cells is smaller: the share is of that of its time."""
+        cone = {
+            "Dimension": 3,
+            "Geometry/Generator": "truncated_cone",
+            "Geometry/Arguments": "0.6 : 0.4 : 1",
+            "Geometry/Global refinements": 1,
+            "Geometry/Boundary refinements": "0: 1",
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "clamped",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Friction law": "none",
+            "Boundary 2/Foundation displacement": "0.0002*min(8*t, 1)",
+            "Time/Phases": "0.5: 4",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Refinement fraction": 0,
+            "Mesh refinement/Coarsening fraction": 0.4,
+            "Mesh refinement/Maximal level": 2,
+            "Output/Fields every": 0,
+        }
+        result = run("cone", cone, text="")
+        area = result["tension_area"]
+        self.assertGreater(area[1], 1.05 * area[-1])
+        self.assertRegex(result.stdout, "Note: .* pulls at the body on 100 %")
+
     def test_given_pressure_does_not_pull(self):
         result = run("conveyor_2d", {"Time/Phases": "0.1: 1"})
         self.assertNotIn("tension_area", result.statistics)

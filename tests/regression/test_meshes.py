@@ -233,6 +233,10 @@ class Converted(TestCase):
         self.damaged(".vtk", "ASCII", "BINARY", "as vtk: meshio refuses it")
         self.damaged(".vtk", "4 0 3 4 1", "4 0 3 4 77", "there is no node 77")
         self.damaged(".vtk", "4 0 3 4 1", "3 0 3 4", "as vtk: meshio refuses it")
+        # Python's own words are not for users.
+        self.damaged(".ucd", " quad ", " quod ", "(it does not know 'quod')")
+        self.damaged(".ucd", "quad 1 ", "quad 1, ", "(expected a number, found '1,')")
+        self.damaged(".ucd", " 10 quad", f" {10**40} quad", "an id is not between 0 and")
         self.damaged(".vtk", "CELLS 20", "CELLS 21", "20 cells, but line CELLS says 21")
 
     def test_files_that_end_too_early(self):

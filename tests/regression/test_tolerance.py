@@ -188,6 +188,11 @@ class Kinks(TestCase):
         self.assertGreater(missed["rejected"].sum(), 5)
         self.assertLess(len(found["t"]), len(missed["t"]))
         self.assertClose(found["friction_force_x"][-1], 0.095455, 1e-3)
+        # Fields there and at 1.54 end steps, and those after them grow again.
+        heun = {**scene, "Time/Scheme": "Heun"}
+        found = run("slab", heun)
+        shown = run("slab", {**heun, "Output/Fields interval": 0.77})
+        self.assertLessEqual(len(shown["t"]), len(found["t"]) + 8)
 
     def test_on_3_ranks(self):
         scene = {**self.SCENE, "Time/Phases": "1.86: 9", **to(0.5)}

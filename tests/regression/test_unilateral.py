@@ -254,9 +254,7 @@ class Held(TestCase):
                 )
 
     def test_beds_as_soft_as_they_may_be(self):
-        """A stiff block sinks in by p/c; a slab without weight lies on no more
-        of its bed than a beam would (Weitsman): pi/(2 lambda) on either side of
-        its load, and sinks in by (F lambda/2c) (2 + cosh pi - 1)/sinh pi."""
+        """A stiff block sinks in by p/c."""
         for stiffness in (2e-6, 4e-9):  # c h / E
             for solver in "direct", "multigrid":
                 with self.subTest(stiffness=stiffness, solver=solver):
@@ -288,33 +286,6 @@ class Held(TestCase):
                         -8 * 0.2 * compliance,
                         relative=1e-6,
                     )
-        youngs_modulus, bed, load = 30e9, 50e6, 1e6
-        slab = {
-            "Geometry/Arguments": "160, 4 : 0, 0 : 10, 0.25 : true",
-            "Geometry/Boundary ids": "if(id == 3 && x < 0.5, 5, id)",
-            "Material/Young's modulus": youngs_modulus,
-            "Material/Poisson's ratio": 0.2,
-            "Boundary 0/Role": "symmetry",
-            "Boundary 1/Role": "free",
-            "Boundary 2/Role": "contact",
-            "Boundary 2/Contact law": "normal compliance",
-            "Boundary 2/Compliance": bed,
-            "Boundary 2/Friction law": "none",
-            "Boundary 3/Role": "free",
-            "Boundary 5/Role": "traction",
-            "Boundary 5/Pressure": f"{load}*t",
-            "Time/Phases": "1: 1",
-        }
-        result = run("slab", slab, text="")
-        bending = youngs_modulus / (1 - 0.2**2) * 0.25**3 / 12
-        wave = (bed / 4 / bending) ** 0.25
-        self.assertClose(result["contact_force_y"][-1], -0.5 * load, relative=1e-7)
-        self.assertClose(
-            result["contact_area"][-1], np.pi / 2 / wave, relative=0.03
-        )
-        depth = load * wave / 2 / bed * (1 + np.cosh(np.pi)) / np.sinh(np.pi)
-        # the load is spread
-        self.assertClose(result["max_penetration"][-1], depth, relative=0.05)
 
     def test_more_friction_than_the_pressure_before_allows(self):
         """The push of each step is held by the pressure of that step alone."""

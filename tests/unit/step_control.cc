@@ -372,6 +372,9 @@ namespace
       }
     ASSERT_EQ(around.size(), 1u);
     EXPECT_NEAR(around[0].k, 1e-6, 1e-12);
+    // Where fields are written there a step ends in between, too.
+    EXPECT_TRUE(control.has_kink_at(0.4));
+    EXPECT_TRUE(control.is_kink(0.4));
     const auto has = [&](const double t) {
       return std::any_of(done.begin(), done.end(), [&](const TimeStep &step) {
         return step.t == t;

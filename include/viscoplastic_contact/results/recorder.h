@@ -241,7 +241,7 @@ namespace Viscoplastic
                              &run.von_mises,
                              &run.slip_area,
                              &run.capped_volume,
-                             &run.tension_area,
+                             &run.tension_share,
                              &run.utilization,
                              &run.stiffness})
       archive & largest->value & largest->t;

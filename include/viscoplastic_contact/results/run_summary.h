@@ -76,7 +76,9 @@ namespace Viscoplastic
     }
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,
-      tension_area, utilization;
+      utilization;
+    /// Of the faces in bilateral contact, in which the foundation pulls.
+    Largest tension_share;
     /// Where the displacement and the stress were that large.
     Point<dim> displacement_position, von_mises_position;
     /// The area of all friction points on the mesh on which slip_area was

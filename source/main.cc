@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
+#include <viscoplastic_contact/run/scene_as_json.h>
 #include <viscoplastic_contact/run/two_level.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 #include <viscoplastic_contact/study/effects.h>
@@ -98,6 +99,14 @@ namespace
       return run_at_price(command_line, console);
     const Parameters parameters(command_line.files, command_line.overrides);
     return with_places(parameters, [&] {
+      if (command_line.task == CommandLine::Task::print_scene)
+        {
+          const std::string text =
+            scene_as_json(parameters, command_line.with_means, MPI_COMM_WORLD);
+          if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+            std::cout << text << std::flush;
+          return std::string();
+        }
       return parameters.dimension == 2 ?
                run<2>(parameters, command_line, console) :
                run<3>(parameters, command_line, console);

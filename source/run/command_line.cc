@@ -220,10 +220,13 @@ namespace Viscoplastic
       AssertThrow(
         value == nullptr ||
           (option == "--describe" && (text == "markdown" || text == "prm")) ||
+          (option == "--check" && (text == "json" || text == "means")) ||
           (option == "--restart" && text == "auto"),
         ExcMessage("The option " + option +
                    (option == "--describe" ?
                       " can have the values prm and markdown, not '" :
+                    option == "--check" ?
+                      " can have the values json and means, not '" :
                     option == "--restart" ? " can have the value auto, not '" :
                                             " has no value, such as '") +
                    excerpt(text) + "'."));
@@ -237,12 +240,14 @@ namespace Viscoplastic
       AssertThrow(task_option.empty() || task_option == option,
                   ExcMessage("The options " + task_option + " and " + option +
                              " exclude each other."));
-      task_option = option;
-      result.task = option == "--help"    ? Task::help :
-                    option == "--version" ? Task::version :
-                    option == "--check"   ? Task::check :
-                    value == "markdown"   ? Task::describe_as_markdown :
-                                            Task::describe;
+      task_option       = option;
+      result.with_means = value == "means";
+      result.task       = option == "--help"    ? Task::help :
+                          option == "--version" ? Task::version :
+                          option == "--check"   ? (value.empty() ? Task::check :
+                                                                   Task::print_scene) :
+                          value == "markdown"   ? Task::describe_as_markdown :
+                                                  Task::describe;
     }
 
 
@@ -254,7 +259,8 @@ namespace Viscoplastic
                              result.task == Task::describe_as_markdown;
       const bool reads_scene =
         result.task == Task::run || result.task == Task::check ||
-        result.task == Task::study || result.task == Task::effects;
+        result.task == Task::print_scene || result.task == Task::study ||
+        result.task == Task::effects;
       AssertThrow(result.price == 0. || result.task == Task::run ||
                     result.task == Task::check,
                   ExcMessage("The options " + task_option +
@@ -314,6 +320,9 @@ namespace Viscoplastic
            "effects, size,\n"
            "                               solver and memory, without "
            "computing it\n"
+           "  --check=json, =means         print what programs need to know of "
+           "the scene;\n"
+           "                               =means also the means of its data\n"
            "  --price ERROR                find the cheapest mesh and steps "
            "for this\n"
            "                               relative error by a few short runs, "

@@ -572,17 +572,6 @@ namespace Viscoplastic
 
 
 
-  Stiffness
-  nearest_isotropic(const Stiffness &stiffness)
-  {
-    // Voigt's averages are the coefficients of the projection.
-    const double mu = stiffness.shear_modulus(),
-                 nu = stiffness.poissons_ratio();
-    return Stiffness::isotropic(2. * (1. + nu) * mu, nu);
-  }
-
-
-
   EffectVariant
   both(const EffectVariant &first, const EffectVariant &second)
   {

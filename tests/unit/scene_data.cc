@@ -4,7 +4,7 @@
 
 #include "folder.h"
 #include <viscoplastic_contact/base/expression.h>
-#include <viscoplastic_contact/study/scene_data.h>
+#include <viscoplastic_contact/run/scene_data.h>
 
 #include <gtest/gtest.h>
 

@@ -89,11 +89,19 @@ class Program:
         # One thread a process: several would wait for each other.
         self.environment = environment or {"OMP_NUM_THREADS": "1", **os.environ}
 
-    def call(self, *arguments, stdout=subprocess.PIPE):
-        """What the program prints; arguments are those of the command line."""
+    def command(self, *arguments):
+        """The words of a call; arguments are those of the command line."""
         launcher = [*self.launcher, "-n", self.ranks] if self.ranks > 1 else []
+        return list(map(str, [*launcher, self.executable, *arguments]))
+
+    def alone(self):
+        """The same on one rank."""
+        return Program(self.executable, environment=self.environment)
+
+    def call(self, *arguments, stdout=subprocess.PIPE):
+        """What the program prints."""
         process = subprocess.run(
-            list(map(str, [*launcher, self.executable, *arguments])),
+            self.command(*arguments),
             env=self.environment,
             stdin=subprocess.DEVNULL,
             stdout=stdout,

@@ -17,6 +17,7 @@ namespace Viscoplastic
       describe,
       describe_as_markdown,
       check,
+      print_scene,
       run,
       study,
       effects
@@ -27,6 +28,8 @@ namespace Viscoplastic
     /// `Section/Entry=value', in their order.
     std::vector<std::string> overrides;
     bool                     quiet = false;
+    /// Whether print_scene has the means of the data.
+    bool with_means = false;
     /// Whether each step gets a line, also those like the one before.
     bool verbose = false;
     /// Whether to go on from a checkpoint: not at all, from one that must be

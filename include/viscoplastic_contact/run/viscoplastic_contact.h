@@ -255,6 +255,8 @@ namespace Viscoplastic
 
     /// The last state that will do.
     EvaluatedState<dim> accepted;
+    /// In MB, of all ranks, when the run began.
+    double first_memory = 0.;
     /// How often the mesh has been refined for the step that is being made.
     unsigned int               n_refinements = 0;
     bool                       is_first_pass = false;

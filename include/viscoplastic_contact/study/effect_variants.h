@@ -3,7 +3,8 @@
 
 #include <viscoplastic_contact/laws/stiffness.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
-#include <viscoplastic_contact/study/scene_data.h>
+#include <viscoplastic_contact/run/scene_as_json.h>
+#include <viscoplastic_contact/run/scene_data.h>
 
 #include <string>
 #include <vector>
@@ -62,11 +63,6 @@ namespace Viscoplastic
                   const SceneData   &means,
                   const double       typical_stress,
                   const std::string &contact_force = "");
-
-  /// The isotropic tensor that is nearest to a stiffness in the Frobenius norm
-  /// of fourth-order tensors, which does not depend on the axes.
-  Stiffness
-  nearest_isotropic(const Stiffness &stiffness);
 
   /// Two simplifications at once.
   EffectVariant

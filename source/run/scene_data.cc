@@ -10,7 +10,7 @@
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
 #include <viscoplastic_contact/scene/scene.h>
-#include <viscoplastic_contact/study/scene_data.h>
+#include <viscoplastic_contact/run/scene_data.h>
 
 #include <algorithm>
 #include <cmath>

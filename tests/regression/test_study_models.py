@@ -16,12 +16,27 @@ SOURCE = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "contrib" / "python"))
 
 from viscoplastic_contact.study.cost import CostSample, fit_cost
+from viscoplastic_contact.study.effects import (
+    AS_LARGE_AS_THE_ERROR,
+    BELOW_THE_ERROR,
+    CALLED_FOR,
+    NEVER_ACTED,
+    ONLY_WATCHES,
+    EffectResult,
+    judge,
+)
 from viscoplastic_contact.study.fit import (
     Finer,
     Prior,
     fit_error,
     fit_error_parts,
     fit_two_powers,
+)
+from viscoplastic_contact.study.histories import (
+    QuantityChange,
+    changes_between,
+    interactions,
+    piecewise_linear,
 )
 from viscoplastic_contact.study.phases import (
     n_steps,
@@ -63,6 +78,13 @@ from viscoplastic_contact.study.tolerance import (
     fit_tolerance,
     price_of,
     tolerance_price_in_words,
+)
+from viscoplastic_contact.study.variants import (
+    OBSERVATION,
+    PROBLEM,
+    EffectVariant,
+    both,
+    zeros_for,
 )
 from viscoplastic_contact.tables import UserError
 
@@ -645,6 +667,104 @@ class Records(TestCase):
             file.write_text("")
             with self.assertRaisesRegex(UserError, "no table"):
                 read_table(file)
+
+
+class Effects(TestCase):
+    def test_what_excludes_what(self):
+        elastic = EffectVariant("flow", "", ["Material/Law=elastic"])
+        power = EffectVariant("power", "", ["Material/norton/Exponent=1"])
+        free = EffectVariant("friction", "", ["Boundary 2/Bound=0"])
+        stick = EffectVariant("slip", "", ["Boundary 2/Bound=9"])
+        load = EffectVariant("load", "", ["Boundary 1/Traction=1", "A/Equilibrate=true"])
+        other = EffectVariant("other", "", ["A/Equilibrate=true"])
+        self.assertTrue(elastic.excludes(power))
+        self.assertTrue(power.excludes(elastic))
+        self.assertTrue(free.excludes(stick))
+        self.assertTrue(free.excludes(free))
+        self.assertFalse(free.excludes(elastic))
+        self.assertFalse(load.excludes(other))
+        self.assertEqual(len(both(free, load).overrides), 3)
+        self.assertEqual(zeros_for("; -t"), "; 0")
+
+    def judged(self, *changes, kind=PROBLEM):
+        result = EffectResult(EffectVariant("", "", kind=kind))
+        result.changes = [QuantityChange(*change) for change in changes]
+        judge(result, 1e-6)
+        return result
+
+    def test_verdicts_by_the_largest_change_for_its_error(self):
+        clear = self.judged(("reaction", 0.5, 0.4), ("force", 0.03, 0.01))
+        self.assertEqual(clear.verdict, CALLED_FOR)
+        self.assertEqual(clear.decisive.quantity, "force")
+        for change, error, kind, verdict in (
+            (0.015, 0.01, PROBLEM, AS_LARGE_AS_THE_ERROR),
+            (0.005, 0.01, PROBLEM, BELOW_THE_ERROR),
+            (1e-7, 0.0, PROBLEM, NEVER_ACTED),
+            # Iterations may end elsewhere without an error bar.
+            (0.01, 0.02, OBSERVATION, ONLY_WATCHES),
+            (0.05, 0.02, OBSERVATION, CALLED_FOR),
+            # An error that is not known may be anything.
+            (3.0, nan, PROBLEM, BELOW_THE_ERROR),
+        ):
+            judged = self.judged(("force", change, error), kind=kind)
+            self.assertEqual(judged.verdict, verdict, (change, error))
+
+    def table(self, **columns):
+        return {name: np.array(values, dtype=float) for name, values in columns.items()}
+
+    def test_differences_at_the_times_of_the_first(self):
+        run = self.table(
+            t=[0, 1, 2],
+            friction_force_x=[0, 3, 0],
+            friction_force_y=[0, 4, 0],
+            cells=[1, 2, 3],
+            reaction_3_x=[0, 1e-9, 0],
+            reaction_3_y=[0, 0, 0],
+        )
+        # Between its rows linear, at t = 1 the vector (3, 3).
+        other = self.table(
+            t=[0, 0.5, 1.5, 2], friction_force_x=[0, 2, 4, 1], friction_force_y=[0, 2, 4, 0]
+        )
+        force, reaction = changes_between(run, other)
+        self.assertEqual(force.quantity, "friction_force")
+        self.near(force.change, 1.0 / 5.0, 1e-15)
+        # What is not there is zero; what is almost zero is measured by forces that are
+        # not.
+        self.assertEqual(reaction.quantity, "reaction_3")
+        self.near(reaction.change, 1e-9 / (1e-3 * 5.0), 1e-15)
+        for none in changes_between(run, run):
+            self.assertEqual(none.change, 0.0)
+
+    def test_contact_force_of_other_contact_laws(self):
+        unilateral = self.table(t=[0, 1], contact_force_y=[0, -4], stored_energy=[0, 2])
+        force, energy = changes_between(
+            unilateral, self.table(t=[0, 1], stored_energy=[0, 1])
+        )
+        self.assertEqual(force.quantity, "contact_force")
+        self.assertEqual(force.change, 0.0)
+        self.near(energy.change, 0.5, 1e-15)
+        weaker = self.table(t=[0, 1], contact_force_y=[0, -3], stored_energy=[0, 2])
+        self.near(changes_between(unilateral, weaker)[0].change, 0.25, 1e-15)
+
+    def test_what_does_not_add_up(self):
+        # The force changes by -1 and -2, by both -3; the energy by -4 and -2, by both
+        # -5.
+        force, energy = interactions(
+            *(
+                self.table(t=[0, 1], friction_force_x=[0, f], stored_energy=[0, e])
+                for f, e in ((10, 10), (9, 6), (8, 8), (7, 5))
+            )
+        )
+        self.near(force.change, 0.0, 1e-15)
+        self.near(energy.change, 0.1, 1e-15)
+
+    def test_ramps_only_where_the_slope_changes(self):
+        t, v = [0.0, 0.1, 0.2, 0.3, 0.7, 1.0], [1.0, 1.0, 1.05, 1.1, 1.1, -1.0]
+        text = piecewise_linear(t, v)
+        for at, value in [*zip(t, v), (0.25, 1.075)]:
+            self.near(eval(text, {"t": at, "max": max}), value, 1e-13)
+        self.assertEqual(text.count("max"), 3)
+        self.assertEqual(piecewise_linear(t, [2.0] * 6), "2")
 
 
 if __name__ == "__main__":

@@ -33,6 +33,7 @@ sys.path[:0] = [str(SOURCE / "contrib"), str(SOURCE / "contrib" / "python")]
 from plotting import cost
 from plotting.results import read_statistics
 from viscoplastic_contact.study import solvers
+from viscoplastic_contact.study.record import PHASES
 
 MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
 VERIFICATION = SOURCE / "prm" / "verification"
@@ -235,6 +236,8 @@ class Ladders(TestCase):
             for name in walls - {"wall_total"}:
                 seconds = row[f"seconds_{name.removeprefix('wall_')}"]
                 self.assertClose(seconds, table[name].sum(), 1e-9, what=name)
+            costs = json.loads((folder.study / row["run"] / "run.json").read_text())["costs"]
+            self.assertLessEqual(set(costs["seconds"]), set(PHASES))
             parts = sum(row[name] for name in columns - {"seconds_total"})
             self.assertClose(parts, table["wall_total"][-1], 1e-9)
             log = (folder.study / row["run"] / "log.txt").read_text()

@@ -18,9 +18,7 @@ namespace Viscoplastic
       describe_as_markdown,
       check,
       print_scene,
-      run,
-      study,
-      effects
+      run
     };
 
     Task                     task = Task::run;
@@ -43,9 +41,6 @@ namespace Viscoplastic
     Restart restart = Restart::no;
     /// Name of the log file; empty for none.
     std::string log;
-    /// The relative error whose price is asked for, before a run or, with the
-    /// task check, instead of it; 0 for none.
-    double price = 0.;
   };
 
   /**

@@ -65,22 +65,6 @@ namespace Viscoplastic
     void
     check();
 
-    /// Wall time of this process by phase, as run_phases names them; `set-up'
-    /// is that of the first mesh, later ones are part of the adaptation.
-    std::map<std::string, double>
-    seconds() const
-    {
-      return recorder.seconds();
-    }
-
-    /// What decides on the linear solver of the present mesh, after a run or
-    /// check().
-    SolverDemand
-    solver_demand() const
-    {
-      return discretization->solver_demand();
-    }
-
   private:
     /// The initial state on the first mesh, and what has to be known before the
     /// first step.

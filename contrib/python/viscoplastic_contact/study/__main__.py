@@ -7,10 +7,11 @@ Exit codes are those of the program: 1 something was wrong (one sentence says
 what), 2 wrong arguments, 3 ended by a signal, 0 otherwise."""
 
 import argparse
+import signal
 import sys
 from pathlib import Path
 
-from ..program import Program, RunError
+from ..program import Program
 from ..tables import UserError
 
 USAGE = {
@@ -112,19 +113,14 @@ def main(arguments):
     # Without a value it would take the next argument for one.
     words = ["--restart=yes" if word == "--restart" else word for word in arguments[1:]]
     options = parser_of(task).parse_intermixed_args(words)
-    from .ladder import Interrupted
-
+    # Between runs a signal ends the command at once.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         run(task, options, Program(ranks=max(1, options.ranks)))
-    except Interrupted as sentence:
-        print(f"contrib/{task}: {sentence}", file=sys.stderr)
-        return 3
-    except RunError as error:
-        print(f"contrib/{task}: {error}", file=sys.stderr)
-        return error.code if error.code in (1, 2, 3) else 1
     except UserError as error:
         print(f"contrib/{task}: {error}", file=sys.stderr)
-        return 1
+        code = getattr(error, "code", 1)
+        return code if code in (1, 2, 3) else 1
     return 0
 
 

@@ -22,9 +22,8 @@ from .histories import (
     interactions,
     largest_of,
 )
-from .ladder import Interrupted
 from .record import RunRecord, read_table
-from .runs import StudyRuns
+from .runs import Interrupted, StudyRuns
 from .scene import Scene
 from .variants import KINDS, OBSERVATION, PROBLEM, EffectVariant, both, effect_variants
 
@@ -163,7 +162,7 @@ class EffectsStudy:
         self.overrides = with_choices(program, self.files, overrides)
         self.scene = Scene(program, self.files, self.overrides, means=True)
         self.directory = self.scene.directory + "effects/"
-        self.base = self.make_runs(self.overrides, self.directory + "scene")
+        self.base = self.make_runs([], self.directory + "scene")
         # What has been found of each simplification: of the problem first, the largest
         # changes first.
         self.results = []
@@ -175,27 +174,31 @@ class EffectsStudy:
         self.failure = ""
         self.of_scene, self.with_longer_steps, self.runs = {}, {}, {}
 
-    def make_runs(self, overrides, directory, has_outputs=False):
-        overrides = [*overrides, f"Output/Directory={directory}"]
-        return StudyRuns(self.program, self.files, overrides, True, has_outputs)
+    def make_runs(self, entries, directory, has_outputs=False):
+        entries = [*entries, f"Output/Directory={directory}"]
+        # With another scheme `automatic' may stand for something else.
+        has_scheme = any(entry.startswith("Time/Scheme=") for entry in entries)
+        scene = None if has_scheme else self.scene.with_entries(entries)
+        overrides = self.overrides + entries
+        return StudyRuns(self.program, self.files, overrides, scene, True, has_outputs)
 
     def runs_of(self, variant, level):
         """Runs of a variant below its own directory, compared with those of the scene
         on this level."""
         if (variant.name, level) in self.runs:
             return self.runs[variant.name, level]
-        overrides = self.overrides + variant.overrides
+        entries = list(variant.overrides)
         # Differences from the scene stand in the place of errors, where these are not
         # from the solution that makes the data.
         if self.is_compared:
             place = self.base.place(self.key_of(self.base, level))
-            overrides += [
+            entries += [
                 "Exact solution/Displacement=",
                 "Exact solution/Stress=",
                 f"Exact solution/Reference directory={place}",
             ]
         runs = self.make_runs(
-            overrides, self.directory + variant.name, variant.has_outputs
+            entries, self.directory + variant.name, variant.has_outputs
         )
         self.runs[variant.name, level] = runs
         return runs
@@ -329,6 +332,8 @@ class EffectsStudy:
         try:
             runs = self.runs_of(variant, level)
             attempt = self.compute(runs, level, here.record.number("seconds_total"))
+        except Interrupted:
+            raise
         except UserError as error:  # what is wrong with its entries
             attempt = Attempt(failure=str(error))
         if attempt.is_too_long:

@@ -21,6 +21,7 @@ from ..tables import UserError
 from .analysis import cost_of, expected_steps, fit_tolerance_runs, of_variant
 from .record import MethodVariant, RunKey, RunRecord
 from .report import analyze, prices_in_words, write_report
+from .runs import Interrupted
 from .scene import Scene
 from .timing import make_timing_runs, seconds_for_timing
 from .words import seconds_in_words
@@ -47,10 +48,6 @@ class PlannedRun:
     @property
     def is_missing(self):
         return self.record is None and not self.skipped
-
-
-class Interrupted(Exception):
-    """A signal has ended the study; the text is a sentence."""
 
 
 class Study:

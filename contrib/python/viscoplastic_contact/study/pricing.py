@@ -19,7 +19,6 @@ from .analysis import (
     fit_tolerance_runs,
     fit_work_precision,
 )
-from .ladder import Interrupted
 from .phases import n_steps
 from .price import (
     Price,
@@ -30,7 +29,7 @@ from .price import (
     price_in_words,
 )
 from .record import RunKey
-from .runs import launch
+from .runs import Interrupted, launch
 from .scene import LARGEST_TOLERANCE
 from .timing import affordable_memory, make_timing_runs, seconds_for_timing
 from .tolerance import exponents_in_words, price_of, tolerance_price_in_words
@@ -324,6 +323,8 @@ def choose_tolerance(runs, eps, console):
         else:
             text += "is out of reach."
         console.say(text + "\n")
+    except Interrupted:
+        raise
     except UserError as error:
         console.say(f"Not priced: {error}\n")
     key = scene.key()

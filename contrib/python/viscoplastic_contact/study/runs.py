@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from ..program import sentence
+from ..program import RunError, sentence
 from ..tables import UserError
 from .record import RunRecord, from_json, make_record, read_table, to_json
 from .scene import Scene
@@ -31,6 +31,13 @@ NO_OUTPUTS = (
     "Checkpoint/Every n steps=0",
     "Checkpoint/Wall time interval=0",
 )
+
+
+class Interrupted(RunError):
+    """A signal has ended a study."""
+
+    def __init__(self, sentence):
+        super().__init__(sentence, 3)
 
 
 @dataclass
@@ -129,10 +136,18 @@ class StudyRuns:
     if any; records of runs that have been compared with another one, or none, do
     not count as finished."""
 
-    def __init__(self, program, files, overrides, may_subdivide=False, has_outputs=False):
+    def __init__(
+        self,
+        program,
+        files,
+        overrides,
+        scene=None,
+        may_subdivide=False,
+        has_outputs=False,
+    ):
         self.program = program
         self.files, self.overrides = [str(file) for file in files], list(overrides)
-        self.scene = Scene(program, self.files, self.overrides)
+        self.scene = scene or Scene(program, self.files, self.overrides)
         self.directory = self.scene.directory + "study/"
         self.may_subdivide, self.has_outputs = may_subdivide, has_outputs
         self.reference = None

@@ -2,6 +2,7 @@
 """What the program says of a scene (`--check=json'), and the entries that make a
 run of it one of a study."""
 
+import copy
 import json
 import math
 
@@ -21,15 +22,28 @@ class Scene:
 
     def __init__(self, program, files, overrides, means=False):
         options = [word for text in overrides for word in ("--set", text)]
-        self.about = json.loads(
-            program.alone().call(f"--check={'means' if means else 'json'}", *options, *files)
-        )
-        self.values = self.about["values"]
-        self.file = self.about["file"]
-        self.directory = self.about["directory"]
-        self.dimension = self.about["dimension"]
-        self.n_cells, self.h = float(self.about["cells"]), self.about["h"]
+        check = f"--check={'means' if means else 'json'}"
+        self.use(json.loads(program.alone().call(check, *options, *files)))
+
+    def use(self, about):
+        """Take over what the program says."""
+        self.about, self.values = about, about["values"]
+        self.file, self.directory = about["file"], about["directory"]
+        self.dimension = about["dimension"]
+        self.n_cells, self.h = float(about["cells"]), about["h"]
         self.phases = read_phases(self["Time/Phases"])
+
+    def with_entries(self, entries):
+        """The scene with other entries `Section/Entry=value', on the same mesh."""
+        values = dict(self.values)
+        for entry in entries:
+            path, value = entry.split("=", 1)
+            values[path] = value
+        result = copy.copy(self)
+        directory = values["Output/Directory"] or self.directory
+        directory += "" if directory.endswith("/") else "/"
+        result.use({**self.about, "values": values, "directory": directory})
+        return result
 
     def __getitem__(self, path):
         return self.values[path].strip()

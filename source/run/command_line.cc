@@ -151,7 +151,7 @@ namespace Viscoplastic
       const std::string name = is_price ? "price" : argument;
       AssertThrow(false,
                   ExcMessage("This is a command of its own: write " +
-                             source_path("contrib/" + name) +
+                             source_path("contrib") + '/' + name +
                              (is_price ? " 0.01 scene.prm." : " scene.prm.")));
     }
 

@@ -401,7 +401,11 @@ class Ladders(TestCase):
             self.assertTrue(all(0.01 < error < 0.4 for error in errors), errors)
             # With a smaller tolerance those of before are there already.
             before = folder.finished()
-            folder.set(Error_control__Tolerance=0.025, Study__Strategies="tolerance")
+            folder.set(
+                Error_control__Tolerance=0.025,
+                Study__Strategies="tolerance",
+                Study__Budget=600,
+            )
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
             after = folder.finished()
@@ -456,7 +460,7 @@ class Ladders(TestCase):
             Study__Levels=8,
             Study__Ladders="both",
             Study__Target_errors=1,  # nothing to be timed
-            Study__Budget=10,
+            Study__Budget=20,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)

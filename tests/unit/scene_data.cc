@@ -162,18 +162,21 @@ namespace
 
   TEST(SceneAsJson, SaysWhatVariesAndWhatItsMeansAre)
   {
-    const Box  square(2,
-                     "subsection Material 0\n"
-                      "set Young's modulus = 1 + x\nend\n"
-                      "subsection Material 7\nset Voigt matrix = "
-                      "3, 1, 1, 0, 0, 0; 1, 3, 1, 0, 0, 0; 1, 1, 3, 0, 0, 0; "
-                      "0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 1\n"
-                      "end\nsubsection Boundary 3\nset Role = contact\n"
-                      "set Friction law = tresca\n"
-                      "set Friction bound = 2*t\nend\n");
+    const Folder     folder;
+    const Parameters scene(
+      {folder.add("scene.prm", Box::text(2, "")),
+       folder.add("more.prm",
+                  "subsection Material 0\n"
+                  "set Young's modulus = 1 + x\nend\n"
+                  "subsection Material 7\nset Voigt matrix = "
+                  "3, 1, 1, 0, 0, 0; 1, 3, 1, 0, 0, 0; 1, 1, 3, 0, 0, 0; "
+                  "0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 1\n"
+                  "end\nsubsection Boundary 3\nset Role = contact\n"
+                  "set Friction law = tresca\n"
+                  "set Friction bound = 2*t\nend\n")});
     const auto of = [&](const bool with_means) {
       return nlohmann::json::parse(
-        scene_as_json(square.scene, with_means, MPI_COMM_WORLD));
+        scene_as_json(scene, with_means, MPI_COMM_WORLD));
     };
     const nlohmann::json plain = of(false);
     EXPECT_EQ(plain["dimension"], 2);

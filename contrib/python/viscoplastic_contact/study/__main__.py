@@ -121,6 +121,9 @@ def main(arguments):
         print(f"contrib/{task}: {error}", file=sys.stderr)
         code = getattr(error, "code", 1)
         return code if code in (1, 2, 3) else 1
+    except OSError as error:
+        print(f"contrib/{task}: {error}", file=sys.stderr)
+        return 1
     return 0
 
 

@@ -69,6 +69,8 @@ class Study:
         self.wanted_levels = self.n_levels = int(scene.number("Study/Levels"))
         # Runs that only tell what they cost, and cost models, by method variant.
         self.timings, self.costs = {}, {}
+        # Seconds that runs have taken beyond their steps, above all to start.
+        self.overheads = []
         if "tolerance" in self.strategies and not scene.has_tolerance:
             raise UserError(
                 "'Study/Strategies' has tolerance, but the scene has none to begin "
@@ -201,8 +203,12 @@ class Study:
         return self.budget - self.elapsed()
 
     def expected_seconds(self, key):
-        """What a run will take, from those that are finished; not a number if that
-        cannot be known yet."""
+        """What a run will take with its start, from those that are finished; not a
+        number if that cannot be known yet."""
+        overhead = sum(self.overheads) / max(1, len(self.overheads))
+        return self.seconds_of_run(key) + overhead
+
+    def seconds_of_run(self, key):
         scene, variant, records = self.runs.scene, key.variant, self.records()
         to_tolerance = variant.strategy == "tolerance"
         # Those of the same variant, or else as similar as there are.
@@ -240,6 +246,7 @@ class Study:
     def make(self, run):
         """Make a run unless it takes too long."""
         name, seconds = self.runs.name(run.key), self.expected_seconds(run.key)
+        run.record = None  # such as that of a coarse run before there was a reference
         is_known, left = isfinite(seconds), self.left()
         if (seconds if is_known else 0.0) > left:
             reason = f"would take about {seconds_in_words(seconds)}, and " if is_known else ""
@@ -251,8 +258,12 @@ class Study:
             return
         about = f", about {seconds_in_words(seconds)}" if is_known else ""
         self.console.status(f"{name}: running{about}")
+        start = self.elapsed()
         outcome = self.runs.make(run.key)
         run.record = outcome.record
+        if run.record:
+            spent = run.record.number("seconds_total")
+            self.overheads.append(max(0.0, self.elapsed() - start - spent))
         self.costs.clear()
         if outcome.interruption:
             self.stop(outcome.interruption, f"run {name}")

@@ -252,8 +252,8 @@ def prices_table(study, result):
         run = price.run
         text += table_row(
             [
-                digits(price.tolerance),
-                f"{run.mesh_level}{' (far)' if run.is_far else ''}",
+                digits(price.error),
+                f"{run.mesh_level}{' (far)' if price.is_far else ''}",
                 digits(run.h),
                 run.steps,
                 digits(run.k),

@@ -181,24 +181,43 @@ def ideal_seconds(model, tolerance):
 
 @dataclass
 class Price:
-    """What a tolerance costs: the cheapest run, which is absent if no mesh is fine
-    enough, and by which factor the ideal seconds grow for half of the error."""
+    """What an error costs: the run for it, which is absent if no mesh is fine enough,
+    and by which factor the seconds grow for half of the error. It is far if the run is
+    far beyond what was measured."""
 
-    tolerance: float
-    run: Optional[PredictedRun]
+    error: float
+    run: object
     is_in_budget: bool
+    is_far: bool = False
     halving: float = nan
 
-
-def list_prices(model, tolerances, budget):
-    prices = []
-    for tolerance in tolerances:
-        run = cheapest(model, tolerance)
-        price = Price(tolerance, run, run is not None and run.seconds <= budget)
-        if run:
-            price.halving = ideal_seconds(model, tolerance / 2.0) / ideal_seconds(
-                model, tolerance
+    def in_words(self, describe, best, budget):
+        """As a sentence: describe(run) in words; best is the most accurate run within the
+        budget, if any."""
+        text = f"Error {digits(self.error)}: "
+        if self.is_in_budget:
+            far = " (far beyond what was measured)" if self.is_far else ""
+            return (
+                f"{text}{describe(self.run)}; half of it costs {digits(self.halving, 2)} "
+                f"times as much{far}."
             )
+        text += "not within " + seconds_in_words(budget)
+        if self.run and self.run.seconds < 3e8:
+            text += ", it would take about " + seconds_in_words(self.run.seconds)
+        if best:
+            text += f"; the smallest error there is about {digits(best.error)}: "
+            text += describe(best)
+        return text + "."
+
+
+def list_prices(model, errors, budget):
+    prices = []
+    for error in errors:
+        run = cheapest(model, error)
+        price = Price(error, run, run is not None and run.seconds <= budget)
+        if run:
+            price.is_far = run.is_far
+            price.halving = ideal_seconds(model, error / 2.0) / ideal_seconds(model, error)
         prices.append(price)
     return prices
 
@@ -216,19 +235,8 @@ def price_in_words(model, price, budget):
             f"{digits(run.memory, 2)} MB ({run.solver})"
         )
 
-    text = f"Error {digits(price.tolerance)}: "
-    if price.is_in_budget:
-        text += describe(price.run) + f"; half of it costs {digits(price.halving, 2)}"
-        text += " times as much"
-        return text + (" (far beyond what was measured)." if price.run.is_far else ".")
-    text += "not within " + seconds_in_words(budget)
-    if price.run and price.run.seconds < 3e8:
-        text += ", it would take about " + seconds_in_words(price.run.seconds)
-    best = most_accurate(model, budget)
-    if best:
-        text += f"; the smallest error there is about {digits(best.error)}: "
-        text += describe(best)
-    return text + "."
+    best = None if price.is_in_budget else most_accurate(model, budget)
+    return price.in_words(describe, best, budget)
 
 
 def next_refinement(model):

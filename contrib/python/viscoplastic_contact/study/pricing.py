@@ -384,6 +384,8 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
     if code != 0:
         raise RunError(sentence(messages, code), code)
     result = runs.record_of(chosen.key, Path(scene.directory))
+    if result is None:
+        return  # there was nothing left to compute
     found = {
         "error": error_of(result, chosen.measure, None),
         "seconds": result.number("seconds_total"),

@@ -271,7 +271,7 @@ def prices_of(result):
     for price in result.prices:
         found = {
             "error": result.measure,
-            "tolerance": price.tolerance,
+            "tolerance": price.error,
             "in_budget": price.is_in_budget,
         }
         if price.run:

@@ -75,11 +75,12 @@ def replace_file(path, text):
 
 class DirectoryLock:
     """Keeps other processes out of a directory that this one writes into, as the
-    program does: it vanishes with the process, however that ends."""
+    program does: it vanishes with the process, however that ends. Without one goes on
+    where there is none to be had."""
 
     def __init__(self, directory):
-        self.file = open(Path(directory) / "viscoplastic_contact.lock", "a")
         try:
+            self.file = open(Path(directory) / "viscoplastic_contact.lock", "a")
             fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise UserError(
@@ -87,7 +88,7 @@ class DirectoryLock:
                 "or choose another 'Output/Directory' and 'Checkpoint/Directory'."
             ) from None
         except OSError:
-            pass  # a file system without locks
+            pass
 
 
 def die_with_parent():
@@ -269,6 +270,9 @@ class StudyRuns:
                 return Outcome(interruption=interruption)
             return Outcome(failure=sentence(messages, code))
         record = self.record_of(key, place)
+        if record is None:  # there was nothing left to compute
+            mark.unlink()
+            return self.make(key)
         record.name, record.stamp = self.name(key), dict(stamp)
         record.stamp["overrides"] = "; ".join(self.overrides + entries)
         replace_file(place / "result.json", to_json(record))
@@ -280,13 +284,16 @@ class StudyRuns:
         return Outcome(record=found, interruption=interruption)
 
     def record_of(self, key, place):
-        """The numbers of a run in a directory of results."""
+        """The numbers of a run in a directory of results; None if what it has cost is
+        not there."""
         scene = self.scene
-        costs = json.loads((place / "run.json").read_text(encoding="utf-8"))
+        costs = json.loads((place / "run.json").read_text(encoding="utf-8")).get("costs")
+        if costs is None:
+            return None
         record = make_record(
             key,
             read_table(place / "statistics.csv"),
-            costs.get("costs", {}),
+            costs,
             self.is_compared(key),
             scene["Error control/Quantity"],
         )

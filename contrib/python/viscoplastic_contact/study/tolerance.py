@@ -7,6 +7,7 @@ from math import inf, nan
 from typing import NamedTuple
 
 from .fit import ROUNDING, Finer, Prior, TwoPowers, fit_two_powers
+from .price import Price
 from .words import digits, seconds_in_words
 
 COSTS = ("seconds", "cells", "dofs", "steps", "memory")
@@ -104,25 +105,13 @@ def fit_tolerance(samples, dimension, order, reference=None, m=2.0):
     )
 
 
-@dataclass
-class TolerancePrice:
-    """What the error that is asked for costs by runs to a tolerance; it is far if
-    the tolerance is far below those that were measured. Halving: by which factor the
-    seconds grow for half of the error."""
-
-    error: float
-    run: ToleranceSample
-    is_in_budget: bool
-    is_far: bool
-    halving: float = nan
-
-
 def price_of(model, error, budget):
+    """What the error costs by a run to a tolerance."""
     run = model.predict(model.tolerance_for(error))
     half = model.predict(model.tolerance_for(error / 2.0))
-    return TolerancePrice(
-        error=error,
-        run=run,
+    return Price(
+        error,
+        run,
         is_in_budget=run.seconds <= budget,
         is_far=run.tolerance < 0.24 * model.smallest_tolerance,
         halving=half.seconds / run.seconds if run.seconds > 0.0 else nan,
@@ -139,20 +128,9 @@ def tolerance_price_in_words(model, price, budget):
             f"{seconds_in_words(run.seconds)} and {digits(run.memory, 2)} MB"
         )
 
-    text = f"Error {digits(price.error)}: "
-    if price.is_in_budget:
-        text += describe(price.run) + f"; half of it costs {digits(price.halving, 2)}"
-        text += " times as much"
-        return text + (" (far beyond what was measured)." if price.is_far else ".")
-    text += "not within " + seconds_in_words(budget)
-    if price.run.seconds < 3e8:
-        text += ", it would take about " + seconds_in_words(price.run.seconds)
-    tolerance = model.tolerance_within(budget)
-    if tolerance is not None:
-        best = model.predict(tolerance)
-        text += f"; the smallest error there is about {digits(best.error)}: "
-        text += describe(best)
-    return text + "."
+    tolerance = None if price.is_in_budget else model.tolerance_within(budget)
+    best = model.predict(tolerance) if tolerance is not None else None
+    return price.in_words(describe, best, budget)
 
 
 def exponents_in_words(model):

@@ -8,12 +8,10 @@
 #include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
+#include <viscoplastic_contact/run/scene_as_json.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/two_level.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
-#include <viscoplastic_contact/study/effects.h>
-#include <viscoplastic_contact/study/price_mode.h>
-#include <viscoplastic_contact/study/study.h>
 
 #include <cctype>
 #include <chrono>
@@ -59,6 +57,21 @@ namespace
 
 
 
+  /// For programs. Returns nothing, as runs do.
+  std::string
+  print_scene(const Parameters &parameters, const bool with_means)
+  {
+    const std::string text =
+      scene_as_json(parameters, with_means, MPI_COMM_WORLD);
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      AssertThrow(std::cout << text << std::flush,
+                  dealii::ExcMessage("Writing to the standard output failed; "
+                                     "is the disk full?"));
+    return "";
+  }
+
+
+
   /// The sentence of a run that a signal has ended; empty for others.
   template <int dim>
   std::string
@@ -92,15 +105,10 @@ namespace
   std::string
   run(const CommandLine &command_line, Console &console)
   {
-    if (command_line.task == CommandLine::Task::study)
-      return Study(command_line.files, command_line.overrides, console).run();
-    if (command_line.task == CommandLine::Task::effects)
-      return EffectsStudy(command_line.files, command_line.overrides, console)
-        .run();
-    if (command_line.price > 0.)
-      return run_at_price(command_line, console);
     const Parameters parameters(command_line.files, command_line.overrides);
     return with_places(parameters, [&] {
+      if (command_line.task == CommandLine::Task::print_scene)
+        return print_scene(parameters, command_line.with_means);
       return parameters.dimension == 2 ?
                run<2>(parameters, command_line, console) :
                run<3>(parameters, command_line, console);

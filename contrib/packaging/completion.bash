@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 #
-# Completion of the arguments of viscoplastic_contact in bash: options, the
-# words study and effects, parameter files, and after --set the entries that
-# --describe names, with the laws of the scene that stands before it.
+# Completion of the arguments of viscoplastic_contact in bash: options,
+# parameter files, and after --set the entries that --describe names, with the
+# laws of the scene that stands before it.
 # shellcheck shell=bash
 
 # The entries as Section/Entry=, one a line; arguments are those of --describe.
@@ -58,10 +58,6 @@ _viscoplastic_contact()
       compopt -o filenames
       return
       ;;
-    --price)
-      mapfile -t COMPREPLY < <(compgen -W '0.1 0.03 0.01 0.003' -- "$current")
-      return
-      ;;
   esac
   if [[ $current == -* ]]; then
     # What --help lists, with the values that an option may have.
@@ -73,7 +69,6 @@ _viscoplastic_contact()
     return
   fi
   mapfile -t COMPREPLY < <(
-    [[ $COMP_CWORD -ne 1 ]] || compgen -W 'study effects' -- "$current"
     compgen -f -X '!*.prm' -- "$current"
     compgen -d -- "$current"
   )

@@ -32,7 +32,7 @@ finer run, of the steps that end a phase of `Time/Phases`.
 
 A study of your own scene makes the same pictures and prices:
 
-    viscoplastic_contact study scene.prm
+    contrib/study scene.prm
     contrib/plot output/scene/study
 
 ## How to read this page

@@ -207,12 +207,13 @@ namespace Viscoplastic
                       "Relative errors for which the price list names the "
                       "cheapest run.",
                       Patterns::List(Patterns::Double(1e-12, 1.), 1));
-    prm.add_parameter("Budget",
-                      budget,
-                      "The study begins no run that is not expected to end "
-                      "within this time, and --price no run that is expected "
-                      "to take longer. Unit: seconds.",
-                      Patterns::Double(1.));
+    prm.add_parameter(
+      "Budget",
+      budget,
+      "The study begins no run that is not expected to end "
+      "within this time, and contrib/price no run that is expected "
+      "to take longer. Unit: seconds.",
+      Patterns::Double(1.));
   }
 
 

@@ -104,6 +104,7 @@ namespace Viscoplastic
       write_record<dim>(scene,
                         path,
                         Utilities::MPI::n_mpi_processes(communicator),
+                        nullptr,
                         nullptr);
     });
   }
@@ -112,14 +113,16 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  Output<dim>::record_errors(const RunSummary<dim> &summary) const
+  Output<dim>::record_end(const RunSummary<dim> &summary,
+                          const RunCosts        &costs) const
   {
     fail_together(communicator, [&]() {
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         write_record(scene,
                      path,
                      Utilities::MPI::n_mpi_processes(communicator),
-                     &summary);
+                     &summary,
+                     &costs);
     });
   }
 

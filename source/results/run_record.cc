@@ -34,6 +34,34 @@ namespace Viscoplastic
               {name_of_size, errors.size},
               {"relative", errors.relative()}};
     }
+
+
+
+    nlohmann::ordered_json
+    record_of_costs(const RunCosts &costs)
+    {
+      const SolverDemand  &demand   = costs.solver_demand;
+      const BulkSolverKind solver   = choose_bulk_solver(demand);
+      const SolverCost     expected = expected_cost(solver, demand);
+      return {{"seconds", costs.seconds},
+              {"memory_before_MB", costs.first_memory},
+              {"peak_memory_MB", costs.peak_memory},
+              {"solver", to_string(solver)},
+              {"solver_demand",
+               {{"choice", name_of(demand.choice)},
+                {"dimension", demand.dim},
+                {"ranks", demand.n_ranks},
+                {"poissons_ratio", demand.max_poissons_ratio},
+                {"solves", demand.n_solves},
+                {"solves_per_step", demand.solves_per_step},
+                {"dofs", demand.n_dofs},
+                {"face_dofs", demand.n_face_dofs},
+                {"first_dofs", demand.n_first_dofs}}},
+              {"expected",
+               {{"set_up", expected.set_up},
+                {"step", expected.step},
+                {"memory_MB", 1e-6 * expected_memory(solver, demand)}}}};
+    }
   } // namespace
 
 
@@ -75,7 +103,8 @@ namespace Viscoplastic
   write_record(const Scene<dim>      &scene,
                const std::string     &path,
                const unsigned int     n_ranks,
-               const RunSummary<dim> *summary)
+               const RunSummary<dim> *summary,
+               const RunCosts        *costs)
   {
     std::ostringstream parameters;
     scene.parameters.print(parameters);
@@ -117,6 +146,8 @@ namespace Viscoplastic
           record_of_errors(summary->quantity_errors, "largest_value");
         errors["quantity"] = summary->quantity;
       }
+    if (costs != nullptr)
+      record["costs"] = record_of_costs(*costs);
     record["date"] = date;
     replace_file(path + "run.json", json_text(record));
   }
@@ -151,10 +182,12 @@ namespace Viscoplastic
   write_record<2>(const Scene<2> &,
                   const std::string &,
                   const unsigned int,
-                  const RunSummary<2> *);
+                  const RunSummary<2> *,
+                  const RunCosts *);
   template void
   write_record<3>(const Scene<3> &,
                   const std::string &,
                   const unsigned int,
-                  const RunSummary<3> *);
+                  const RunSummary<3> *,
+                  const RunCosts *);
 } // namespace Viscoplastic

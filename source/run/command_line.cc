@@ -39,7 +39,7 @@ namespace Viscoplastic
                                          "--quiet",
                                          "--verbose",
                                          "--restart"};
-    const std::vector<std::string> with_value{"--set", "--log", "--price"};
+    const std::vector<std::string> with_value{"--set", "--log"};
 
     bool
     contains(const std::vector<std::string> &list, const std::string &item)
@@ -64,6 +64,11 @@ namespace Viscoplastic
       CommandLine result;
 
     private:
+      /// Name the command that has taken the place of an argument of earlier
+      /// versions.
+      void
+      refuse_study(const std::string &argument) const;
+
       void
       read_file(const std::string &argument);
 
@@ -95,13 +100,7 @@ namespace Viscoplastic
       for (std::size_t i = 0; i < arguments.size(); ++i)
         {
           const std::string &argument = arguments[i];
-          if (!only_files && result.files.empty() && task_option.empty() &&
-              (argument == "study" || argument == "effects"))
-            {
-              result.task = argument == "study" ? Task::study : Task::effects;
-              task_option = argument;
-              continue;
-            }
+          refuse_study(only_files ? "" : argument);
           if (only_files || argument.empty() || argument[0] != '-')
             {
               read_file(argument);
@@ -125,18 +124,35 @@ namespace Viscoplastic
             }
           if (!has_value)
             {
-              AssertThrow(
-                i + 1 < arguments.size(),
-                ExcMessage("The option " + option +
-                           (option == "--set" ? " needs 'Section/Entry=value'" :
-                            option == "--price" ? " needs a relative error" :
-                                                  " needs the name of a file") +
-                           " after it."));
+              AssertThrow(i + 1 < arguments.size(),
+                          ExcMessage("The option " + option +
+                                     (option == "--set" ?
+                                        " needs 'Section/Entry=value'" :
+                                        " needs the name of a file") +
+                                     " after it."));
               value = arguments[++i];
             }
           read_option(option, value);
         }
       check();
+    }
+
+
+
+    void
+    Reader::refuse_study(const std::string &argument) const
+    {
+      const bool is_price =
+        argument == "--price" || argument.compare(0, 8, "--price=") == 0;
+      const bool is_study = result.files.empty() && task_option.empty() &&
+                            (argument == "study" || argument == "effects");
+      if (!is_price && !is_study)
+        return;
+      const std::string name = is_price ? "price" : argument;
+      AssertThrow(false,
+                  ExcMessage("This is a command of its own: write " +
+                             source_path("contrib") + '/' + name +
+                             (is_price ? " 0.01 scene.prm." : " scene.prm.")));
     }
 
 
@@ -161,22 +177,6 @@ namespace Viscoplastic
     {
       if (option == "--set")
         result.overrides.push_back(value);
-      else if (option == "--price")
-        {
-          try
-            {
-              result.price = Utilities::string_to_double(value);
-            }
-          catch (const std::exception &)
-            {
-              result.price = 0.; // refused below
-            }
-          AssertThrow(result.price >= 1e-6 && result.price <= 0.5,
-                      ExcMessage("The option --price needs a relative error "
-                                 "from 1e-6 to 0.5 after it, such as 0.01, "
-                                 "not '" +
-                                 excerpt(value) + "'."));
-        }
       else
         {
           AssertThrow(!value.empty(),
@@ -220,10 +220,13 @@ namespace Viscoplastic
       AssertThrow(
         value == nullptr ||
           (option == "--describe" && (text == "markdown" || text == "prm")) ||
+          (option == "--check" && (text == "json" || text == "means")) ||
           (option == "--restart" && text == "auto"),
         ExcMessage("The option " + option +
                    (option == "--describe" ?
                       " can have the values prm and markdown, not '" :
+                    option == "--check" ?
+                      " can have the values json and means, not '" :
                     option == "--restart" ? " can have the value auto, not '" :
                                             " has no value, such as '") +
                    excerpt(text) + "'."));
@@ -237,12 +240,14 @@ namespace Viscoplastic
       AssertThrow(task_option.empty() || task_option == option,
                   ExcMessage("The options " + task_option + " and " + option +
                              " exclude each other."));
-      task_option = option;
-      result.task = option == "--help"    ? Task::help :
-                    option == "--version" ? Task::version :
-                    option == "--check"   ? Task::check :
-                    value == "markdown"   ? Task::describe_as_markdown :
-                                            Task::describe;
+      task_option       = option;
+      result.with_means = value == "means";
+      result.task       = option == "--help"    ? Task::help :
+                          option == "--version" ? Task::version :
+                          option == "--check"   ? (value.empty() ? Task::check :
+                                                                   Task::print_scene) :
+                          value == "markdown"   ? Task::describe_as_markdown :
+                                                  Task::describe;
     }
 
 
@@ -252,24 +257,16 @@ namespace Viscoplastic
     {
       const bool describes = result.task == Task::describe ||
                              result.task == Task::describe_as_markdown;
-      const bool reads_scene =
-        result.task == Task::run || result.task == Task::check ||
-        result.task == Task::study || result.task == Task::effects;
-      AssertThrow(result.price == 0. || result.task == Task::run ||
-                    result.task == Task::check,
-                  ExcMessage("The options " + task_option +
-                             " and --price exclude each other."));
+      const bool reads_scene = result.task == Task::run ||
+                               result.task == Task::check ||
+                               result.task == Task::print_scene;
       AssertThrow(!reads_scene || !result.files.empty(),
                   ExcMessage("There is no parameter file among the arguments; "
                              "write viscoplastic_contact [options] "
                              "scene.prm."));
       AssertThrow(result.task == Task::run || result.restart == Restart::no,
-                  ExcMessage(result.task == Task::study ||
-                                 result.task == Task::effects ?
-                               "A study finds its finished runs without "
-                               "--restart." :
-                               "The options " + task_option +
-                                 " and --restart exclude each other."));
+                  ExcMessage("The options " + task_option +
+                             " and --restart exclude each other."));
       AssertThrow(reads_scene || (describes && !result.files.empty()) ||
                     (result.files.empty() && result.overrides.empty()),
                   ExcMessage("The option " + task_option + " goes without " +
@@ -293,33 +290,24 @@ namespace Viscoplastic
   help_text()
   {
     return "Usage: viscoplastic_contact [options] scene.prm [more.prm ...]\n"
-           "       viscoplastic_contact study [options] scene.prm [more.prm "
-           "...]\n"
-           "       viscoplastic_contact effects [options] scene.prm [more.prm "
-           "...]\n"
            "\n"
            "Computes the scene that the parameter file describes. Further "
            "files override\n"
-           "entries of the earlier ones. `study' computes it on several "
-           "meshes and with\n"
-           "several steps, as 'Study' describes, and says what accuracy costs. "
-           "`effects'\n"
-           "leaves out one effect at a time and says what each changes and "
-           "costs. What is\n"
-           "finished is not computed again.\n"
+           "entries of the earlier ones. The scripts contrib/study, "
+           "contrib/effects and\n"
+           "contrib/price say what accuracy costs, what each effect changes, "
+           "and which mesh\n"
+           "and steps reach an error.\n"
            "\n"
            "  --set 'SECTION/ENTRY=VALUE'  override an entry of the files; may "
            "be repeated\n"
-           "  --check                      validate the scene and print its "
+           "  --check[=json]               validate the scene and print its "
            "effects, size,\n"
            "                               solver and memory, without "
-           "computing it\n"
-           "  --price ERROR                find the cheapest mesh and steps "
-           "for this\n"
-           "                               relative error by a few short runs, "
-           "say what\n"
-           "                               they cost, and run them; with "
-           "--check say it only\n"
+           "computing it; =json:\n"
+           "                               its values and its mesh, for "
+           "programs; =means:\n"
+           "                               the means of its data, too\n"
            "  --describe[=markdown]        print a parameter file with every "
            "entry, its\n"
            "                               meaning, unit, default and allowed "

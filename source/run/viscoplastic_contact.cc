@@ -17,6 +17,21 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// That of all ranks together in MB, now and at the most.
+    std::pair<double, double>
+    memory_of_ranks(const MPI_Comm communicator)
+    {
+      Utilities::System::MemoryStats stats;
+      Utilities::System::get_memory_stats(stats); // kB
+      return {Utilities::MPI::sum(stats.VmRSS / 1024., communicator),
+              Utilities::MPI::sum(stats.VmHWM / 1024., communicator)};
+    }
+  } // namespace
+
+
+
   template <int dim>
   ViscoplasticContact<dim>::ViscoplasticContact(
     const Parameters     &parameters,
@@ -54,6 +69,7 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::run(const CommandLine::Restart restart,
                                 const RunSummary<dim>     *coarser)
   {
+    first_memory = memory_of_ranks(communicator).first;
     make_first_mesh(scene, triangulation, control, &announcer);
     known_solution.check();
     directories.lock();
@@ -523,8 +539,11 @@ namespace Viscoplastic
                                  return UnitLabels<dim>(scene).of_column(
                                    quantity);
                                });
-    if (recorder.summary().errors)
-      output->record_errors(recorder.summary());
+    output->record_end(recorder.summary(),
+                       {recorder.seconds(),
+                        first_memory,
+                        memory_of_ranks(communicator).second,
+                        discretization->solver_demand()});
     for (const std::string &remark : remarks)
       out << remark << '\n';
     out << "Results in " << output->directory() << std::endl;

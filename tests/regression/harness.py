@@ -226,6 +226,39 @@ def run_program(arguments, ranks, work):
     )
 
 
+def study_command(*arguments):
+    """The words of contrib/study, effects or price after it has been built."""
+    return [sys.executable, "-m", "viscoplastic_contact.study", *map(str, arguments)]
+
+
+def study_environment():
+    """What contrib/study gives to its runs, for tests on few cores."""
+    return {
+        **os.environ,
+        "OMP_NUM_THREADS": "1",
+        "PYTHONPATH": str(SOURCE / "contrib" / "python"),
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "VISCOPLASTIC_CONTACT": str(EXECUTABLE),
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "OMPI_MCA_hwloc_base_binding_policy": "none",
+    }
+
+
+def run_study(arguments, ranks, work):
+    """A study, effects or price as a subprocess.CompletedProcess."""
+    return subprocess.run(
+        study_command(arguments[0], "-n", ranks, *arguments[1:]),
+        cwd=work,
+        env=study_environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
 def launcher(ranks):
     """The command that starts so many ranks; nothing for one."""
     return [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []

@@ -6,13 +6,14 @@ import contextlib
 import csv
 import io
 import json
+import re
 import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
-from harness import SOURCE, TestCase, as_prm, main, run_program
+from harness import EXECUTABLE, SOURCE, TestCase, as_prm, main, run_study
 from test_study import VERIFICATION, Folder
 
 sys.path.insert(0, str(SOURCE / "contrib"))
@@ -20,6 +21,14 @@ sys.path.insert(0, str(SOURCE / "contrib"))
 from plotting import effects as picture
 from plotting.command import main as plot
 from plotting.results import read_statistics
+from viscoplastic_contact import Program
+from viscoplastic_contact.study.scene import Scene
+from viscoplastic_contact.study.variants import (
+    DISCRETIZATION,
+    OBSERVATION,
+    PROBLEM,
+    effect_variants,
+)
 
 SLAB = {
     "Geometry__Arguments": "16, 8 : 0, 0 : 2, 1 : true",
@@ -28,7 +37,7 @@ SLAB = {
 }
 
 
-class Scene(Folder):
+class Case(Folder):
     """Its effects, by what is left out and what is instead."""
 
     def __init__(self, scene, **overrides):
@@ -51,9 +60,230 @@ class Scene(Folder):
         }
 
 
+SQUARE = """
+set Dimension = 2
+subsection Boundary 0
+set Role = traction
+set Traction = 0.3*t; 0
+end
+subsection Boundary 1
+set Role = traction
+set Traction = 0; 0
+end
+subsection Boundary 2
+set Role = contact
+set Friction law = tresca
+set Friction bound = 0.08 + 0*x
+end
+subsection Boundary 3
+set Role = displacement
+set Displacement = free; -t
+end
+"""
+
+
+class Variants(TestCase):
+    """What can be left out of a scene, as "effect: instead (overrides)"."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.program = Program(EXECUTABLE)
+
+    def of(self, text, kind=PROBLEM, force=""):
+        with tempfile.TemporaryDirectory() as work:
+            file = Path(work) / "scene.prm"
+            file.write_text(text)
+            scene = Scene(self.program, [file], [], means=True)
+            found = [
+                variant
+                for variant in effect_variants(scene, 2.0, force)
+                if variant.kind == kind
+            ]
+            for variant in found:
+                # They make a scene.
+                options = [w for entry in variant.overrides for w in ("--set", entry)]
+                self.program.call("--describe", *options, file)
+            return found
+
+    def words(self, text, kind=PROBLEM):
+        """With long numbers rounded, as means are."""
+        lines = (f"{v.effect}: {v.instead} ({','.join(v.overrides)})" for v in self.of(text, kind))
+        return [
+            re.sub(r"\d+\.\d{9,}", lambda m: f"{float(m.group()):.9g}", line)
+            for line in lines
+        ]
+
+    def test_of_an_elastic_scene(self):
+        self.assertEqual(
+            self.words(SQUARE),
+            [
+                "traction on Boundary 0: none (Boundary 0/Traction=0; 0)",
+                "traction on Boundary 0 over time: its mean (Boundary 0/Traction=0.15; 0,"
+                "Initial state/Equilibrate=true)",
+                "friction on Boundary 2: none (Boundary 2/Friction bound=0)",
+                "slip on Boundary 2: never (Boundary 2/Friction bound=1e6*(0.08 + 0*x))",
+                "friction bound on Boundary 2 over space: its mean (Boundary 2/Friction "
+                "bound=0.08)",
+                "displacement on Boundary 3: none (Boundary 3/Displacement=free; 0)",
+                "displacement on Boundary 3 over time: its mean (Boundary 3/Displacement="
+                "free; -0.5,Initial state/Equilibrate=true)",
+            ],
+        )
+        self.assertEqual(
+            self.words(SQUARE, DISCRETIZATION),
+            [
+                "volumetric integration (automatic): full (Material/Volumetric "
+                "integration=full)"
+            ],
+        )
+        self.assertEqual(
+            self.words(SQUARE, OBSERVATION),
+            [
+                "error bar: none, and a fixed tolerance (Error control/Error bar=false)",
+                "fields and checkpoints: none ()",
+            ],
+        )
+
+    def test_pressure_that_is_given_instead(self):
+        contact = (
+            "set Role = contact\nset Contact law = unilateral\n"
+            "set Friction law = coulomb\nset Friction coefficient = 0.3\nend\n"
+        )
+        half = (
+            "set Dimension = 2\nsubsection Geometry\n"
+            "set Arguments = 4, 2 : 0, 0 : 2, 1 : true\nend\n"
+            "subsection Boundary 0\nset Role = clamped\nend\n"
+            f"subsection Boundary 1\nset Role = free\nend\nsubsection Boundary 2\n{contact}"
+            "subsection Boundary 3\n"
+        )
+        free = "set Role = free\nend\n"
+
+        def given(text, force):
+            found = [
+                v.overrides
+                for v in self.of(text, force=force)
+                if v.effect.startswith("computed pressure")
+            ]
+            return found[0] if found else []
+
+        found = given(half + free, "3*t")
+        self.assertEqual(found[0], "Boundary 2/Contact law=given normal stress")
+        force, area = found[1].split("/Normal stress=")[1].split(")/")
+        self.assertEqual(force, "-(3*t")
+        self.assertClose(float(area), 2.0, 1e-12)
+        self.assertEqual(
+            found[2:], ["Boundary 2/Gap=", "Boundary 2/Foundation displacement=0"]
+        )
+        # The force is not known, or belongs to two pieces.
+        self.assertEqual(given(half + free, ""), [])
+        self.assertEqual(given(half + contact, "3*t"), [])
+
+    def test_of_the_discretization(self):
+        text = SQUARE + (
+            "subsection Material\nset Law = maxwell\n"
+            "set Volumetric integration = full\nend\n"
+            "subsection Mesh refinement\nset Strategy = kelly\nend\n"
+            "subsection Step control\nset Tolerance = 0.1\nend\n"
+        )
+        self.assertEqual(
+            self.words(text, DISCRETIZATION),
+            [
+                "volumetric integration (full): mean dilatation (Material/Volumetric "
+                "integration=mean dilatation)",
+                "stress history (quadrature points): cell means (Material/Stress "
+                "history=cell means)",
+                "time scheme (forward Euler): backward Euler (Time/Scheme=backward Euler)",
+                "time scheme (forward Euler): Heun (Time/Scheme=Heun)",
+                "step control: the steps of the phases (Step control/Tolerance=0)",
+                "adaptive mesh: the first mesh (Mesh refinement/Strategy=none)",
+            ],
+        )
+
+    def test_of_laws(self):
+        def first(law):
+            return self.words(f"{SQUARE}subsection Material\n{law}end\n")[:-7]
+
+        elastic = "viscous flow: elastic (Material/Law=elastic)"
+        self.assertEqual(first("set Law = maxwell\n"), [elastic])
+        self.assertEqual(
+            first(
+                "set Law = perzyna\nsubsection perzyna\nset Hardening modulus = 2\nend\n"
+            ),
+            [elastic, "hardening: none (Material/perzyna/Hardening modulus=0)"],
+        )
+        # 3 s^2 at s = 2 is 6 times that, linear
+        self.assertEqual(
+            first(
+                "set Law = norton\nsubsection norton\nset Rate factor = 3\n"
+                "set Exponent = 2\nset Stress cap = 9\nend\n"
+            ),
+            [
+                elastic,
+                "power of the flow law: 1, same rate at the mean stress (Material/norton/"
+                "Exponent=1,Material/norton/Rate factor=2*(3))",
+            ],
+        )
+        self.assertEqual(
+            first(
+                "set Law = zener\nsubsection zener\n"
+                "set Long-term Young's modulus = 0.25\nend\n"
+            ),
+            [
+                "relaxation: elastic at once (Material/Law=elastic)",
+                "relaxation: elastic with the long-term moduli (Material/Law=elastic,"
+                "Material/Voigt matrix=,Material/Young's modulus=0.25,Material/Poisson's "
+                "ratio=0.3)",
+            ],
+        )
+        # Expressions: no power that could be matched, but means.
+        self.assertEqual(
+            first(
+                "set Young's modulus = 1 + 2*x\nset Law = norton\nsubsection norton\n"
+                "set Exponent = 2 + 2*t\nset Stress cap = 9\nend\n"
+            ),
+            [
+                elastic,
+                "Young's modulus over space: its mean (Material/Young's modulus=2)",
+                "exponent over time: its mean (Material/norton/Exponent=3)",
+            ],
+        )
+
+    def test_of_several_materials(self):
+        found = self.words(
+            SQUARE.replace(
+                "subsection Boundary 0",
+                "subsection Geometry\nset Material ids = if(x < 0.5, 0, 7)\nend\n"
+                "subsection Boundary 0",
+            )
+            + "subsection Material 0\nend\nsubsection Material 7\n"
+            "set Young's modulus = 5\nset Law = maxwell\nend\n"
+        )
+        self.assertEqual(len(found), 9)
+        self.assertEqual(
+            found[:2],
+            [
+                "viscous flow of Material 7: elastic (Material 7/Law=elastic)",
+                "different materials: Material 0 everywhere (Material 7/Law=elastic,"
+                "Material 7/Young's modulus=1)",
+            ],
+        )
+
+    def test_anisotropy(self):
+        found = self.words(
+            SQUARE + "subsection Material\nset Voigt matrix = 3, 1, 1, 0, 0, 0; "
+            "1, 3, 1, 0, 0, 0; 1, 1, 3, 0, 0, 0; 0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 1, 0; "
+            "0, 0, 0, 0, 0, 1\nend\n"
+        )
+        self.assertEqual(
+            found[0],
+            "anisotropy: the nearest isotropic stiffness (Material/Voigt matrix=,Material/"
+            "Young's modulus=2.5,Material/Poisson's ratio=0.25)",
+        )
+
+
 class Effects(TestCase):
     def test_of_the_slab(self):
-        with Scene(VERIFICATION / "slab.prm", **SLAB) as scene:
+        with Case(VERIFICATION / "slab.prm", **SLAB) as scene:
             process = scene.run("effects")
             self.assertEqual(process.returncode, 0, process.stderr)
             verdicts = scene.verdicts()
@@ -191,7 +421,7 @@ class Effects(TestCase):
         self.assertIn("interact" if both["interact"] else "add up", both["words"])
 
     def test_of_what_never_acts(self):
-        with Scene(
+        with Case(
             VERIFICATION / "slab.prm",
             **SLAB,
             Boundary_2__Friction_bound="10",
@@ -212,7 +442,7 @@ class Effects(TestCase):
 
     def test_what_cannot_be_left_out(self):
         """Steps that only backward Euler can take."""
-        with Scene(
+        with Case(
             VERIFICATION / "slab.prm",
             **SLAB,
             Material__maxwell__Viscosity=0.01,
@@ -239,7 +469,7 @@ class Effects(TestCase):
             self.assertIn("one picture, which goes without a name", errors.getvalue())
 
     def test_to_a_tolerance(self):
-        with Scene(
+        with Case(
             VERIFICATION / "slab.prm",
             Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
             Error_control__Tolerance=0.05,
@@ -252,19 +482,21 @@ class Effects(TestCase):
 
     def test_refused(self):
         for sentence, arguments in (
-            ("no parameter file", ["effects"]),
-            ("exclude each other", ["effects", "--check", "a.prm"]),
-            ("exclude each other", ["effects", "--price", "0.1", "a.prm"]),
-            ("without --restart", ["effects", "--restart", "a.prm"]),
+            ("required: scene.prm", ["effects"]),
+            ("unrecognized arguments: --check", ["effects", "--check", "a.prm"]),
+            ("unrecognized arguments: --restart", ["effects", "--restart", "a.prm"]),
+            ("relative error from 1e-6 to 0.5", ["price", "few", "a.prm"]),
+            ("relative error from 1e-6 to 0.5", ["price", "2", "a.prm"]),
         ):
             with tempfile.TemporaryDirectory() as work:
-                process = run_program(arguments, 1, Path(work))
+                process = run_study(arguments, 1, Path(work))
             self.assertEqual(process.returncode, 2, process.stderr)
             self.assertIn(sentence, process.stderr)
+            self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
 
     def test_steps_by_their_error(self):
         """Step control: coarser levels have larger tolerances; two ranks."""
-        with Scene(
+        with Case(
             VERIFICATION / "slab.prm", **SLAB, Step_control__Tolerance=0.05
         ) as scene:
             process = scene.run("effects", ranks=2)
@@ -296,7 +528,7 @@ class Effects(TestCase):
         with tempfile.TemporaryDirectory() as work:
             beam = Path(work) / "beam.prm"
             beam.write_text(as_prm(entries))
-            with Scene(beam, Study__Budget=1e5) as scene:
+            with Case(beam, Study__Budget=1e5) as scene:
                 process = scene.run("effects")
                 self.assertEqual(process.returncode, 0, process.stderr)
                 verdicts = scene.verdicts()
@@ -315,7 +547,7 @@ class Effects(TestCase):
 
     def test_of_a_budget_that_ends(self):
         """A second is enough for the first run, not for all."""
-        with Scene(VERIFICATION / "slab.prm", Study__Budget=1) as scene:
+        with Case(VERIFICATION / "slab.prm", Study__Budget=1) as scene:
             process = scene.run("effects")
             self.assertEqual(process.returncode, 0, process.stderr)
             about = scene.about()

@@ -131,6 +131,23 @@ class Installation(TestCase):
         )
         self.assertEqual(text.strip(), str(self.program.resolve()))
 
+    def test_installed_commands_make_studies(self):
+        """With the program beside them: nothing is built."""
+        contrib = self.share / "contrib"
+        self.assertIn("contrib/price", self.call(contrib / "effects", "-h"))
+        text = self.call(
+            contrib / "price",
+            "0.4",
+            SOURCE / "prm" / "verification" / "manufactured" / "tresca_2d.prm",
+            "--check",
+            "--set=Geometry/Global refinements=0",
+            "--set=Time/Phases=1: 2",
+            f"--set=Output/Directory={self.work / 'price'}",
+            VISCOPLASTIC_CONTACT="",
+            PYTHONDONTWRITEBYTECODE="1",
+        )
+        self.assertIn("Error 0.4: h = ", text)
+
     def test_manual_page_has_all_options(self):
         page = self.prefix / "share" / "man" / "man1" / "viscoplastic_contact.1"
         text = page.read_text()
@@ -168,10 +185,9 @@ class Installation(TestCase):
         ).splitlines()
 
     def test_completion(self):
-        self.assertEqual(self.complete("st"), ["study"])
         self.assertIn("slab.prm", self.complete("sl"))
         self.assertIn("--restart=auto", self.complete("--re"))
-        self.assertEqual(self.complete("--che"), ["--check"])
+        self.assertEqual(self.complete("--che"), ["--check", "--check=json"])
         self.assertEqual(
             self.complete("slab.prm", "--set", "Time/Ph"), ["Time/Phases="]
         )

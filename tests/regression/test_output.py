@@ -260,10 +260,17 @@ class Slab(TestCase):
                 "n_mpi_ranks",
                 "dimension",
                 "effects",
+                "costs",
                 "date",
             },
             set(info),
         )
+        costs = info["costs"]
+        self.assertGreater(costs["seconds"]["contact"], 0.0)
+        self.assertGreater(costs["memory_before_MB"], 10.0)
+        self.assertGreater(costs["peak_memory_MB"], costs["memory_before_MB"])
+        self.assertEqual(costs["solver"], "direct")
+        self.assertEqual(costs["solver_demand"]["dofs"], self.result["dofs"][-1])
         self.assertEqual(info["program"], "viscoplastic_contact")
         self.assertEqual(info["n_mpi_ranks"], 1)
         self.assertEqual(info["dimension"], 2)

@@ -30,19 +30,14 @@ class Rooms(unittest.TestCase):
         self.assertEqual([path.name for path in SOURCES.glob("*.*")], ["main.cc"])
         self.assertEqual(list(HEADERS.glob("*.h")), [])
 
-    def test_each_source_is_in_one_library_and_studies_have_their_own(self):
+    def test_each_source_is_in_the_library(self):
         text = (SOURCE / "CMakeLists.txt").read_text()
-        libraries = [
-            re.findall(r"source/\S+\.cc", part)
-            for part in re.findall(r"^set\(\w+_SOURCES\n([^)]*)\)", text, re.M)
-        ]
-        self.assertEqual(len(libraries), 2)
-        listed = sorted(sum(libraries, []))
+        (library,) = re.findall(r"^set\(\w+_SOURCES\n([^)]*)\)", text, re.M)
         files = [path for path in SOURCES.rglob("*.cc") if path.name != "main.cc"]
-        self.assertEqual(listed, sorted(str(path.relative_to(SOURCE)) for path in files))
-        for library, is_study in zip(libraries, (False, True)):
-            for name in library:
-                self.assertEqual(name.startswith("source/study/"), is_study, name)
+        self.assertEqual(
+            sorted(re.findall(r"source/\S+\.cc", library)),
+            sorted(str(path.relative_to(SOURCE)) for path in files),
+        )
 
     def test_no_room_includes_one_below_it(self):
         order = rooms()

@@ -17,12 +17,23 @@ from pathlib import Path
 
 import numpy as np
 
-from harness import EXECUTABLE, SOURCE, TestCase, as_prm, main, run_program
+from harness import (
+    SOURCE,
+    TestCase,
+    as_prm,
+    main,
+    run_program,
+    run_study,
+    study_command,
+    study_environment,
+)
 
-sys.path.insert(0, str(SOURCE / "contrib"))
+sys.path[:0] = [str(SOURCE / "contrib"), str(SOURCE / "contrib" / "python")]
 
 from plotting import cost
 from plotting.results import read_statistics
+from viscoplastic_contact.study import solvers
+from viscoplastic_contact.study.record import PHASES
 
 MANUFACTURED = SOURCE / "prm" / "verification" / "manufactured"
 VERIFICATION = SOURCE / "prm" / "verification"
@@ -69,7 +80,10 @@ class Folder:
         return [*arguments, str(self.scene), str(self.variant)]
 
     def run(self, *arguments, ranks=1):
-        return run_program(self.arguments(*arguments), ranks, self.work)
+        """Of the scene, or study, effects and price."""
+        is_study = arguments and arguments[0] in ("study", "effects", "price")
+        call = run_study if is_study else run_program
+        return call(self.arguments(*arguments), ranks, self.work)
 
     def rows(self):
         with open(self.study / "study.csv", newline="") as file:
@@ -174,6 +188,20 @@ class Ladders(TestCase):
             text = (folder.study / "study.md").read_text()
             for part in ("Observed orders", "error = ", "Price list", "Left out"):
                 self.assertIn(part, text)
+            self.check_solvers(folder)
+
+    def check_solvers(self, folder):
+        """The rules by which prices choose solvers are those of the program."""
+        runs = list(folder.study.glob("*/run.json"))
+        self.assertGreater(len(runs), 1)
+        for path in runs:
+            costs = json.loads(path.read_text())["costs"]
+            demand = solvers.SolverDemand(**costs["solver_demand"])
+            self.assertEqual(solvers.choose_solver(demand), costs["solver"])
+            set_up, step = solvers.expected_cost(costs["solver"], demand)
+            memory = solvers.expected_memory(costs["solver"], demand)
+            for value, name in (set_up, "set_up"), (step, "step"), (memory, "memory_MB"):
+                self.assertClose(value, costs["expected"][name], 1e-12, what=name)
 
     def test_adaptive_with_as_many_cells(self):
         with Folder(
@@ -208,6 +236,8 @@ class Ladders(TestCase):
             for name in walls - {"wall_total"}:
                 seconds = row[f"seconds_{name.removeprefix('wall_')}"]
                 self.assertClose(seconds, table[name].sum(), 1e-9, what=name)
+            costs = json.loads((folder.study / row["run"] / "run.json").read_text())["costs"]
+            self.assertLessEqual(set(costs["seconds"]), set(PHASES))
             parts = sum(row[name] for name in columns - {"seconds_total"})
             self.assertClose(parts, table["wall_total"][-1], 1e-9)
             log = (folder.study / row["run"] / "log.txt").read_text()
@@ -285,6 +315,7 @@ class Ladders(TestCase):
             rows = folder.ladder("both")
             self.assertEqual([row["cells"] for row in rows], [8, 64])
             self.assertLess(rows[1]["error_energy"], rows[0]["error_energy"])
+            self.check_solvers(folder)
 
     def test_timing_runs_reach_where_prices_are_wanted(self):
         """A few steps on meshes beyond those of the study tell their cost."""
@@ -370,7 +401,11 @@ class Ladders(TestCase):
             self.assertTrue(all(0.01 < error < 0.4 for error in errors), errors)
             # With a smaller tolerance those of before are there already.
             before = folder.finished()
-            folder.set(Error_control__Tolerance=0.025, Study__Strategies="tolerance")
+            folder.set(
+                Error_control__Tolerance=0.025,
+                Study__Strategies="tolerance",
+                Study__Budget=600,
+            )
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
             after = folder.finished()
@@ -425,7 +460,7 @@ class Ladders(TestCase):
             Study__Levels=8,
             Study__Ladders="both",
             Study__Target_errors=1,  # nothing to be timed
-            Study__Budget=10,
+            Study__Budget=20,
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -458,6 +493,7 @@ class Ladders(TestCase):
             parallel = folder.ladder("both")
             again = folder.run("study", ranks=2)
             self.assertEqual(announced(again.stdout), [])
+            self.check_solvers(folder)
             # Seconds of other numbers of ranks do not go together.
             serial = folder.run("study")
             self.assertEqual(len(announced(serial.stdout)), 2)
@@ -484,8 +520,9 @@ class Resumed(TestCase):
 
     def start(self, folder):
         return subprocess.Popen(
-            [EXECUTABLE, *folder.arguments("study")],
+            study_command(*folder.arguments("study")),
             cwd=folder.work,
+            env=study_environment(),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
@@ -596,7 +633,7 @@ class Refused(TestCase):
             folder.study.mkdir(parents=True)
             with open(folder.study / "viscoplastic_contact.lock", "w") as lock:
                 fcntl.flock(lock, fcntl.LOCK_EX)
-                for arguments in ("study",), ("--price=0.1", "--check"):
+                for arguments in ("study",), ("price", "0.1", "--check"):
                     self.assertRegex(
                         self.refuse(folder, *arguments),
                         r"Another run is writing into '\S+/study/'",
@@ -607,7 +644,7 @@ class Refused(TestCase):
             VERIFICATION / "shear_layer_2d.prm",
             Error_control__Error_bar="false",
         ) as folder:
-            self.assertIn("needs an error", self.refuse(folder, "--price=0.1"))
+            self.assertIn("needs an error", self.refuse(folder, "price", "0.1"))
             self.assertFalse(folder.results.exists())
 
 
@@ -616,7 +653,7 @@ class Price(TestCase):
 
     def test_only_the_price(self):
         with Folder(MANUFACTURED / "tresca_2d.prm", **self.SCENE) as folder:
-            process = folder.run("--price", "0.05", "--check")
+            process = folder.run("price", "0.05", "--check")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
             self.assertEqual(len(folder.finished()), 4)
@@ -624,7 +661,7 @@ class Price(TestCase):
 
     def test_promise_and_truth(self):
         with Folder(MANUFACTURED / "tresca_2d.prm", **self.SCENE) as folder:
-            process = folder.run("--price=0.05")
+            process = folder.run("price", "0.05")
             self.assertEqual(process.returncode, 0, process.stderr)
             found = re.search(
                 r"error +([\d.e-]+) predicted, ([\d.e-]+) found", process.stdout
@@ -638,7 +675,7 @@ class Price(TestCase):
             self.assertTrue((folder.results / "statistics.csv").exists())
             # The same again needs no pilots.
             before = folder.finished()
-            self.assertEqual(folder.run("--price=0.05", "--check").returncode, 0)
+            self.assertEqual(folder.run("price", "0.05", "--check").returncode, 0)
             self.assertEqual(folder.finished(), before)
 
     def test_of_steps_that_their_error_chooses(self):
@@ -649,7 +686,7 @@ class Price(TestCase):
             Step_control__Tolerance=0.025,
             Step_control__Resolve_events="false",
         ) as folder:
-            process = folder.run("--price=0.06")
+            process = folder.run("price", "0.06")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertIn("  --set 'Step control/Tolerance=", process.stdout)
             for name, factor in ("error", 1.6), ("steps", 1.5):
@@ -670,7 +707,7 @@ class Price(TestCase):
             Geometry__Global_refinements=0,
             Time__Phases="1: 16",
         ) as folder:
-            process = folder.run("--price=0.05", "--check", ranks=2)
+            process = folder.run("price", "0.05", "--check", ranks=2)
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
             pilots = set(folder.finished())
@@ -684,7 +721,7 @@ class Price(TestCase):
         with Folder(
             MANUFACTURED / "tresca_2d.prm", Error_control__Tolerance=0.1, **self.SCENE
         ) as folder:
-            process = folder.run("--price=0.04")
+            process = folder.run("price", "0.04")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertRegex(process.stdout, r"Error 0\.04: tolerance 0\.\d+, on average")
             self.assertRegex(
@@ -706,7 +743,7 @@ class Price(TestCase):
             Error_control__Tolerance=0.05,
             Error_control__Quantity="friction_force_x",
         ) as folder:
-            process = folder.run("--price=0.01")
+            process = folder.run("price", "0.01")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertIn("estimated error of the quantity of interest", process.stdout)
             table = read_statistics(folder.results / "statistics.csv")
@@ -722,7 +759,7 @@ class Price(TestCase):
         with Folder(
             MANUFACTURED / "tresca_2d.prm", Study__Budget=20, **self.SCENE
         ) as folder:
-            process = folder.run("--price=1e-6")
+            process = folder.run("price", "1e-6")
             self.assertEqual(process.returncode, 1)
             self.assertRegex(
                 process.stderr, r"not within 20 s.*smallest error there is about"

@@ -46,13 +46,10 @@ namespace
     EXPECT_TRUE(line.quiet);
     EXPECT_EQ(line.log, "x");
 
-    const CommandLine study = read_command_line({"--quiet", "study", "a.prm"});
-    EXPECT_EQ(study.task, Task::study);
-    EXPECT_EQ(study.files, (std::vector<std::string>{"a.prm"}));
-    const CommandLine price =
-      read_command_line({"--price", "0.01", "--check", "a.prm"});
-    EXPECT_EQ(price.task, Task::check);
-    EXPECT_EQ(price.price, 0.01);
+    const CommandLine means = read_command_line({"--check=means", "a.prm"});
+    EXPECT_EQ(means.task, Task::print_scene);
+    EXPECT_TRUE(means.with_means);
+    EXPECT_FALSE(read_command_line({"--check=json", "a.prm"}).with_means);
   }
 
 
@@ -77,17 +74,14 @@ namespace
     refused({"--version", "a.prm"}, "goes without parameter files");
     refused({"--describe=html"}, "the values prm and markdown, not 'html'.");
     refused({"--quiet=yes", "a.prm"}, "--quiet has no value");
-    refused({"study"}, "There is no parameter file among the arguments");
-    refused({"study", "--check", "a.prm"},
-            "study and --check exclude each other.");
-    refused({"study", "--restart", "a.prm"},
-            "A study finds its finished runs without --restart.");
-    refused({"study", "--price=0.1", "a.prm"},
-            "study and --price exclude each other.");
-    refused({"--price", "few", "a.prm"},
-            "needs a relative error from 1e-6 to 0.5 after it, such as 0.01, "
-            "not 'few'.");
-    refused({"--price=2", "a.prm"}, "not '2'.");
+    refused({"--check=xml", "a.prm"}, "the values json and means, not 'xml'.");
+    refused({"--check", "--restart", "a.prm"},
+            "--check and --restart exclude each other.");
+    // What earlier versions had.
+    refused({"study", "a.prm"}, "contrib/study scene.prm.");
+    refused({"--quiet", "effects", "a.prm"}, "contrib/effects scene.prm.");
+    refused({"--price=0.1", "a.prm"}, "contrib/price 0.01 scene.prm.");
+    refused({"a.prm", "--price", "0.1"}, "contrib/price 0.01 scene.prm.");
     refused({"a.prm", "Time/Phases=1: 2"}, "write --set 'Time/Phases=1: 2'.");
   }
 

@@ -4,9 +4,11 @@
 
 #include "folder.h"
 #include <viscoplastic_contact/base/expression.h>
-#include <viscoplastic_contact/study/scene_data.h>
+#include <viscoplastic_contact/run/scene_as_json.h>
+#include <viscoplastic_contact/run/scene_data.h>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -154,5 +156,83 @@ namespace
       ++n;
     EXPECT_EQ(n, 3u);
     EXPECT_EQ(piecewise_linear(t, {2., 2., 2., 2., 2., 2.}), "2");
+  }
+
+
+
+  TEST(SceneAsJson, SaysWhatVariesAndWhatItsMeansAre)
+  {
+    const Folder     folder;
+    const Parameters scene(
+      {folder.add("scene.prm", Box::text(2, "")),
+       folder.add("more.prm",
+                  "subsection Material 0\n"
+                  "set Young's modulus = 1 + x\nend\n"
+                  "subsection Material 7\nset Voigt matrix = "
+                  "3, 1, 1, 0, 0, 0; 1, 3, 1, 0, 0, 0; 1, 1, 3, 0, 0, 0; "
+                  "0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 1\n"
+                  "end\nsubsection Boundary 3\nset Role = contact\n"
+                  "set Friction law = tresca\n"
+                  "set Friction bound = 2*t\nend\n")});
+    const auto of = [&](const bool with_means) {
+      return nlohmann::json::parse(
+        scene_as_json(scene, with_means, MPI_COMM_WORLD));
+    };
+    const nlohmann::json plain = of(false);
+    EXPECT_EQ(plain["dimension"], 2);
+    EXPECT_EQ(plain["cells"], 14); // eight, of which two are four
+    EXPECT_NEAR(plain["h"], 0.5, 1e-14);
+    // `automatic' is replaced where that is known.
+    EXPECT_EQ(plain["values"]["Time/Scheme"], "forward Euler");
+    EXPECT_EQ(plain["values"]["Mesh refinement/Strategy"], "none");
+    EXPECT_EQ(plain["volumetric_integration"], "full");
+    EXPECT_FALSE(plain.contains("means"));
+    const nlohmann::json all = of(true);
+    EXPECT_EQ(all["means"].size(), 2u);
+    EXPECT_NEAR(value(all["means"]["Material 0/Young's modulus"]["over_space"],
+                      0.,
+                      0.),
+                1.5,
+                1e-13);
+    EXPECT_NEAR(value(all["means"]["Boundary 3/Friction bound"]["over_time"],
+                      0.,
+                      0.),
+                3.,
+                1e-13);
+    EXPECT_EQ(all["areas"].size(), 1u);
+    EXPECT_NEAR(all["areas"]["3"], 2., 1e-13);
+    EXPECT_NEAR(all["nearest_isotropic"]["Material 7"][0], 2.5, 1e-13);
+    EXPECT_NEAR(all["nearest_isotropic"]["Material 7"][1], 0.25, 1e-13);
+  }
+
+
+
+  TEST(SceneAsJson, NearestIsotropicStiffnessIsAProjection)
+  {
+    using namespace dealii;
+    FullMatrix<double> voigt(6, 6);
+    for (unsigned int i = 0; i < 6; ++i)
+      for (unsigned int j = 0; j < 6; ++j)
+        voigt(i, j) = (i == j ? 4. + i : 0.) + 0.1 * (i + j);
+    const Stiffness general          = Stiffness::anisotropic(voigt),
+                    nearest          = nearest_isotropic(general);
+    const SymmetricTensor<4, 3> rest = general.tensor() - nearest.tensor();
+    // Orthogonal to all isotropic tensors, which these two span.
+    const SymmetricTensor<2, 3> identity = unit_symmetric_tensor<3>();
+    for (const SymmetricTensor<4, 3> &isotropic :
+         {outer_product(identity, identity), deviator_tensor<3>()})
+      {
+        double product = 0.;
+        for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int j = 0; j < 3; ++j)
+            for (unsigned int k = 0; k < 3; ++k)
+              for (unsigned int l = 0; l < 3; ++l)
+                product += rest[i][j][k][l] * isotropic[i][j][k][l];
+        EXPECT_NEAR(product, 0., 1e-13);
+      }
+    EXPECT_GT(rest.norm(), 1.);
+    const Stiffness again = nearest_isotropic(nearest);
+    EXPECT_NEAR(again.shear_modulus(), nearest.shear_modulus(), 1e-14);
+    EXPECT_NEAR(again.bulk_modulus(), nearest.bulk_modulus(), 1e-13);
   }
 } // namespace

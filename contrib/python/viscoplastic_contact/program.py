@@ -89,11 +89,19 @@ class Program:
         # One thread a process: several would wait for each other.
         self.environment = environment or {"OMP_NUM_THREADS": "1", **os.environ}
 
-    def call(self, *arguments, stdout=subprocess.PIPE):
-        """What the program prints; arguments are those of the command line."""
+    def command(self, *arguments):
+        """The words of a call; arguments are those of the command line."""
         launcher = [*self.launcher, "-n", self.ranks] if self.ranks > 1 else []
+        return list(map(str, [*launcher, self.executable, *arguments]))
+
+    def alone(self):
+        """The same on one rank."""
+        return Program(self.executable, environment=self.environment)
+
+    def call(self, *arguments, stdout=subprocess.PIPE):
+        """What the program prints."""
         process = subprocess.run(
-            list(map(str, [*launcher, self.executable, *arguments])),
+            self.command(*arguments),
             env=self.environment,
             stdin=subprocess.DEVNULL,
             stdout=stdout,
@@ -118,24 +126,40 @@ class Program:
     def run(self, scene, directory, overrides=None, restart=False, log=None):
         """The Results of a run, which go to this directory. With restart it goes
         on from a checkpoint if there is one; messages go to the file log."""
-        self.compute([], scene, directory, overrides, restart, log)
+        self.compute(scene, directory, overrides, restart, log)
         return Results(directory)
 
     def study(self, scene, directory, overrides=None, log=None):
         """The StudyResults of a scene; what is finished is not repeated."""
-        self.compute(["study"], scene, directory, overrides, False, log)
+        from .study.ladder import Study  # scipy takes time
+        from .study.runs import StudyRuns
+
+        console, words = self.of_study(scene, directory, overrides, log)
+        Study(StudyRuns(self, *words), console).run()
         return StudyResults(Path(directory) / "study")
 
     def effects(self, scene, directory, overrides=None, log=None):
         """What leaving out each effect changes: effects.json."""
-        self.compute(["effects"], scene, directory, overrides, False, log)
+        from .study.effects import EffectsStudy
+
+        console, words = self.of_study(scene, directory, overrides, log)
+        EffectsStudy(self, *words, console).run()
         return read_effects(Path(directory) / "effects" / "effects.json")
 
-    def compute(self, task, scene, directory, overrides, restart, log):
+    def of_study(self, scene, directory, overrides, log):
+        """The console of a study, and its files and entries."""
+        from .study.console import Console
+
+        entries = {**(overrides or {}), "Output/Directory": Path(directory).resolve()}
+        return Console(log=log), (
+            parameter_files(scene, directory),
+            [f"{name}={value_text(value, name)}" for name, value in entries.items()],
+        )
+
+    def compute(self, scene, directory, overrides, restart, log):
         directory = Path(directory).resolve()
         directory.mkdir(parents=True, exist_ok=True)
         arguments = [
-            *task,
             *parameter_files(scene, directory),
             *set_options({**(overrides or {}), "Output/Directory": directory}),
             *(["--restart=auto"] if restart else []),

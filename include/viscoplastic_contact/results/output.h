@@ -41,9 +41,10 @@ namespace Viscoplastic
       return times;
     }
 
-    /// Add the estimated error to the record of the run. On all ranks.
+    /// Add the estimated error and the costs to the record of the run. On all
+    /// ranks.
     void
-    record_errors(const RunSummary<dim> &summary) const;
+    record_end(const RunSummary<dim> &summary, const RunCosts &costs) const;
 
     const std::string &
     directory() const

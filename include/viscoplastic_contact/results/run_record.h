@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/linear_solvers/solver_choice.h>
 #include <viscoplastic_contact/results/run_summary.h>
 #include <viscoplastic_contact/scene/scene.h>
 
+#include <map>
 #include <string>
 
 namespace Viscoplastic
@@ -22,12 +24,25 @@ namespace Viscoplastic
   void
   refuse_foreign_files(const std::string &path, const std::size_t n_lines);
 
+  /// What a run has cost: studies read it in run.json.
+  struct RunCosts
+  {
+    /// Wall time by phase, see run_phases; of a resumed run, of its last part.
+    std::map<std::string, double> seconds;
+    /// Of all ranks together in MB: before the run, and at the most.
+    double first_memory = 0., peak_memory = 0.;
+    /// That of the last mesh.
+    SolverDemand solver_demand;
+  };
+
   /// Write what is needed to reproduce a run: parameters.prm and run.json, with
-  /// the errors of @p summary unless that is null. On one rank.
+  /// the errors of @p summary and with @p costs unless these are null. On one
+  /// rank.
   template <int dim>
   void
   write_record(const Scene<dim>      &scene,
                const std::string     &path,
                const unsigned int     n_ranks,
-               const RunSummary<dim> *summary);
+               const RunSummary<dim> *summary,
+               const RunCosts        *costs);
 } // namespace Viscoplastic

@@ -17,9 +17,8 @@ namespace Viscoplastic
       describe,
       describe_as_markdown,
       check,
-      run,
-      study,
-      effects
+      print_scene,
+      run
     };
 
     Task                     task = Task::run;
@@ -27,6 +26,8 @@ namespace Viscoplastic
     /// `Section/Entry=value', in their order.
     std::vector<std::string> overrides;
     bool                     quiet = false;
+    /// Whether print_scene has the means of the data.
+    bool with_means = false;
     /// Whether each step gets a line, also those like the one before.
     bool verbose = false;
     /// Whether to go on from a checkpoint: not at all, from one that must be
@@ -40,9 +41,6 @@ namespace Viscoplastic
     Restart restart = Restart::no;
     /// Name of the log file; empty for none.
     std::string log;
-    /// The relative error whose price is asked for, before a run or, with the
-    /// task check, instead of it; 0 for none.
-    double price = 0.;
   };
 
   /**

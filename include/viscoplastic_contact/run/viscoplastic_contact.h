@@ -64,21 +64,6 @@ namespace Viscoplastic
     RunSummary<dim>
     run_without_files();
 
-    /// Wall time of this process by phase, as run_phases names them; `set-up'
-    /// is that of the first mesh, later ones are part of the adaptation.
-    std::map<std::string, double>
-    seconds() const
-    {
-      return recorder.seconds();
-    }
-
-    /// What decides on the linear solver of the present mesh, after a run.
-    SolverDemand
-    solver_demand() const
-    {
-      return discretization->solver_demand();
-    }
-
     const parallel::distributed::Triangulation<dim> &
     mesh() const
     {
@@ -173,6 +158,8 @@ namespace Viscoplastic
     /// The last state that will do, and the solve that has made the first one.
     EvaluatedState<dim> accepted;
     ContactReport       initial_report;
+    /// In MB, of all ranks, when the run began.
+    double first_memory = 0.;
 
     // What is said and kept.
     Console                   &console;

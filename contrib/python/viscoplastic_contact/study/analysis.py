@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the runs of a study say together: errors, laws of errors and costs."""
+
+from dataclasses import dataclass
+from math import isfinite, log2, nan, sqrt
+
+from .cost import CostSample, fit_cost
+from .fit import Finer, Prior, fit_error, fit_error_parts, fit_two_powers
+from .phases import largest_step
+from .price import WorkPrecisionModel
+from .record import FIELD_ERRORS, vector_name
+from .tolerance import ToleranceSample, fit_tolerance
+
+# What can say how large the error of a run is, the best first.
+MEASURES = {
+    "estimate_quantity": "estimated error of the quantity of interest",
+    "error_energy": "error of u in the energy norm",
+    "estimate_total": "estimated error of u in the energy norm",
+    "quantities": "largest error of all quantities of interest",
+}
+
+
+def kind_of(quantity):
+    """What has the same unit."""
+    for words, kind in (
+        (("force", "reaction"), "force"),
+        (("dissipation", "energy"), "energy"),
+        (("point", "displacement"), "length"),
+    ):
+        if any(word in quantity for word in words):
+            return kind
+    return quantity
+
+
+def size_of(record, quantity):
+    """The size of a quantity; for a component that of its vector. Zero for what
+    only rounding keeps from being that."""
+    square = largest = 0.0
+    for name, value in record.quantities.items():
+        if not isfinite(value):
+            continue
+        is_component = vector_name(name) != name and vector_name(quantity) != quantity
+        if name == quantity or (
+            is_component and vector_name(name) == vector_name(quantity)
+        ):
+            square += value * value
+        if kind_of(name) == kind_of(quantity):
+            largest = max(largest, abs(value))
+    size = sqrt(square)
+    return size if size > 1e-9 * largest else 0.0
+
+
+def quantity_error(record, quantity, reference):
+    """The error of a quantity of interest, relative to its size (of vectors: to
+    that of the vector) in the reference; not a number without one."""
+    if reference is None or record.key == reference.key:
+        return nan
+    size = size_of(reference, quantity)
+    if not size > 0.0:
+        return nan
+    return abs(record.quantity(quantity) - reference.quantity(quantity)) / size
+
+
+def error_of(record, measure, reference):
+    """The error of a run in a measure: a column of study.csv that holds errors or
+    estimates, `QUANTITY_error', or `quantities', the largest error of all quantities
+    of interest. Not a number where it is not known."""
+    if measure in record.numbers:
+        return record.number(measure)
+    if measure != "quantities":
+        return quantity_error(record, measure.rsplit("_error", 1)[0], reference)
+    errors = [quantity_error(record, name, reference) for name in record.quantities]
+    return max((error for error in errors if isfinite(error)), default=nan)
+
+
+def best_measure(records, reference, n_least=3):
+    """The best measure that at least so many of the runs have; empty if none."""
+    for measure in MEASURES:
+        errors = [error_of(record, measure, reference) for record in records]
+        if sum(isfinite(error) and error > 0.0 for error in errors) >= n_least:
+            return measure
+    return ""
+
+
+def of_variant(records, variant):
+    """The records of one method variant."""
+    return [record for record in records if record.key.variant == variant]
+
+
+def are_differences(records):
+    return any("is_difference" in record.numbers for record in records)
+
+
+def fit_measure(records, measure, reference):
+    """The fit of the errors in a measure; that of estimates is by their parts."""
+    samples = [
+        (record.number("h"), record.step_measure, error_of(record, measure, reference))
+        for record in records
+    ]
+    if measure == "estimate_total":
+        space = [r.number("estimate_space") + r.number("estimate_initial") for r in records]
+        time = [record.number("estimate_time") for record in records]
+        return fit_error_parts(samples, space, time)
+    is_norm = measure in FIELD_ERRORS
+    # A reference with meshes of its own is on no ladder of h and k.
+    if (
+        reference is None
+        or "tolerance" in reference.numbers
+        or (is_norm and not are_differences(records))
+    ):
+        return fit_error(samples)
+    finer = Finer(
+        reference.number("h"), reference.step_measure, 2.0 if is_norm else 1.0, 1.0
+    )
+    return fit_error(samples, finer)
+
+
+def fit_chosen_steps(records):
+    """How many steps step control takes to the tolerance TOL, of the records of one
+    method variant: c TOL^-q + c_0, with q = 1/p for a scheme of order p where they
+    do not tell."""
+    samples = [
+        (1.0 / record.number("step_tolerance"), 1.0, record.number("steps"))
+        for record in records
+    ]
+    # Some 10 % of chance.
+    return fit_two_powers(samples, Prior(p=1.0 / records[0].key.variant.order, weight=0.3))
+
+
+def expected_steps(scene, records, key):
+    """How many steps a run has: those of its phases, or what its tolerance takes by
+    the records."""
+    if not scene.has_step_control:
+        return scene.planned_steps(key)
+    steps = fit_chosen_steps(records)(1.0 / scene.step_tolerance(key))
+    return max(len(scene.phases), steps)
+
+
+def cost_of(records):
+    """The fit of seconds and memory."""
+    return fit_cost(
+        [
+            CostSample(
+                record.demand,
+                record.number("steps"),
+                record.number("set_ups"),
+                record.number("seconds_set_up"),
+                record.number("seconds_total"),
+                record.number("peak_memory_MB"),
+            )
+            for record in records
+        ]
+    )
+
+
+def fit_work_precision(scene, records, timed, measure, reference):
+    """All that follows from runs of one method variant, of which there must be one.
+    Those that are timed tell what runs cost."""
+    strategy = records[0].key.variant.strategy
+    model = WorkPrecisionModel(
+        fit_measure(records, measure, reference),
+        cost_of(timed),
+        scene.dimension,
+        scene.h,
+        largest_step(scene.phases),
+        phases=scene.phases,
+        n_set_ups=lambda steps, planned: scene.n_set_ups(strategy, steps, planned),
+        # Nothing coarser than what was measured: there errors obey no law.
+        coarsest_level=max(-record.key.mesh_level for record in records),
+        smallest_k=min(record.step_measure for record in records),
+    )
+    if scene.has_step_control:
+        model.k = scene.number("Step control/Tolerance")
+        model.order = records[0].key.variant.order
+        model.chosen_steps = fit_chosen_steps(timed)
+    # From the finest mesh, whose boundary counts least.
+    finest = min(records, key=lambda record: record.number("h"))
+    model.smallest_h = finest.number("h")
+    model.dofs = finest.number("dofs") * (model.smallest_h / model.h) ** model.dimension
+    model.largest_k = max(record.step_measure for record in records)
+    for record in records:
+        limit = record.number("step_limit")
+        # Stresses may lower it still; implicit schemes go beyond, and step control
+        # looks after it.
+        if not model.chosen_steps and isfinite(limit) and limit >= record.step_measure:
+            model.largest_k = min(model.largest_k, 0.95 * limit)
+    return model
+
+
+def fit_tolerance_runs(scene, records, measure, reference):
+    """The same of runs to a tolerance."""
+    # Where the first mesh is better than a tolerance asks for, the error does not
+    # depend on it. Otherwise a run keeps the estimate near three quarters of the
+    # tolerance.
+    controlled = (
+        "estimate_quantity" if scene["Error control/Quantity"] else "estimate_total"
+    )
+
+    def has_first_mesh(record):
+        return (
+            record.number(controlled) < 0.6 * record.number("tolerance")
+            or abs(record.number("cells") / scene.n_cells - 1.0) < 1e-3
+        )
+
+    have_others = not all(map(has_first_mesh, records))
+    samples = [
+        ToleranceSample(
+            record.number("tolerance"),
+            nan
+            if have_others and has_first_mesh(record)
+            else error_of(record, measure, reference),
+            *(
+                record.number(name)
+                for name in ("seconds_total", "cells", "dofs", "steps", "peak_memory_MB")
+            ),
+        )
+        for record in records
+    ]
+    is_norm, is_estimate = measure in FIELD_ERRORS, measure == controlled
+    finer = None
+    if (
+        (not is_norm or are_differences(records))
+        and not is_estimate
+        and reference is not None
+        and "tolerance" in reference.numbers
+    ):
+        finer = reference.number("tolerance")
+    # Schemes may differ from run to run, but not in one method variant.
+    model = fit_tolerance(
+        samples,
+        scene.dimension,
+        records[0].key.variant.order,
+        finer,
+        2.0 if is_norm else 1.0,
+    )
+    model.is_kept = is_estimate
+    return model
+
+
+@dataclass
+class Richardson:
+    """Richardson extrapolation of three values, on meshes and with steps that halve
+    each time. The error is that of the last value, relative to the size of the
+    quantity. The last value can serve as a reference if the differences shrink with
+    an order between 1/2 and 3."""
+
+    quantity: str
+    values: list
+    order: float
+    extrapolated: float
+    error: float
+    is_trustworthy: bool
+
+
+def extrapolate(runs):
+    """The extrapolation of every quantity of interest, of three runs from coarse to
+    fine."""
+    result = []
+    for name in runs[2].quantities:
+        values = [run.quantity(name) for run in runs]
+        first, last = values[1] - values[0], values[2] - values[1]
+        size = size_of(runs[2], name)
+        if not size > 0.0:
+            continue
+        if not abs(last) > 1e-12 * size:  # nothing left to converge
+            result.append(Richardson(name, values, nan, values[2], 0.0, True))
+            continue
+        ratio = first / last
+        order = log2(ratio) if ratio > 0.0 else nan
+        is_good = 0.5 <= order <= 3.0
+        extrapolated = values[2] + last / (ratio - 1.0) if is_good else nan
+        error = abs(extrapolated - values[2] if is_good else last) / size
+        result.append(Richardson(name, values, order, extrapolated, error, is_good))
+    return result

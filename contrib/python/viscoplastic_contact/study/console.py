@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Messages of studies: on the standard output and in a log file."""
+
+import subprocess
+import sys
+
+
+class Console:
+    """Quiet ones print nothing; the log has all but what a terminal shows while a
+    run is under way."""
+
+    def __init__(self, quiet=True, log=None):
+        self.quiet = quiet
+        self.log = open(log, "w", encoding="utf-8") if log else None
+        self.has_status = not quiet and sys.stdout.isatty()
+        self.shown = ""
+
+    def say(self, text, end="\n"):
+        self.clear()
+        if not self.quiet:
+            print(text, end=end, flush=True)
+        if self.log:
+            self.log.write(text + end)
+            self.log.flush()
+
+    def status(self, text):
+        """What a run under way is, for those who watch."""
+        self.clear()
+        if self.has_status:
+            self.shown = text
+            print(text, end="\r", flush=True)
+
+    def clear(self):
+        if self.shown:
+            print(" " * len(self.shown), end="\r", flush=True)
+            self.shown = ""
+
+    def output(self):
+        """Where the messages of a run go: None is the standard output."""
+        return subprocess.DEVNULL if self.quiet else None

@@ -1,0 +1,479 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Ablation: a scene, and the same with one effect left out or simplified at a time.
+Tells for each what it costs and what it changes, beside the error of the
+discretization: what twice the mesh width changes and what twice the time steps change
+(or twice the tolerance). The coarsest come first; what is settled there is not
+computed on finer ones. Runs are those of StudyRuns, each in a directory of its own:
+the same command goes on after an interruption."""
+
+import time
+from dataclasses import dataclass, field
+from math import inf, nan
+from typing import Optional
+
+from ..tables import UserError
+from .effects_report import effects_in_words, write_effects
+from .histories import (
+    QuantityChange,
+    bound,
+    changes_between,
+    contact_force_of,
+    error_of_iterations,
+    interactions,
+    largest_of,
+)
+from .record import RunRecord, read_table
+from .runs import Interrupted, StudyRuns
+from .scene import Scene
+from .variants import KINDS, OBSERVATION, PROBLEM, EffectVariant, both, effect_variants
+
+# What an effect is worth to the answer. Some quantity changes by more than twice its
+# error; nothing changes by more than its error; in between, on the finest
+# discretization there was time for; nothing changes but for the error of the
+# iterations; what should change nothing changes nothing by more than its error; the
+# scene cannot be computed without it.
+CALLED_FOR = "called for"
+BELOW_THE_ERROR = "below the error of this discretization"
+AS_LARGE_AS_THE_ERROR = "as large as the error of this discretization"
+NEVER_ACTED = "never acted"
+ONLY_WATCHES = "only watches"
+CANNOT_BE_LEFT_OUT = "cannot be left out"
+
+# Changes by so many errors are changes.
+CLEAR = 2.0
+# Runs shorter than this are timed twice.
+SHORT_RUN = 1.0
+
+
+@dataclass
+class RunCost:
+    """What a run takes, and how much of that is chance: the difference between two
+    runs of the same scene. Memory in MB beyond what the process had before."""
+
+    seconds: float = 0.0
+    seconds_chance: float = 0.0
+    memory: float = 0.0
+    memory_chance: float = 0.0
+
+
+@dataclass
+class EffectResult:
+    """What the scene is without one effect, on one discretization: level 0 is that of
+    the scene. Changes are those of all quantities, in the order of the scene's table,
+    and last that of the displacements in the energy norm; decisive is the one that is
+    the largest in proportion to its error."""
+
+    variant: EffectVariant
+    level: int = 0
+    cells: float = 0.0
+    verdict: str = CANNOT_BE_LEFT_OUT
+    changes: list = field(default_factory=list)
+    decisive: QuantityChange = field(default_factory=lambda: QuantityChange(""))
+    with_it: RunCost = field(default_factory=RunCost)
+    without: RunCost = field(default_factory=RunCost)
+    # Why it could not be computed.
+    failure: str = ""
+
+    @property
+    def is_open(self):
+        return self.verdict in (BELOW_THE_ERROR, AS_LARGE_AS_THE_ERROR)
+
+    def change_of(self, quantity):
+        """Not a number if there is none of this name."""
+        return next((c.change for c in self.changes if c.quantity == quantity), nan)
+
+
+def judge(result, smallest):
+    """Find verdict and decisive change of a result whose changes are known. No change
+    is one that is not larger than smallest."""
+    changes = [(q, q.change, bound(q.error)) for q in result.changes]
+    if changes:
+        result.decisive = max(changes, key=lambda c: c[1] / (c[2] + smallest))[0]
+    acts = any(change > smallest for _, change, _ in changes)
+    is_above = any(change > max(error, smallest) for _, change, error in changes)
+    is_clear = any(change > CLEAR * error + smallest for _, change, error in changes)
+    # Iterations that end a little earlier or later are no other answer.
+    if result.variant.kind == OBSERVATION and not is_above:
+        result.verdict = ONLY_WATCHES
+    elif not acts:
+        result.verdict = NEVER_ACTED
+    elif is_clear:
+        result.verdict = CALLED_FOR
+    else:
+        result.verdict = AS_LARGE_AS_THE_ERROR if is_above else BELOW_THE_ERROR
+
+
+@dataclass
+class EffectInteraction:
+    """Two effects left out: each by itself and both at once, on the same
+    discretization. Largest: by how much leaving out the second changes another
+    quantity than it does where the first is left out already, the largest in
+    proportion to its error."""
+
+    first: EffectResult
+    second: EffectResult
+    joint: EffectResult
+    largest: QuantityChange
+
+    @property
+    def is_clear(self):
+        """Whether that is more than the error explains."""
+        # Four runs, each with its error.
+        return self.largest.change > 2.0 * CLEAR * bound(self.largest.error)
+
+
+@dataclass
+class Computed:
+    """A run, with its table."""
+
+    record: RunRecord
+    table: dict
+    cost: RunCost
+
+
+@dataclass
+class Attempt:
+    """How an attempt at a run has ended."""
+
+    computed: Optional[Computed] = None
+    failure: str = ""
+    is_too_long: bool = False
+
+
+def own_memory(record):
+    """Beyond what the process had before."""
+    return record.number("peak_memory_MB") - record.number("first_memory_MB")
+
+
+def with_choices(program, files, overrides):
+    """The overrides with what `automatic' stands for in the scene: a variant without a
+    law or with other moduli is to differ by these alone."""
+    chosen = Scene(program, files, overrides).about["volumetric_integration"]
+    return [*overrides, f"Material/Volumetric integration={chosen}"]
+
+
+class EffectsStudy:
+    """The study of the effects of the scene that files and overrides give."""
+
+    def __init__(self, program, files, overrides, console):
+        self.start = time.monotonic()
+        self.program, self.files = program, [str(file) for file in files]
+        self.console = console
+        self.overrides = with_choices(program, self.files, overrides)
+        self.scene = Scene(program, self.files, self.overrides, means=True)
+        self.directory = self.scene.directory + "effects/"
+        self.base = self.make_runs([], self.directory + "scene")
+        # What has been found of each simplification: of the problem first, the largest
+        # changes first.
+        self.results = []
+        # Two of them at once, if there are two that matter.
+        self.interaction = None
+        # What the budget did not reach, in words; empty if there is nothing.
+        self.left_out = ""
+        # Why the scene could not be computed.
+        self.failure = ""
+        self.of_scene, self.with_longer_steps, self.runs = {}, {}, {}
+
+    def make_runs(self, entries, directory, has_outputs=False):
+        entries = [*entries, f"Output/Directory={directory}"]
+        # With another scheme `automatic' may stand for something else.
+        has_scheme = any(entry.startswith("Time/Scheme=") for entry in entries)
+        scene = None if has_scheme else self.scene.with_entries(entries)
+        overrides = self.overrides + entries
+        return StudyRuns(self.program, self.files, overrides, scene, True, has_outputs)
+
+    def runs_of(self, variant, level):
+        """Runs of a variant below its own directory, compared with those of the scene
+        on this level."""
+        if (variant.name, level) in self.runs:
+            return self.runs[variant.name, level]
+        entries = list(variant.overrides)
+        # Differences from the scene stand in the place of errors, where these are not
+        # from the solution that makes the data.
+        if self.is_compared:
+            place = self.base.place(self.key_of(self.base, level))
+            entries += [
+                "Exact solution/Displacement=",
+                "Exact solution/Stress=",
+                f"Exact solution/Reference directory={place}",
+            ]
+        runs = self.make_runs(
+            entries, self.directory + variant.name, variant.has_outputs
+        )
+        self.runs[variant.name, level] = runs
+        return runs
+
+    @property
+    def is_compared(self):
+        return self.scene["Exact solution/Data"] == "scene"
+
+    def key_of(self, runs, level):
+        key = runs.scene.key()._replace(mesh_level=level, time_level=level)
+        if runs.scene.has_tolerance:
+            key = key._replace(variant=key.variant._replace(strategy="tolerance"))
+        return key
+
+    def is_affordable(self, seconds):
+        """Whether a run of so many seconds ends within the budget."""
+        return time.monotonic() - self.start + seconds <= self.scene.budget
+
+    def make(self, runs, key):
+        outcome = runs.make(key)
+        if outcome.interruption:
+            self.stop(outcome.interruption)
+        return outcome
+
+    def stop(self, name):
+        raise Interrupted(
+            f"{name} has ended the study of effects; the same command goes on."
+        )
+
+    def compute(self, runs, level, expected_seconds):
+        """Find a run, or make it if it can be expected to end within the budget."""
+        attempt = Attempt()
+
+        def find_or_make(key, expected):
+            record = runs.find(key)
+            if record:
+                return record
+            attempt.is_too_long = not self.is_affordable(expected)
+            if attempt.is_too_long:
+                return None
+            outcome = self.make(runs, key)
+            attempt.failure = outcome.failure
+            return outcome.record
+
+        key = self.key_of(runs, level)
+        record = find_or_make(key, expected_seconds)
+        if not record:
+            return attempt
+        seconds, memory = record.number("seconds_total"), own_memory(record)
+        table = read_table(runs.file_of(key, "statistics.csv"))
+        cost = RunCost(seconds, 0.0, memory, 0.0)
+        attempt.computed = Computed(record, table, cost)
+        # Once more, to know what is chance. Of long runs only the scene, whose chance
+        # then stands for that of others, too.
+        if seconds > SHORT_RUN and level in self.of_scene:
+            other = self.of_scene[level].cost
+            cost.seconds_chance = other.seconds_chance / other.seconds * seconds
+            cost.memory_chance = other.memory_chance
+            return attempt
+        again = find_or_make(key._replace(is_timing=True), seconds)
+        if again:
+            pairs = (seconds, again.number("seconds_total")), (memory, own_memory(again))
+            cost.seconds, cost.memory = map(min, pairs)
+            cost.seconds_chance, cost.memory_chance = (abs(a - b) for a, b in pairs)
+        # Without time for that, the first run is enough.
+        attempt.is_too_long = False
+        return attempt
+
+    def compute_scene(self, level):
+        """The scene as it is, to be found in of_scene; whether that is possible."""
+        self.base.reference = self.key_of(self.base, level)
+        # The first run is made in any case, another one has twice the resolution in
+        # space and time.
+        coarser = self.of_scene.get(level - 1)
+        expected = 0.0 if self.of_scene else -inf
+        if coarser:
+            expected = coarser.record.number("seconds_total") * 2.0 ** (
+                self.scene.dimension + 1
+            )
+        attempt = self.compute(self.base, level, expected)
+        self.failure = attempt.failure
+        if not attempt.computed:
+            if not attempt.failure:
+                self.failure = "its run would not end within 'Study/Budget'."
+            return False
+        self.of_scene[level] = attempt.computed
+        if coarser and not self.scene.has_tolerance:
+            self.compute_with_longer_steps(level)
+        return True
+
+    def compute_with_longer_steps(self, level):
+        """The scene on the mesh of a level with the steps of the coarser one, if the
+        budget allows."""
+        key = self.key_of(self.base, level)._replace(time_level=level - 1)
+        record = self.base.find(key)
+        seconds = self.of_scene[level].record.number("seconds_total")
+        if not record and self.is_affordable(0.5 * seconds):
+            record = self.make(self.base, key).record
+        if record:
+            path = self.base.file_of(key, "statistics.csv")
+            self.with_longer_steps[level] = read_table(path)
+
+    def add_errors(self, changes, level):
+        """Put the errors of the quantities of the scene on a level beside changes of
+        the same quantities: what halving the mesh and halving the steps have changed,
+        at times of both runs (in a single difference they may cancel); or the error
+        bar in energy."""
+        here = self.of_scene[level]
+        coarser, longer = self.of_scene.get(level - 1), self.with_longer_steps.get(level)
+        errors = []
+        if coarser and longer:
+            of_mesh = changes_between(coarser.table, longer)
+            errors = [change.change for change in changes_between(longer, here.table)]
+            for i, change in enumerate(of_mesh[: len(errors)]):
+                errors[i] += change.change
+        elif coarser:
+            errors = [c.change for c in changes_between(coarser.table, here.table)]
+        for i, change in enumerate(changes):
+            bar = here.record.number("estimate_total")
+            change.error = errors[i] if i < len(errors) else bar
+
+    def compare(self, variant, level):
+        """Compare a variant with the scene on a level: the result and the table of the
+        variant; None and None where the budget has ended the study."""
+        self.console.status(f"{variant.effect}: {variant.instead}")
+        here = self.of_scene[level]
+        self.base.reference = self.key_of(self.base, level)
+        result = EffectResult(
+            variant, level, here.record.number("cells"), with_it=here.cost
+        )
+        try:
+            runs = self.runs_of(variant, level)
+            attempt = self.compute(runs, level, here.record.number("seconds_total"))
+        except Interrupted:
+            raise
+        except UserError as error:  # what is wrong with its entries
+            attempt = Attempt(failure=str(error))
+        if attempt.is_too_long:
+            return None, None
+        if not attempt.computed:
+            result.failure = attempt.failure
+            return result, None
+        record, table = attempt.computed.record, attempt.computed.table
+        result.without = attempt.computed.cost
+        if variant.has_outputs:
+            # Of what the runs of studies go without.
+            result.without.seconds += record.number("seconds_output")
+            result.with_it, result.without = result.without, result.with_it
+        result.changes = changes_between(here.table, table)
+        size = largest_of(here.table, "energy_norm")
+        if self.is_compared and size > 0.0:
+            distance = largest_of(table, "error_energy") / size
+            result.changes.append(QuantityChange("energy_norm", distance))
+        self.add_errors(result.changes, level)
+        judge(result, error_of_iterations(here.table, table))
+        return result, table
+
+    def levels(self):
+        if self.scene.has_tolerance:
+            coarsest = max(-3, self.base.scene.coarsest_tolerance_level())
+        else:
+            coarsest = -min(2, self.base.scene.n_coarser_meshes())
+        return list(range(min(0, coarsest), 1))
+
+    def keep(self, result):
+        """Replace what is known of the variant."""
+        names = [known.variant.name for known in self.results]
+        if result.variant.name in names:
+            self.results[names.index(result.variant.name)] = result
+        else:
+            self.results.append(result)
+
+        def order(of):
+            size = of.decisive.change if not of.failure else 1e300
+            return KINDS.index(of.variant.kind), -size
+
+        self.results.sort(key=order)
+
+    def judge_on(self, level, variants):
+        """Judge these variants on a level; returns those that are not settled."""
+        undecided = []
+        for variant in variants:
+            result, _ = self.compare(variant, level)
+            if result:
+                self.keep(result)
+            # What cannot be computed here may be so with smaller steps.
+            if not result or result.is_open or (result.failure and level < 0):
+                undecided.append(variant)
+            self.write(False)
+        return undecided
+
+    def judge_all(self):
+        """Judge all variants, on as fine levels as they need."""
+        levels, variants = self.levels(), []
+        for level in levels:
+            has_coarser = level - 1 in self.of_scene
+            if not self.compute_scene(level):
+                if not has_coarser:
+                    continue  # too coarse
+                # With the error bar in the place of a coarser run.
+                if not self.results:
+                    variants = self.judge_on(level - 1, variants)
+                break
+            if not variants:
+                table = self.of_scene[level].table
+                variants = effect_variants(
+                    self.scene, largest_of(table, "mean_von_mises"), contact_force_of(table)
+                )
+                self.console.say(
+                    f"Effects of {self.scene.file}: {len(variants)} simplifications"
+                )
+            # The first one is what the next is compared with.
+            if has_coarser or level == levels[-1]:
+                variants = self.judge_on(level, variants)
+            if not variants:
+                return
+        if not self.of_scene:
+            raise UserError(f"The scene itself could not be computed: {self.failure}")
+        # Those that are open on the mesh of the scene are settled.
+        known = {result.variant.name: result for result in self.results}
+        missing = [v for v in variants if v.name not in known]
+        n_open = sum(v.name in known and known[v.name].level < 0 for v in variants)
+        if missing:
+            names = "; ".join(f"{v.effect}: {v.instead}" for v in missing)
+            self.left_out = f"No time within 'Study/Budget' for {names}. "
+        if n_open:
+            why = ", but not within 'Study/Budget'."
+            if self.failure:
+                why = f", but on these the scene could not be computed: {self.failure}"
+            self.left_out += (
+                f"Finer meshes might tell {n_open} of them from the error{why}"
+            )
+
+    def find_interaction(self):
+        """Leave out the two largest at once that are no loads: everything depends on
+        these."""
+        candidates = [
+            result
+            for result in self.results
+            if result.variant.kind == PROBLEM
+            and not result.variant.is_load
+            and result.verdict == CALLED_FOR
+        ]
+        first = next(iter(candidates), None)
+        second = next(
+            (r for r in candidates[1:] if not first.variant.excludes(r.variant)), None
+        )
+        if not second:
+            return
+        level = max(first.level, second.level)
+        results, tables = [], []
+        for variant in (
+            first.variant,
+            second.variant,
+            both(first.variant, second.variant),
+        ):
+            result, table = self.compare(variant, level)
+            if not result or result.failure:
+                return
+            results.append(result)
+            tables.append(table)
+        total = EffectResult(first.variant, level)
+        total.changes = interactions(self.of_scene[level].table, *tables)
+        self.add_errors(total.changes, level)
+        judge(total, error_of_iterations(tables[0], tables[2]))
+        self.interaction = EffectInteraction(*results, total.decisive)
+
+    def run(self):
+        """Make what is missing, print and write the table. Raises Interrupted, and
+        UserError if the scene itself cannot be computed."""
+        self.base.lock_directory()
+        self.judge_all()
+        self.find_interaction()
+        self.write(True)
+        self.console.say(effects_in_words(self) + f"Results in {self.directory}")
+
+    def write(self, is_finished):
+        write_effects(self, is_finished)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How far the quantities of runs are apart, over time."""
+
+from dataclasses import dataclass
+from math import hypot, inf
+
+import numpy as np
+
+from .record import vector_name
+from .words import exact
+
+ENERGIES = (
+    "friction_dissipation",
+    "viscous_dissipation",
+    "stored_energy",
+    "external_work",
+)
+
+
+@dataclass
+class QuantityChange:
+    """The largest difference of all times over the largest size, and the same for the
+    error of the discretization."""
+
+    quantity: str
+    change: float = 0.0
+    error: float = 0.0
+
+
+def unit_of(quantity):
+    """Quantities of the same kind have the same unit; empty for those that do not
+    count."""
+    if quantity.startswith(("friction_force", "contact_force", "reaction_")):
+        return "force"
+    if quantity.startswith("point") or quantity == "max_displacement":
+        return "displacement"
+    if quantity in ("max_von_mises", "mean_von_mises"):
+        return "stress"
+    return "energy" if quantity in ENERGIES else ""
+
+
+def quantities_of(table):
+    """The columns of each quantity: its components, or itself."""
+    result = {}
+    for column in table:
+        if unit_of(vector_name(column)):
+            result.setdefault(vector_name(column), []).append(column)
+    return result
+
+
+def at_times_of(table, other, column):
+    """The column of another table at the times of this one, linear between its rows;
+    zero without it."""
+    if column not in other:
+        return np.zeros(len(table["t"]))
+    return np.interp(table["t"], other["t"], other[column])
+
+
+def differences(table, terms):
+    """For each quantity the largest size of the sum of it and of the terms, pairs of
+    another table and a sign, over the largest size of the quantity."""
+    found, largest = [], {}
+    for name, columns in quantities_of(table).items():
+        values = np.array([table[column] for column in columns])
+        sums = values.copy()
+        for other, sign in terms:
+            sums += sign * np.array([at_times_of(table, other, c) for c in columns])
+        # NaN does not win.
+        size, change = (
+            float(np.fmax.reduce(np.sqrt((v**2).sum(axis=0)), initial=0.0))
+            for v in (values, sums)
+        )
+        # Under another contact law the normal force is a reaction or data.
+        if name == "contact_force" and any(columns[0] not in t for t, _ in terms):
+            change = 0.0
+        found.append((name, size, change))
+        largest[unit_of(name)] = max(largest.get(unit_of(name), 0.0), size)
+    result = []
+    for name, size, change in found:
+        # Energies are parts of one balance: beside all of it a dissipation can be
+        # negligible.
+        most = largest[unit_of(name)]
+        size = most if unit_of(name) == "energy" else max(size, 1e-3 * most)
+        result.append(QuantityChange(name, change / size if size > 0.0 else 0.0))
+    return result
+
+
+def changes_between(table, other):
+    """The differences between the quantities of two runs, at the times of the first
+    and linear in between in the second: forces, displacements of points, energies and
+    dissipations, largest displacement and stress. The slipping area is none of them:
+    it jumps from point to point, in time, too. They are relative to the largest value
+    of the first, or to a thousandth of what others of the same kind reach, if that is
+    larger; energies are to the largest of them. What a run has no column for is zero,
+    but for the force of unilateral contact, which then is not compared."""
+    return differences(table, [(other, -1.0)])
+
+
+def interactions(table, first, second, joint):
+    """By how much two changes do not add up, for each quantity: the largest
+    |q - q_first - q_second + q_both| over the largest size, as above."""
+    return differences(table, [(first, -1.0), (second, -1.0), (joint, 1.0)])
+
+
+def largest_of(table, column):
+    """The largest value of a column, where it has values; 0 without any."""
+    values = table.get(column, np.zeros(0))
+    return float(max(values[np.isfinite(values)], default=0.0))
+
+
+def error_of_iterations(table, other):
+    """Up to where the error of the iterations of both runs explains a change: ten
+    times its largest bound, but not more than 1e-4."""
+    bound = max(largest_of(t, "algebraic_error") for t in (table, other))
+    # It is one in energy, quantities may have larger ones. Linear iterations are as
+    # exact as the lower limit; more than the upper one is a change, even if iterations
+    # that ended early may explain it.
+    return min(max(10.0 * max(bound, 0.0), 1e-8), 1e-4)
+
+
+def piecewise_linear(times, values):
+    """The function that is linear between these values, and constant before and
+    linear after them, as an expression of t. Points on a line between others are left
+    out."""
+    tolerance = 1e-9 * max(map(abs, values))
+    # As a sum of ramps. What is left out is followed, so that it cannot pile up: the
+    # slope after a new node leads from the sum so far to the value.
+    text, slope = exact(values[0]), 0.0
+    node, at_node = times[0], values[0]
+    for i in range(1, len(times)):
+        if abs(at_node + slope * (times[i] - node) - values[i]) <= tolerance:
+            continue
+        at_node += slope * (times[i - 1] - node)
+        node = times[i - 1]
+        new_slope = (values[i] - at_node) / (times[i] - node)
+        text += f"+({exact(new_slope - slope)})*max(0,t-{exact(node)})"
+        slope = new_slope
+    return text
+
+
+def contact_force_of(table):
+    """The size of the force of unilateral contact as an expression of t, linear
+    between the steps; empty without such contact."""
+    columns = [
+        table[f"contact_force_{axis}"]
+        for axis in "xyz"
+        if f"contact_force_{axis}" in table
+    ]
+    if not columns:
+        return ""
+    return piecewise_linear(
+        [float(t) for t in table["t"]], [hypot(*map(float, row)) for row in zip(*columns)]
+    )
+
+
+def bound(error):
+    """An error that is not known may be anything."""
+    return error if np.isfinite(error) else inf

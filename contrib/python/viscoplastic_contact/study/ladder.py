@@ -1,0 +1,440 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Refinement studies: ladders of runs of one scene, as its section `Study'
+describes them, and what follows from them: study.csv, study.json and study.md.
+
+The ladder `space' refines the mesh with the steps of the finest level of the study,
+`time' the steps on its finest mesh, `both' both; so that the part of the error that
+a ladder leaves alone is the smallest that the study has, and they share the finest
+run. Runs to a tolerance, which choose meshes and steps themselves, are a ladder
+`both' that halves the tolerance down to that of the scene. A scene without an exact
+solution gets a reference run one level finer in both (with runs to a tolerance: to
+half of the scene's), which comes before those that are compared with it; a few
+coarse runs tell whether it fits into the budget. If it does not, the study has
+fewer levels, but three at least."""
+
+import time
+from dataclasses import dataclass, field
+from math import isfinite, nan
+from typing import Optional
+
+from ..tables import UserError
+from .analysis import cost_of, expected_steps, fit_tolerance_runs, of_variant
+from .record import MethodVariant, RunKey, RunRecord
+from .report import analyze, prices_in_words, write_report
+from .runs import Interrupted
+from .scene import Scene
+from .timing import make_timing_runs, seconds_for_timing
+from .words import seconds_in_words
+
+LADDERS = ("space", "time", "both")
+# Without an exact solution: fewer do not show whether the finest run can serve as
+# a reference.
+FEWEST_LEVELS = 3
+
+
+@dataclass
+class PlannedRun:
+    """A run of a study, made or not."""
+
+    key: RunKey
+    # Those that the run belongs to: ladders share runs.
+    ladders: set = field(default_factory=set)
+    is_reference: bool = False
+    # Absent until the run is finished.
+    record: Optional[RunRecord] = None
+    # Why there is no record and will be none.
+    skipped: str = ""
+
+    @property
+    def is_missing(self):
+        return self.record is None and not self.skipped
+
+
+class Study:
+    """The study that the scene of these runs asks for."""
+
+    def __init__(self, runs, console):
+        self.runs, self.console, scene = runs, console, runs.scene
+        self.directory = runs.directory
+        self.start = time.monotonic()
+        self.last_report = 0.0
+        self.budget = scene.budget
+        self.ladders = scene.items("Study/Ladders") or ["both"]
+        self.reference_strategy = "tolerance" if scene.has_tolerance else "uniform"
+        self.strategies = scene.items("Study/Strategies") or [self.reference_strategy]
+        self.schemes = scene.items("Study/Time schemes") or [scene["Time/Scheme"]]
+        self.histories = scene.items("Study/Stress histories") or [
+            scene["Material/Stress history"]
+        ]
+        self.wanted_levels = self.n_levels = int(scene.number("Study/Levels"))
+        # Runs that only tell what they cost, and cost models, by method variant.
+        self.timings, self.costs = {}, {}
+        # Seconds that runs have taken beyond their steps, above all to start.
+        self.overheads = []
+        if "tolerance" in self.strategies and not scene.has_tolerance:
+            raise UserError(
+                "'Study/Strategies' has tolerance, but the scene has none to begin "
+                "with; set 'Error control/Tolerance', or take uniform or adaptive."
+            )
+        if (
+            not scene.has_exact_solution
+            and not scene.has_tolerance
+            and self.n_levels < FEWEST_LEVELS
+        ):
+            raise UserError(
+                f"'Study/Levels' = {self.n_levels} is too few for a scene without an "
+                "exact solution: whether its finest run can serve as a reference shows "
+                "only in three levels; take at least 3, or give 'Exact solution' or "
+                "'Error control/Tolerance'."
+            )
+        self.check_names()
+        self.make_plan()
+
+    def check_names(self):
+        """Of schemes and histories: the program knows them."""
+        scene = self.runs.scene
+        for scheme in self.schemes:
+            for history in self.histories:
+                if (scheme, history) != scene.key().variant[1:]:
+                    entries = [f"Time/Scheme={scheme}", f"Material/Stress history={history}"]
+                    Scene(self.runs.program, self.runs.files, self.runs.overrides + entries)
+
+    def levels_of(self, strategy, ladder):
+        """The runs of a method variant in a ladder, as levels of mesh and time."""
+        finest = self.n_levels - 1
+        if strategy == "tolerance":
+            coarsest = min(0, self.runs.scene.coarsest_tolerance_level())
+            levels = range(max(-finest, coarsest), 1)
+            return [(level, level) for level in levels] if ladder == "both" else []
+        if ladder not in self.ladders:
+            return []
+        return [
+            (finest if ladder == "time" else level, finest if ladder == "space" else level)
+            for level in range(self.n_levels)
+        ]
+
+    def make_plan(self):
+        """Decide which runs there are, the cheapest first."""
+        scene, finest, planned = self.runs.scene, self.n_levels - 1, {}
+
+        def add(variant, level, ladder, time_level=None):
+            key = RunKey(variant, level, level if time_level is None else time_level)
+            planned.setdefault(key, PlannedRun(key)).ladders.add(ladder)
+            return planned[key]
+
+        for strategy in self.strategies:
+            for scheme in self.schemes:
+                for history in self.histories:
+                    variant = MethodVariant(strategy, scheme, history)
+                    for ladder in LADDERS:
+                        for mesh_level, time_level in self.levels_of(strategy, ladder):
+                            add(variant, mesh_level, ladder, time_level)
+        if not scene.has_exact_solution:
+            # A scene with a tolerance has the scheme that is the best for it.
+            is_uniform, own = self.reference_strategy == "uniform", scene["Time/Scheme"]
+            scheme = self.schemes[0] if is_uniform or own not in self.schemes else own
+            first = MethodVariant(self.reference_strategy, scheme, self.histories[0])
+            last = finest if is_uniform else 0
+            if is_uniform:
+                for level in (last - 1, last):
+                    add(first, level, "both")
+            elif "tolerance" not in self.strategies:
+                # Two that tell how long it will take.
+                for level in (last - 3, last - 2):
+                    if level >= scene.coarsest_tolerance_level():
+                        add(first, level, "both")
+            add(first, last + 1, "both").is_reference = True
+
+        def work(run):
+            # Levels of tolerances end where those of meshes begin.
+            strategy = run.key.variant.strategy
+            shift = finest if strategy == "tolerance" else 0
+            levels = scene.dimension * (run.key.mesh_level + shift)
+            levels += run.key.time_level + shift
+            return (1.0 if strategy == "uniform" else 1.5) * 2.0**levels
+
+        # What is known early predicts the rest.
+        self.plan = sorted(planned.values(), key=work)
+
+    def records(self):
+        """Those of finished runs, the cheapest first."""
+        return [run.record for run in self.plan if run.record]
+
+    def missing(self):
+        return [run for run in self.plan if run.is_missing]
+
+    def reference(self):
+        """What quantities are compared with: the reference run, or the finest
+        finished uniform run in its place; None if there is none."""
+        finest = None
+        for run in self.plan:
+            if run.record and run.is_reference:
+                return run.record
+            strategy = run.key.variant.strategy
+            if run.record and strategy == self.reference_strategy and "both" in run.ladders:
+                finest = run.record
+        return finest
+
+    def timed(self, variant):
+        """The records of a method variant that tell what its runs cost: all its
+        finished runs, and those that were made for that alone."""
+        return of_variant(self.records(), variant) + self.timings.get(variant, [])
+
+    def variants(self):
+        """Those of which there are finished runs, in the order of the plan."""
+        found = [run.key.variant for run in self.plan if run.record and not run.is_reference]
+        return list(dict.fromkeys(found))
+
+    def levels_in_words(self):
+        """Why the ladders have fewer levels than `Study/Levels'; empty if they do
+        not."""
+        if self.n_levels == self.wanted_levels:
+            return ""
+        return (
+            f"'Study/Budget' does not reach the reference run of {self.wanted_levels} "
+            f"levels: the ladders have {self.n_levels}."
+        )
+
+    def elapsed(self):
+        return time.monotonic() - self.start
+
+    def left(self):
+        """Seconds in the budget."""
+        return self.budget - self.elapsed()
+
+    def expected_seconds(self, key):
+        """What a run will take with its start, from those that are finished; not a
+        number if that cannot be known yet."""
+        overhead = sum(self.overheads) / max(1, len(self.overheads))
+        return self.seconds_of_run(key) + overhead
+
+    def seconds_of_run(self, key):
+        scene, variant, records = self.runs.scene, key.variant, self.records()
+        to_tolerance = variant.strategy == "tolerance"
+        # Those of the same variant, or else as similar as there are.
+        known = of_variant(records, variant)
+        if not known:
+            known = [r for r in records if r.key.variant.strategy == variant.strategy]
+        if not known and not to_tolerance:
+            known = [r for r in records if r.key.variant.strategy != "tolerance"]
+        if not known:
+            return nan
+        if to_tolerance:
+            model = fit_tolerance_runs(scene, known, "estimate_total", None)
+            return model.predict(scene.tolerance(key)).seconds
+        if variant not in self.costs:
+            self.costs[variant] = cost_of(known)
+        finest = max(known, key=lambda record: record.key.mesh_level)
+        levels = key.mesh_level - finest.key.mesh_level
+        steps = expected_steps(scene, known, key)
+        return self.costs[variant].seconds(
+            finest.number("dofs") * 2.0 ** (scene.dimension * levels),
+            steps,
+            scene.n_set_ups(variant.strategy, steps, scene.planned_steps(key)),
+        )
+
+    def seconds_left(self):
+        """What the runs that are missing will take; not a number if that of some
+        cannot be known yet."""
+        return sum(self.expected_seconds(run.key) for run in self.missing())
+
+    def find_finished(self):
+        for run in self.plan:
+            run.record = self.runs.find(run.key)
+        self.costs.clear()
+
+    def make(self, run):
+        """Make a run unless it takes too long."""
+        name, seconds = self.runs.name(run.key), self.expected_seconds(run.key)
+        run.record = None  # such as that of a coarse run before there was a reference
+        is_known, left = isfinite(seconds), self.left()
+        if (seconds if is_known else 0.0) > left:
+            reason = f"would take about {seconds_in_words(seconds)}, and " if is_known else ""
+            run.skipped = (
+                f"{reason}{seconds_in_words(max(0.0, left))} of 'Study/Budget' = "
+                f"{seconds_in_words(self.budget)} were left"
+            )
+            self.console.say(f"{name}: left out,{' it' if is_known else ''} {run.skipped}")
+            return
+        about = f", about {seconds_in_words(seconds)}" if is_known else ""
+        self.console.status(f"{name}: running{about}")
+        start = self.elapsed()
+        outcome = self.runs.make(run.key)
+        run.record = outcome.record
+        if run.record:
+            spent = run.record.number("seconds_total")
+            self.overheads.append(max(0.0, self.elapsed() - start - spent))
+        self.costs.clear()
+        if outcome.interruption:
+            self.stop(outcome.interruption, f"run {name}")
+        if not run.record:
+            run.skipped = f"failed: {outcome.failure}"
+            self.console.say(f"{name} {run.skipped}")
+            return
+        self.announce(run.record)
+        # The fits of a large study take as long as a small run.
+        if self.elapsed() - self.last_report > 10.0:
+            self.report(False)
+            self.last_report = self.elapsed()
+
+    def stop(self, name, where):
+        self.report(False)
+        raise Interrupted(
+            f"{name} has ended the study in the {where}; the same command goes on."
+        )
+
+    def announce(self, record):
+        """Print what a finished run has given and how long the others will take."""
+        text = (
+            f"{record.name}: {round(record.number('cells'))} cells, "
+            f"{record.number('steps'):.3g} steps"
+        )
+        for column, word in (
+            ("error_energy", "error "),
+            ("error_stress", "of the stress "),
+            ("estimate_total", "estimate "),
+            ("estimate_quantity", "of the quantity "),
+        ):
+            if isfinite(record.number(column)):
+                text += f", {word}{record.number(column):.3g}"
+        text += ", " + seconds_in_words(record.number("seconds_total"))
+        n_left = len(self.missing())
+        if n_left:
+            seconds, in_budget = self.seconds_left(), max(0.0, self.left())
+            text += f"; {n_left} left"
+            if isfinite(seconds):  # otherwise some are of an unknown kind
+                text += f", about {seconds_in_words(seconds)}"
+            if seconds > in_budget:
+                text += f" of which {seconds_in_words(in_budget)} are in the budget"
+        self.console.say(text)
+
+    def make_timings(self):
+        """Time the method variants on meshes for which prices are wanted and that no
+        finished run has."""
+        for result in analyze(self):
+            if result.variant.strategy == "tolerance":
+                continue
+            wanted = [price for price in result.prices if price.run]
+            mesh_level = max((price.run.mesh_level for price in wanted), default=0)
+            in_budget = [price.run.seconds for price in wanted if price.is_in_budget]
+            spent = sum(record.number("seconds_total") for record in result.records)
+            seconds = seconds_for_timing(spent, max(in_budget, default=0.0))
+            found, interruption = make_timing_runs(
+                self.runs,
+                result.records,
+                max(0, mesh_level),
+                min(seconds, self.left()),
+                self.console,
+            )
+            for record in found:
+                self.announce(record)
+            self.timings[result.variant] = found
+            if interruption:
+                self.stop(interruption, f"run for timing of {result.variant.name}")
+
+    def can_take_fewer_levels(self):
+        return self.reference_strategy != "tolerance" and self.n_levels > FEWEST_LEVELS
+
+    def make_first_runs(self):
+        """Make the coarse runs without a reference that tell how long the reference
+        run takes."""
+        last = self.plan[-1].key
+        self.find_finished()
+        for run in self.plan:
+            if (
+                run.record is None
+                and run.key.variant == last.variant
+                and run.key.mesh_level == run.key.time_level
+                and run.key.mesh_level + 2 < last.mesh_level
+            ):
+                self.make(run)
+                # Two tell that there will have to be fewer levels.
+                if (
+                    len(self.records()) >= 2
+                    and self.can_take_fewer_levels()
+                    and self.seconds_left() > self.left()
+                ):
+                    return
+
+    def find_reference(self):
+        """Whether there is a finished reference run, also of an earlier call that had
+        to take fewer levels; the plan has its levels then."""
+        while self.n_levels >= FEWEST_LEVELS:
+            self.make_plan()
+            self.runs.reference = self.plan[-1].key
+            record = self.runs.find(self.plan[-1].key)
+            # Of fewer levels, as those of an earlier call may be, unless the budget
+            # reaches further now: the next one has twice the steps on 2^dim times the
+            # cells, and all other runs take about as long as it.
+            next_one = 2.0 ** (self.runs.scene.dimension + 2)
+            if record and (
+                self.n_levels == self.wanted_levels
+                or next_one * record.number("seconds_total") > self.budget
+            ):
+                if self.n_levels < self.wanted_levels:
+                    self.console.say(self.levels_in_words())
+                return True
+            if self.reference_strategy == "tolerance":
+                break
+            self.n_levels -= 1
+        self.n_levels = self.wanted_levels
+        self.make_plan()
+        self.runs.reference = None
+        return False
+
+    def make_reference(self):
+        """Make the reference run, if there is time for it, of fewer levels if need
+        be."""
+        if self.find_reference():
+            return
+        while True:
+            key = self.plan[-1].key  # nothing costs more
+            self.runs.reference = key
+            if self.runs.find(key):
+                return
+            self.runs.reference = None
+            self.make_first_runs()
+            if not self.can_take_fewer_levels() or not self.seconds_left() > self.left():
+                break
+            self.n_levels -= 1
+            self.make_plan()
+        if self.n_levels < self.wanted_levels:
+            self.console.say(self.levels_in_words())
+        last = self.plan[-1]
+        self.runs.reference = last.key
+        self.make(last)
+        if last.record is None:
+            self.runs.reference = None
+            self.console.say("The study goes on without a reference run.")
+
+    def run(self):
+        """Make what is missing. Raises Interrupted, and UserError if not a single run
+        could be computed."""
+        self.runs.lock_directory()
+        scene = self.runs.scene
+        self.console.say(f"Study of {scene.file}: {len(self.plan)} runs")
+        if not scene.has_exact_solution:
+            self.make_reference()
+        self.find_finished()
+        if self.records():
+            self.console.say(f"Finished already: {len(self.records())}")
+        for run in self.plan:
+            if run.is_missing:
+                self.make(run)
+        if not self.records():
+            skipped = [run for run in self.plan if run.skipped]
+            reason = "'Study/Budget' leaves no time."
+            if skipped:
+                reason = f"the run {self.runs.name(skipped[-1].key)} {skipped[-1].skipped}"
+            raise UserError(f"No run of the study could be computed: {reason}")
+        self.make_timings()
+        self.report(True)
+        self.console.say(
+            f"{prices_in_words(self)}Results in {self.directory}\n"
+            f"Pictures: contrib/plot {self.directory}"
+        )
+
+    def report(self, is_finished):
+        """Write the files, which say whether the study is finished."""
+        if self.records():
+            write_report(self, is_finished)

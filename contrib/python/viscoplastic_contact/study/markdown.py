@@ -1,0 +1,392 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""study.md: the runs of a study, orders, fits, prices and the reference in tables and
+sentences."""
+
+from math import exp, isfinite, log, nan
+from pathlib import Path
+
+from .analysis import MEASURES, error_of, extrapolate
+from .price import next_refinement, price_in_words
+from .record import FIELD_ERRORS
+from .solvers import DIRECT, SOLVERS, choose_solver
+from .tolerance import exponents_in_words, tolerance_price_in_words
+from .words import digits, number_or_dash, seconds_in_words, table_head, table_row
+
+
+def markdown(study, results, about, is_finished):
+    scene = study.runs.scene
+    text = (
+        f"# Study of {scene.file}\n\n"
+        f"{'' if is_finished else '**Not finished yet.** '}"
+        f"viscoplastic_contact {about['version']}, {about['ranks']} MPI rank(s), "
+        f"{about['machine']}, {about['date']}.\n\n"
+        "The ladder `space` refines the mesh with the steps of the finest level of the "
+        "study, `time` the steps on its finest mesh, `both` both, which share the "
+        "finest run: what a ladder leaves alone is as good as the study has it, and its "
+        "part of the error is named below. Errors are relative to the largest norm over "
+        "all times. In adaptive runs, h is the width of a uniform mesh with as many "
+        "cells. Runs to a tolerance choose meshes and steps themselves: their cells and "
+        "unknowns are means over the steps.\n"
+    )
+    if scene.has_step_control:
+        text += (
+            "\nThe steps are chosen by their error, to the tolerance TOL, `Step "
+            "control/Tolerance`: the ladder `time` divides it by 2 (by 4 with Heun's "
+            "method), so that steps are half as long; its orders are against TOL, and k "
+            "is the longest step of a run.\n"
+        )
+    for result in results:
+        text += f"\n## {result.variant.name}\n\n{runs_table(study, result)}\n"
+        if result.tolerance_model:
+            text += tolerance_results(study, result)
+        elif result.variant.strategy != "tolerance":
+            text += "Observed orders between neighbours:\n\n"
+            text += f"{orders_table(study, result)}\n"
+        if result.model:
+            text += f"{fits_in_words(study, result)}\n### Price list\n\n"
+            text += prices_table(study, result)
+        elif not result.tolerance_model:
+            text += "No price list: the error is known of fewer than three runs.\n"
+    text += f"\n## Reference\n\n{reference_in_words(study)}\n## Left out\n\n"
+    skipped = "".join(
+        f"- `{study.runs.name(run.key)}`: {run.skipped}.\n"
+        for run in study.plan
+        if run.skipped
+    )
+    fewer = study.levels_in_words()
+    if fewer:
+        skipped = fewer + ("\n\n" + skipped if skipped else "\n")
+    directory = study.runs.directory
+    text += (skipped or "Nothing.\n") + f"\n## Pictures\n\n    contrib/plot {directory}\n"
+    for picture in sorted(Path(directory).glob("*.png")):
+        text += f"\n![{picture.stem}]({picture.name})\n"
+    return text
+
+
+def shown_measures(study):
+    """Errors to show: those of the fields or estimates that are known, or else
+    quantities."""
+    result = [
+        measure
+        for measure in (*FIELD_ERRORS, "estimate_total", "estimate_quantity")
+        if any(
+            isfinite(error_of(record, measure, study.reference()))
+            for record in study.records()
+        )
+    ]
+    if not result or not study.runs.scene.has_exact_solution:
+        result.append("quantities")
+    return result
+
+
+def runs_table(study, result):
+    columns = {"h": "h", "k": "k"}
+    if result.variant.strategy == "tolerance":
+        columns = {"tolerance": "tolerance"}
+    elif study.runs.scene.has_step_control:
+        columns = {"h": "h", "step_tolerance": "TOL", "k": "k"}
+    columns |= {
+        "cells": "cells",
+        "dofs": "unknowns",
+        "steps": "steps",
+        "seconds_total": "seconds",
+        "peak_memory_MB": "MB",
+    }
+    more = shown_measures(study) + [
+        column
+        for column in ("effectivity", "effectivity_recovery")
+        if isfinite(result.records[0].number(column))
+    ]
+    columns |= {name: name for name in more}
+    text = table_head(["run", *columns.values()])
+    for record in result.records:
+        errors = (error_of(record, column, study.reference()) for column in columns)
+        text += table_row([f"`{record.name}`", *map(number_or_dash, errors)])
+    return text
+
+
+def runs_of(study, variant, ladder):
+    """The finished runs of a method variant in a ladder, the coarsest first."""
+    return [
+        run.record
+        for run in study.plan
+        if run.record and run.key.variant == variant and ladder in run.ladders
+    ]
+
+
+def ratio_of_logs(numerator, denominator):
+    """log(numerator)/log(denominator); not a number where that is none."""
+    if not (numerator > 0.0 and isfinite(numerator)) or not denominator > 0.0:
+        return nan
+    return log(numerator) / log(denominator) if denominator != 1.0 else nan
+
+
+def quotient(a, b):
+    return a / b if b else nan
+
+
+def orders_table(study, result):
+    """Orders between neighbors of each ladder."""
+    measures, reference = shown_measures(study), study.reference()
+    text = table_head(["ladder", "from", "to", *measures])
+    for ladder in ("space", "time", "both"):
+        runs = runs_of(study, result.variant, ladder)
+        for one, two in zip(runs, runs[1:]):
+            sizes = [r.step_measure if ladder == "time" else r.number("h") for r in (one, two)]
+            orders = [
+                ratio_of_logs(
+                    quotient(
+                        error_of(one, measure, reference), error_of(two, measure, reference)
+                    ),
+                    sizes[0] / sizes[1],
+                )
+                for measure in measures
+            ]
+            if any(map(isfinite, orders)):
+                text += table_row(
+                    [ladder, f"`{one.name}`", f"`{two.name}`", *map(number_or_dash, orders)]
+                )
+    return text
+
+
+def fits_in_words(study, result):
+    error, cost, steps = result.model.error, result.model.cost, result.model.chosen_steps
+    # What stands for the time steps in the law.
+    k = "TOL" if steps else "k"
+    of_h, of_k = (
+        f"{digits(error.c_1)} h^{digits(error.p)}",
+        f"{digits(error.c_2)} {k}^{digits(error.q)}",
+    )
+    text = f"Fit to the {MEASURES[result.measure]}, relative:\n\n    error = "
+    if error.m == 1.0:
+        text += f"{of_h} + {of_k}\n\n"
+    else:
+        text += (
+            f"(({of_h})^2 + ({of_k})^2)^(1/2)\n\nThe parts add up in squares, as "
+            "orthogonal ones do: this fits better than their sum. "
+        )
+    if not error.is_separable:
+        text += (
+            f"The runs refine h and {k} together, so that their parts cannot be told "
+            "apart; half of the error is given to each. "
+        )
+    for is_fitted, name in (
+        (error.p_is_fitted, "p, that of h,"),
+        (error.q_is_fitted, f"q, that of {k},"),
+    ):
+        if not is_fitted:
+            text += (
+                f"The exponent {name} does not show in these runs and is the "
+                "theoretical 1. "
+            )
+    if "is_difference" in result.records[0].numbers and result.measure in FIELD_ERRORS:
+        text += (
+            "This is the law of the errors themselves; what was measured are differences "
+            "to the reference, whose own error the fit subtracts. "
+        )
+    worst, finest = result.records[error.misfit.worst_sample], result.records[-1]
+    of_mesh = error.first(finest.number("h"))
+    share = quotient(of_mesh, of_mesh + error.second(finest.step_measure))
+    text += (
+        f"The fit misses {error.misfit.n_samples} runs by a factor of "
+        f"{digits(exp(error.misfit.rms))} (root mean square) and "
+        f"{digits(error.misfit.worst_factor)} at worst (`{worst.name}`).\n"
+        f"At the finest run `{finest.name}` the mesh has {100.0 * share:.0f} % of the sum "
+        "of both parts, the steps have the rest.\n\n"
+    )
+    if steps:
+        text += (
+            f"The number of steps to their tolerance:\n\n    steps = {digits(steps.c_1)} "
+            f"TOL^-{digits(steps.p)} + {digits(steps.c_2)}\n\nwhich misses by a factor of "
+            f"{digits(exp(steps.misfit.rms))} and {digits(steps.misfit.worst_factor)} at "
+            "worst.\n\n"
+        )
+
+    def power(fit):
+        formula = f"{digits(fit.c_1)} dofs^{digits(fit.p)}"
+        return formula + (f" + {digits(fit.c_2)}" if fit.c_2 > 0.0 else "")
+
+    meshes = "meshes" if result.variant.strategy == "adaptive" else "1"
+    for name in SOLVERS:
+        if name in cost.solvers:
+            fit = cost.solvers[name]
+            text += (
+                f"With {'the direct solver' if name == DIRECT else name}, measured up to "
+                f"{digits(fit.largest)} unknowns:\n\n    seconds = {meshes} "
+                f"({power(fit.set_up)})\n            + steps ({power(fit.step)})\n\n"
+            )
+    timed = study.timed(result.variant)
+    text += (
+        f"The seconds miss {cost.misfit.n_samples} runs by a factor of "
+        f"{digits(exp(cost.misfit.rms))} (root mean square) and "
+        f"{digits(cost.misfit.worst_factor)} at worst "
+        f"(`{timed[cost.misfit.worst_sample].name}`), the memory by "
+        f"{digits(exp(cost.memory_misfit.rms))}. One power alone, seconds = "
+        f"{digits(cost.simple.c_1)} dofs^{digits(cost.simple.p)} steps, misses by "
+        f"{digits(exp(cost.simple.misfit.rms))} and "
+        f"{digits(cost.simple.misfit.worst_factor)} at worst.\n"
+    )
+    listed = ", ".join(
+        f"`{record.name}` ({digits(record.number('dofs'))} unknowns, "
+        f"{choose_solver(record.demand)}, "
+        f"{seconds_in_words(record.number('seconds_total'))})"
+        for record in timed
+        if record.key.is_timing
+    )
+    return text + (f"Runs that only tell what they cost: {listed}.\n" if listed else "")
+
+
+def prices_table(study, result):
+    text = table_head(
+        [
+            *("error", "mesh level", "h", "steps"),
+            "TOL" if result.model.chosen_steps else "k",
+            *("unknowns", "solver", "seconds", "MB", "half the error costs"),
+        ]
+    )
+    beyond = ""
+    for price in result.prices:
+        if not price.is_in_budget:
+            beyond += f"- {price_in_words(result.model, price, study.budget)}\n"
+            continue
+        run = price.run
+        text += table_row(
+            [
+                digits(price.error),
+                f"{run.mesh_level}{' (far)' if price.is_far else ''}",
+                digits(run.h),
+                run.steps,
+                digits(run.k),
+                digits(run.dofs),
+                run.solver,
+                digits(run.seconds, 2),
+                digits(run.memory, 2),
+                f"{digits(price.halving, 2)} times",
+            ]
+        )
+    text += "\n" + (beyond + "\n" if beyond else "")
+    return text + next_refinement(result.model) + "\n"
+
+
+def tolerance_results(study, result):
+    """On runs to a tolerance: exponents, fits, prices."""
+    text = "Observed exponents against 1/error between neighbours:\n\n"
+    text += table_head(["from", "to", "seconds", "cells", "steps"])
+    records, reference, measure = result.records, study.reference(), result.measure
+    for one, two in zip(records, records[1:]):
+        of_error = quotient(
+            error_of(one, measure, reference), error_of(two, measure, reference)
+        )
+        exponents = [
+            ratio_of_logs(quotient(two.number(column), one.number(column)), of_error)
+            for column in ("seconds_total", "cells", "steps")
+        ]
+        if isfinite(of_error) and of_error > 0.0:
+            text += table_row(
+                [f"`{one.name}`", f"`{two.name}`", *map(number_or_dash, exponents)]
+            )
+
+    model = result.tolerance_model
+    text += (
+        f"\nFits to the {MEASURES[measure]}, relative, and to what the runs cost:\n\n"
+        f"    error   = {digits(model.error.c_1)} tolerance^{digits(model.error.p)}\n"
+    )
+    for name in ("seconds", "cells", "steps"):
+        fit = getattr(model, name)
+        text += f"    {name:7} = {digits(fit.c_1)} tolerance^-{digits(fit.p)}"
+        text += f" + {digits(fit.c_2)}\n" if fit.c_2 > 0.0 else "\n"
+    text += f"\n{exponents_in_words(model)}"
+    if not model.error.p_is_fitted:
+        text += " The exponent of the error does not show in these runs and is taken for 1."
+    if not model.seconds.p_is_fitted:
+        text += " That of the seconds does not show either and is the theoretical one."
+
+    def missed(misfit):
+        return (
+            f"{digits(exp(misfit.rms))} and {digits(misfit.worst_factor)} "
+            f"(`{records[misfit.worst_sample].name}`)"
+        )
+
+    text += (
+        " The fits miss the runs by factors (root mean square and worst) of "
+        f"{missed(model.error.misfit)} in the error and {missed(model.seconds.misfit)} "
+        "in the seconds.\n\n### Price list\n\n"
+    )
+    text += table_head(
+        "error,tolerance,cells,unknowns,steps,seconds,MB,half the error costs".split(",")
+    )
+    beyond = ""
+    for price in result.tolerance_prices:
+        if not price.is_in_budget:
+            beyond += f"- {tolerance_price_in_words(model, price, study.budget)}\n"
+            continue
+        run = price.run
+        text += table_row(
+            [
+                digits(price.error),
+                digits(run.tolerance) + (" (far)" if price.is_far else ""),
+                digits(run.cells),
+                digits(run.dofs),
+                digits(run.steps),
+                digits(run.seconds, 2),
+                digits(run.memory, 2),
+                f"{digits(price.halving, 2)} times",
+            ]
+        )
+    return f"{text}\n{beyond}"
+
+
+def reference_in_words(study):
+    runs, reference, text = study.runs, study.reference(), ""
+    is_exact, to_tolerance = runs.scene.has_exact_solution, runs.scene.has_tolerance
+    if is_exact:
+        text += "Errors of fields are those to the exact solution of the scene. "
+    elif runs.reference:
+        text += (
+            f"Errors of fields are differences to those of the run "
+            f"`{runs.name(runs.reference)}` at the ends of the phases of time; its own "
+            "error, unknown, is part of them. "
+        )
+        if reference and to_tolerance:
+            error = number_or_dash(reference.number("estimate_total"))
+            text += f"The error bar of that run itself is {error}. "
+    if reference:
+        text += (
+            "Quantities of interest are compared with those of the run "
+            f"`{reference.name}`.\n"
+        )
+    for run in study.plan:
+        if run.is_reference and not run.record:
+            text += (
+                f"\nThe reference run `{runs.name(run.key)}` is missing: {run.skipped}. "
+                "The finest run there is has taken its place, and errors near it are too "
+                "small.\n"
+            )
+    # Halved tolerances leave the order of neighbors to chance.
+    if to_tolerance:
+        return text
+    # The finest three of those with equal levels.
+    last = study.plan[-1].key.variant
+    diagonal = runs_of(study, last._replace(strategy="uniform"), "both")[-3:]
+    if len(diagonal) < 3:
+        return text
+    names = [f"`{record.name}`" for record in diagonal]
+    text += (
+        "\nRichardson check of the quantities at the end, in the runs "
+        f"{names[0]}, {names[1]} and {names[2]}:\n\n"
+    )
+    text += table_head(
+        "quantity,values,order,extrapolated,error of the last,as a reference".split(",")
+    )
+    for r in extrapolate(diagonal):
+        text += table_row(
+            [
+                r.quantity,
+                ", ".join(digits(value, 5) for value in r.values),
+                number_or_dash(r.order),
+                number_or_dash(r.extrapolated, 5),
+                number_or_dash(r.error, 2),
+                "good" if r.is_trustworthy else "not to be trusted",
+            ]
+        )
+    return text

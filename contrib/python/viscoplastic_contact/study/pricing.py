@@ -1,0 +1,402 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What an error costs, from a few short runs before a long one; and that run. The
+short runs are those of a study of the scene, so that finished ones are used
+again."""
+
+from dataclasses import dataclass, field
+from math import isfinite
+from pathlib import Path
+from typing import Optional
+
+from ..program import RunError, sentence
+from ..tables import UserError
+from .analysis import (
+    MEASURES,
+    best_measure,
+    cost_of,
+    error_of,
+    expected_steps,
+    fit_tolerance_runs,
+    fit_work_precision,
+)
+from .phases import n_steps
+from .price import (
+    Price,
+    WorkPrecisionModel,
+    cheapest,
+    list_prices,
+    next_refinement,
+    price_in_words,
+)
+from .record import RunKey
+from .runs import Interrupted, launch
+from .scene import LARGEST_TOLERANCE
+from .timing import affordable_memory, make_timing_runs, seconds_for_timing
+from .tolerance import exponents_in_words, price_of, tolerance_price_in_words
+from .words import digits, seconds_in_words
+
+# Meshes with so many cells are small enough to be pilots themselves.
+SMALL_MESH = 1500
+# The smallest tolerance of a pilot over the one that is priced, how many pilots
+# there are at least, and how many count: coarser ones are too coarse to say how the
+# finest go on.
+PILOT_FACTOR, N_PILOTS, N_FITTED = 1.4, 2, 4
+
+NO_ERROR = (
+    "A price needs an error to go by, but the pilot runs know none: neither an error bar "
+    "nor an exact solution has given one."
+)
+
+
+class PilotFailure(UserError):
+    """A pilot run that fails."""
+
+    def __init__(self, reason):
+        super().__init__(f"The pilot runs for the price fail: {reason}")
+
+
+def pilot_run(runs, key, console):
+    """The record of a run, which is computed unless it is finished already."""
+    record = runs.find(key)
+    if record:
+        return record
+    console.status(f"Pilot run {runs.name(key)}")
+    outcome = runs.make(key)
+    if outcome.interruption:
+        raise Interrupted(
+            f"{outcome.interruption} has ended the pilot run {runs.name(key)}; the same "
+            "command goes on."
+        )
+    if not outcome.record:
+        raise PilotFailure(outcome.failure)
+    return outcome.record
+
+
+def runs_in_words(records, measure):
+    """Runs that have been made, a line each. Without a measure they have no error,
+    and only tell what they cost."""
+    text = ""
+    for record in records:
+        text += (
+            f"  {record.name}: {round(record.number('cells'))} cells, "
+            f"{record.number('steps'):g} steps, "
+        )
+        if measure:
+            text += f"error {digits(error_of(record, measure, None))}, "
+        text += seconds_in_words(record.number("seconds_total"))
+        text += "\n" if measure else ", for its cost alone\n"
+    return text
+
+
+def seconds_of(records):
+    return sum(record.number("seconds_total") for record in records)
+
+
+# With given meshes and steps
+
+
+@dataclass
+class UniformPrice:
+    """What an error costs with given meshes and steps."""
+
+    measure: str
+    model: WorkPrecisionModel
+    price: Price
+
+
+def finest_time_level(scene, must_save):
+    """That of the finest pilots: coarser than the scene where it has so many steps,
+    or so small a tolerance of them, that pilots twice as coarse still tell
+    something. Where each is as fine as the scene in space, it must save steps."""
+    for level in range(-2 if must_save else -1, 1):
+        coarsest = scene.key()._replace(time_level=level - 1)
+        if scene.has_step_control:
+            may_be = scene.step_tolerance(coarsest) <= LARGEST_TOLERANCE
+        else:
+            fewest = 2.0 ** (2 - level) * len(scene.phases)
+            may_be = n_steps(scene.phases) >= fewest
+        if may_be:
+            return level
+    return 1
+
+
+def make_pilots(runs, finest, has_coarser, console):
+    """Pilots on two mesh levels, the finer one of which is that of the finest, or on
+    that alone; with steps as long as there, and twice as long."""
+    return [
+        pilot_run(
+            runs,
+            RunKey(finest.variant, finest.mesh_level + m, finest.time_level + t),
+            console,
+        )
+        for m in ((-1, 0) if has_coarser else (0,))
+        for t in (-1, 0)
+    ]
+
+
+def finer_pilot(runs, pilots, seconds, console):
+    """Pilots on one mesh do not tell what the mesh does to the error: one more on a
+    finer mesh, with the longest steps of these, if it takes no more than so many
+    seconds. Without it, or where it fails, the law is a theoretical one."""
+    scene, cost, key = runs.scene, cost_of(pilots), pilots[0].key
+    key = key._replace(mesh_level=key.mesh_level + 1)
+    steps = expected_steps(scene, pilots, key)
+    n_set_ups = scene.n_set_ups(key.variant.strategy, steps, scene.planned_steps(key))
+    dofs = 2.0**scene.dimension * pilots[0].number("dofs")
+    if not runs.find(key) and (
+        cost.seconds(dofs, steps, n_set_ups) > seconds
+        or cost.memory(dofs, steps, n_set_ups) > affordable_memory()
+    ):
+        return []
+    try:
+        return [pilot_run(runs, key, console)]
+    except PilotFailure:
+        return []
+
+
+def price_with_given_meshes(runs, eps, seconds, console):
+    """The price of the error eps of the scene with given meshes and steps, by its own
+    strategy for meshes, from pilot runs: on coarser meshes with longer steps, or,
+    where the scene is small already, on finer ones; four of them, h and k (or the
+    tolerance of the steps) each halved alone and both. A mesh that cannot be made
+    coarser is the only one of two, beside a third run on the next finer mesh where
+    there is time for it. Where the run is worth so many seconds, this one and timing
+    runs take no longer than a share of them, see seconds_for_timing().
+
+    Prints what it makes and finds."""
+    scene, budget = runs.scene, runs.scene.budget
+    is_small, n_coarser = scene.n_cells <= SMALL_MESH, scene.n_coarser_meshes()
+    # The mesh of a file that is not refined has nothing coarser.
+    has_two_meshes = is_small or n_coarser >= 1
+    mesh_level = 1 if is_small else -1 if n_coarser >= 2 else 0
+    time_level = finest_time_level(scene, not has_two_meshes)
+    runs.lock_directory()
+    while True:
+        finest = RunKey(scene.key().variant, mesh_level, time_level)
+        try:
+            pilots = make_pilots(runs, finest, has_two_meshes, console)
+            break
+        except PilotFailure:
+            # Long steps may be unstable or fail otherwise: then shorter ones follow.
+            time_level += 1
+            if time_level > 1:
+                raise
+    measure = best_measure(pilots, None, 2)
+    if not measure:
+        raise UserError(NO_ERROR)
+
+    def fit(timed):
+        return fit_work_precision(scene, pilots, timed, measure, None)
+
+    def seconds_left(price):
+        return seconds_for_timing(seconds_of(pilots), min(price, budget, seconds))
+
+    model = fit(pilots)
+    if not has_two_meshes:
+        wanted = cheapest(model, eps)
+        if wanted:
+            pilots += finer_pilot(runs, pilots, seconds_left(wanted.seconds), console)
+            model = fit(pilots)
+    console.say("Pilot runs:\n" + runs_in_words(pilots, measure), end="")
+    if not has_two_meshes and len(pilots) == 2:
+        console.say(
+            "A finer mesh would take too long for a pilot, and there is none coarser: the "
+            "error of the mesh is taken to be of first order in h."
+        )
+    # A run on a mesh that is much finer than those of the pilots may have another
+    # solver.
+    timings, wanted = [], cheapest(model, eps)
+    if wanted:
+        timings, interruption = make_timing_runs(
+            runs, pilots, wanted.mesh_level, seconds_left(wanted.seconds), console
+        )
+        if interruption:
+            raise Interrupted(
+                f"{interruption} has ended the timing runs; the same command goes on."
+            )
+    console.say(runs_in_words(timings, ""), end="")
+    model = fit(pilots + timings)
+    console.say(
+        f"Prices by the {MEASURES[measure]}, from pilots of "
+        f"{seconds_in_words(seconds_of(pilots + timings))}:"
+    )
+    prices = list_prices(model, [2.0 * eps, eps, 0.5 * eps], budget)
+    for price in prices:
+        console.say(f"  {price_in_words(model, price, budget)}")
+    return UniformPrice(measure, model, prices[1])
+
+
+# To a tolerance
+
+
+def price_to_tolerance(runs, eps, console):
+    """The measure and the price of the error eps of a scene with a tolerance, from
+    pilot runs to larger ones: the tolerance of the scene times powers of two, from
+    the largest that makes sense down to the last that is well above the one for eps,
+    and does not take half of the budget.
+
+    Prints what it makes and finds."""
+    scene, budget, pilots = runs.scene, runs.scene.budget, []
+    variant = scene.key().variant._replace(strategy="tolerance")
+    runs.lock_directory()
+    level, measure = scene.coarsest_tolerance_level(), ""
+    while True:
+        key = RunKey(variant, level, level)
+        if len(pilots) >= N_PILOTS:
+            measure = best_measure(pilots, None, N_PILOTS)
+            if not measure:
+                raise UserError(NO_ERROR)
+            model = fit_tolerance_runs(scene, pilots[-N_FITTED:], measure, None)
+            following = scene.tolerance(key)
+            if (
+                following < PILOT_FACTOR * model.tolerance_for(eps)
+                or model.predict(following).seconds > 0.5 * budget
+            ):
+                break
+        pilots.append(pilot_run(runs, key, console))
+        level += 1
+    console.say(
+        f"Pilot runs to larger tolerances:\n{runs_in_words(pilots, measure)}"
+        f"Prices by the {MEASURES[measure]}, from pilots of "
+        f"{seconds_in_words(seconds_of(pilots))}:"
+    )
+    for error in (2.0 * eps, eps, 0.5 * eps):
+        price = price_of(model, error, budget)
+        console.say(f"  {tolerance_price_in_words(model, price, budget)}")
+    console.say(exponents_in_words(model))
+    price = price_of(model, eps, budget)
+    if not price.is_in_budget:
+        raise UserError(
+            f"{tolerance_price_in_words(model, price, budget)} Raise 'Study/Budget' or take "
+            "a larger error."
+        )
+    return measure, price
+
+
+# The run
+
+
+@dataclass
+class ChosenRun:
+    """The run that has been chosen, with what is set for it, and what it is expected
+    to give: error, seconds, memory, and cells and steps of runs that choose them."""
+
+    key: RunKey
+    assignments: list
+    measure: str
+    expected: dict = field(default_factory=dict)
+    price: Optional[Price] = None
+
+
+def choose_mesh_and_steps(runs, eps, console):
+    budget = runs.scene.budget
+    found = price_with_given_meshes(runs, eps, budget, console)
+    console.say(next_refinement(found.model))
+    if not found.price.is_in_budget:
+        raise UserError(
+            f"{price_in_words(found.model, found.price, budget)} Raise 'Study/Budget' or "
+            "take a larger error."
+        )
+    run = found.price.run
+    key = runs.scene.key()._replace(mesh_level=run.mesh_level)
+    return ChosenRun(
+        key,
+        runs.scene.discretization(key, run.phases, run.k),
+        found.measure,
+        {name: getattr(run, name) for name in ("error", "seconds", "memory", "steps")},
+    )
+
+
+def choose_tolerance(runs, eps, console):
+    """Beside its price, that of runs with given meshes and steps is said."""
+    measure, price = price_to_tolerance(runs, eps, console)
+    run, scene = price.run, runs.scene
+    console.say("\nFor comparison, runs with one uniform mesh and equal steps.")
+    try:
+        other = price_with_given_meshes(runs, eps, run.seconds, console).price.run
+        text = f"With one uniform mesh and equal steps, the error {digits(eps)} "
+        if other:
+            text += (
+                f"would take about {seconds_in_words(other.seconds)}, "
+                f"{digits(other.seconds / run.seconds, 2)} times as long."
+            )
+        else:
+            text += "is out of reach."
+        console.say(text + "\n")
+    except Interrupted:
+        raise
+    except UserError as error:
+        console.say(f"Not priced: {error}\n")
+    key = scene.key()
+    return ChosenRun(
+        key._replace(variant=key.variant._replace(strategy="tolerance")),
+        [f"Error control/Tolerance={digits(run.tolerance, 4)}"],
+        measure,
+        {
+            name: getattr(run, name)
+            for name in ("error", "seconds", "memory", "cells", "steps")
+        },
+    )
+
+
+def compare(predicted, actual):
+    """"predicted / actual", and the factor between."""
+
+    def number(value):
+        return digits(value) if isfinite(value) else "unknown"
+
+    text = f"{number(predicted)} predicted, {number(actual)} found"
+    if actual > 0.0 and isfinite(actual):
+        text += f" (factor {digits(predicted / actual, 2)})"
+    return text
+
+
+def run_at_price(runs, eps, console, only_price=False, options=()):
+    """A run with the mesh and the steps that reach the error eps at the lowest cost,
+    as short runs predict it; says both before and afterwards what it costs and gives.
+    With only_price it only says what it would cost. Options of the program go to the
+    run. Raises Interrupted, and UserError."""
+    scene = runs.scene
+    if (
+        not scene["Exact solution/Displacement"]
+        and scene["Error control/Error bar"] != "true"
+    ):
+        raise UserError(
+            "A price needs an error to go by: set 'Error control/Error bar = true', or "
+            "give an 'Exact solution'."
+        )
+    choose = choose_tolerance if scene.has_tolerance else choose_mesh_and_steps
+    chosen = choose(runs, eps, console)
+    if only_price:
+        return
+
+    # The run that was chosen, with all output of the scene.
+    console.say("Now the run with")
+    for entry in chosen.assignments:
+        console.say(f"  --set '{entry}'")
+    console.say("")
+    entries = [w for e in runs.overrides + chosen.assignments for w in ("--set", e)]
+    code, messages, _ = launch(
+        runs.program, [*options, *runs.files, *entries], console.output()
+    )
+    if code == 3:
+        raise Interrupted(sentence(messages, code))
+    if code != 0:
+        raise RunError(sentence(messages, code), code)
+    result = runs.record_of(chosen.key, Path(scene.directory))
+    if result is None:
+        return  # there was nothing left to compute
+    found = {
+        "error": error_of(result, chosen.measure, None),
+        "seconds": result.number("seconds_total"),
+        "memory": result.number("peak_memory_MB"),
+        "cells": result.number("cells"),
+        "steps": result.number("steps"),
+    }
+    text = "\nThe prediction:\n"
+    for name, predicted in chosen.expected.items():
+        if name == "steps" and not scene.has_tolerance and not scene.has_step_control:
+            continue
+        after = {"seconds": ", without field output", "memory": " MB"}.get(name, "")
+        text += f"  {name:7}  {compare(predicted, found[name])}{after}\n"
+    console.say(text, end="")

@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Finished runs in numbers: result.json in the directory of each."""
+
+import json
+import math
+from dataclasses import asdict, dataclass, field, replace
+from math import inf, isfinite, nan
+from typing import NamedTuple
+
+import numpy as np
+
+from ..results import read_statistics
+from ..tables import UserError
+from .solvers import SolverDemand
+
+STRATEGIES = ("uniform", "adaptive", "tolerance")
+
+# Columns of errors of fields, relative to the largest norms.
+FIELD_ERRORS = ("error_energy", "error_h1", "error_stress", "error_multiplier")
+
+# Columns of the estimated error and its parts.
+ESTIMATE_PARTS = (
+    "estimate_space",
+    "estimate_time",
+    "estimate_algebraic",
+    "estimate_initial",
+    "estimate_total",
+)
+
+# The phases of a run, as the program times them (results/run_phases.h), and the
+# column of study.csv for each; several phases may share one.
+PHASES = {
+    "pilot run": "seconds_set_up",
+    "set-up": "seconds_set_up",
+    "rate": "seconds_rate",
+    "tangent": "seconds_tangent",
+    "load": "seconds_load",
+    "contact": "seconds_contact",
+    "balance": "seconds_balance",
+    "estimate": "seconds_estimate",
+    "adaptation": "seconds_set_up",
+    "output": "seconds_output",
+    "errors": "seconds_errors",
+    "checkpoint": "seconds_checkpoint",
+}
+# Neither fields nor the comparison with a solution are what a user would pay for.
+NO_COST = ("output", "errors")
+
+
+class MethodVariant(NamedTuple):
+    """How a run is computed, whatever its mesh width and its time steps. The
+    strategy says how its mesh comes about: it is refined everywhere (uniform), or
+    where the error estimator says, with given numbers of cells and steps (adaptive)
+    or with as many as a tolerance needs. Scheme and history are values of
+    `Time/Scheme' and `Material/Stress history'."""
+
+    strategy: str
+    scheme: str
+    history: str
+
+    @property
+    def order(self):
+        """That of the scheme in k."""
+        return 2 if self.scheme == "Heun" else 1
+
+    @property
+    def name(self):
+        return ", ".join(self)
+
+
+class RunKey(NamedTuple):
+    """Which run of a study. Levels are halvings of h and k from those of the scene,
+    or both those of its tolerance; negative ones are doublings. Where step control
+    chooses the steps, its tolerance halves k. A timing run only tells what it
+    costs, and is compared with nothing."""
+
+    variant: MethodVariant
+    mesh_level: int = 0
+    time_level: int = 0
+    is_timing: bool = False
+
+
+@dataclass
+class RunRecord:
+    """A finished run in numbers."""
+
+    key: RunKey
+    name: str = ""
+    # What identifies the scene and the program, by name: a record with another
+    # stamp belongs to something else.
+    stamp: dict = field(default_factory=dict)
+    # Sizes, costs and errors, by the name of their column in study.csv.
+    numbers: dict = field(default_factory=dict)
+    # What decides on the linear solver, with the mean number of unknowns.
+    demand: SolverDemand = field(default_factory=SolverDemand)
+    # Quantities of interest at the end, in the order of the table.
+    quantities: dict = field(default_factory=dict)
+
+    def number(self, column):
+        """Not a number if there is none."""
+        return self.numbers.get(column, nan)
+
+    @property
+    def step_measure(self):
+        """What the time part of the error is a power of: the longest step, or,
+        where step control chooses them, the tolerance of the steps."""
+        return self.number("step_tolerance" if "step_tolerance" in self.numbers else "k")
+
+    def quantity(self, name):
+        return self.quantities.get(name, nan)
+
+
+def vector_name(name):
+    """"friction_force" of "friction_force_x"; others are scalars."""
+    return name[:-2] if len(name) > 2 and name[-2:] in ("_x", "_y", "_z") else name
+
+
+def is_quantity(column):
+    """Whether a column is a quantity of interest, with or without _x, _y, _z."""
+    name = vector_name(column)
+    return name in (
+        "friction_force",
+        "contact_force",
+        "contact_area",
+        "slip_area",
+        "friction_dissipation",
+        "viscous_dissipation",
+        "max_displacement",
+        "stored_energy",
+    ) or any(
+        name.startswith(prefix) and name[len(prefix) :].isdigit()
+        for prefix in ("reaction_", "point")
+    )
+
+
+def read_table(path):
+    """The columns of statistics.csv, of which there must be some."""
+    table = read_statistics(path)
+    if not table:
+        raise UserError(f"There is no table in '{path}'.")
+    return table
+
+
+def largest(table, name):
+    """The largest size in a column; not a number without it."""
+    if name not in table:
+        return nan
+    return float(np.fmax.reduce(np.abs(table[name]), initial=0.0))
+
+
+def relative(value, size):
+    return value / size if size > 0.0 else nan
+
+
+def make_record(key, table, costs, is_difference=False, quantity=""):
+    """The numbers of a finished run, from its table and the costs in its run.json.
+    Errors are relative: the largest of all steps over the largest norm of the exact
+    solution; estimates are relative to the largest energy norm. If is_difference,
+    errors are differences to another run, at few times: then the largest norms of
+    the run itself count, too. The estimated error of a quantity of interest, if
+    there is one, is relative to its largest value. Numbers of unknowns and cells are
+    means over the steps."""
+    number = {}
+    n_rows = len(table["step"])  # with the initial state
+    number["steps"] = n_rows - 1.0
+    number["k"] = largest(table, "k")
+    for name in ("cells", "dofs"):
+        values = table[name]
+        number[name] = float(values[1:].mean() if n_rows > 1 else values[0])
+    # A table knows all of a run that was resumed, the timer the last part.
+    total = rest = float(table["wall_total"][-1])
+    for phase, column in PHASES.items():
+        wall = f"wall_{phase}"
+        timed = costs.get("seconds", {}).get(phase, 0.0)
+        seconds = float(table[wall].sum()) if wall in table else timed
+        number[column] = number.get(column, 0.0) + seconds
+        rest -= seconds
+        if phase in NO_COST:
+            total -= seconds
+    number["seconds_total"], number["seconds_rest"] = total, rest
+    number["peak_memory_MB"] = costs.get("peak_memory_MB", nan)
+    number["first_memory_MB"] = costs.get("memory_before_MB", nan)
+    for name in ("contact_iterations", "linear_iterations"):
+        number[name] = float(table[name].sum()) if name in table else 0.0
+
+    limits = [value for value in table.get("step_limit", ()) if value > 0.0]
+    number["step_limit"] = float(min(limits, default=inf))
+
+    # Errors are known at some steps only, where the norms of the solution may have
+    # gone; those of the run itself are known always.
+    own_norms = {"error_energy": "energy_norm", "error_stress": "stress_norm"}
+    for name in FIELD_ERRORS:
+        size = largest(table, "exact" + name[len("error") :])
+        if is_difference and name in own_norms:
+            own = largest(table, own_norms[name])
+            size = own if own > size else size
+        number[name] = relative(largest(table, name), size)
+    if is_difference:
+        number["is_difference"] = 1.0
+    norm = largest(table, "energy_norm")
+    for name in ESTIMATE_PARTS:
+        number[name] = relative(largest(table, name), norm)
+    error = largest(table, "error_energy")
+    number["effectivity"] = relative(largest(table, "estimate_total"), error)
+    number["effectivity_recovery"] = relative(largest(table, "estimate_recovery"), error)
+    if quantity:
+        number["estimate_quantity"] = relative(
+            largest(table, "quantity_total"), largest(table, quantity)
+        )
+    demand = SolverDemand(**costs.get("solver_demand", {}))
+    return RunRecord(
+        key,
+        numbers=number,
+        demand=replace(demand, dofs=math.floor(number["dofs"] + 0.5)),
+        quantities={
+            name: float(values[-1]) for name, values in table.items() if is_quantity(name)
+        },
+    )
+
+
+def to_json(record):
+    """The text of result.json."""
+    variant = record.key.variant
+
+    def finite(numbers):
+        return {name: v if isfinite(v) else None for name, v in numbers.items()}
+
+    return json_text(
+        {
+            "run": record.name,
+            **variant._asdict(),
+            "mesh_level": record.key.mesh_level,
+            "time_level": record.key.time_level,
+            "timing": record.key.is_timing,
+            "stamp": record.stamp,
+            "solver_demand": asdict(record.demand),
+            "numbers": finite(record.numbers),
+            "quantities": finite(record.quantities),
+        }
+    )
+
+
+def json_text(contents):
+    """With null for numbers that JSON does not have."""
+
+    def mended(value):
+        if isinstance(value, dict):
+            return {key: mended(item) for key, item in value.items()}
+        if isinstance(value, (list, tuple)):
+            return [mended(item) for item in value]
+        if isinstance(value, float) and not isfinite(value):
+            return None
+        return value
+
+    return json.dumps(mended(contents), indent=2, ensure_ascii=False) + "\n"
+
+
+def from_json(text, path):
+    """The record in the text of a file."""
+
+    def of(value, kind):
+        # True and False are integers in Python.
+        if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool)):
+            raise ValueError(f"{value!r} is none of {kind}")
+        return value
+
+    def numbers(values):
+        result = {}
+        for name, value in of(values, dict).items():
+            result[name] = nan if value is None else float(of(value, (int, float)))
+            if math.isinf(result[name]):
+                raise ValueError(f"{name} is out of range")
+        return result
+
+    try:
+        found = of(json.loads(text), dict)
+        variant = MethodVariant(*(of(found[name], str) for name in MethodVariant._fields))
+        if variant.strategy not in STRATEGIES:
+            raise ValueError(f"'{variant.strategy}' is no strategy")
+        key = RunKey(
+            variant,
+            of(found["mesh_level"], int),
+            of(found["time_level"], int),
+            of(found["timing"], bool),
+        )
+        return RunRecord(
+            key,
+            of(found["run"], str),
+            {name: of(value, str) for name, value in of(found["stamp"], dict).items()},
+            numbers(found["numbers"]),
+            SolverDemand(**of(found["solver_demand"], dict)),
+            numbers(found["quantities"]),
+        )
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        raise UserError(f"'{path}' is no record of a finished run: {error}") from error

@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The runs of one scene on other meshes and with other steps, each in a directory
+of its own below that of the study. A finished run leaves result.json there, which
+is written at once (a file is renamed) and last of all: a run is finished if that
+file exists and belongs to the same scene, program and number of ranks."""
+
+import ctypes
+import fcntl
+import json
+import os
+import signal
+import subprocess
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional
+
+from ..program import RunError, sentence
+from ..tables import UserError
+from .record import RunRecord, from_json, make_record, read_table, to_json
+from .scene import Scene
+
+# What runs of a study go without.
+NO_OUTPUTS = (
+    "Output/Fields every=0",
+    "Output/Fields interval=0",
+    "Output/Point fields=",
+    "Output/Lines=",
+    "Output/Line fields=",
+    "Output/Integrals=",
+    "Checkpoint/Every n steps=0",
+    "Checkpoint/Wall time interval=0",
+)
+
+
+class Interrupted(RunError):
+    """A signal has ended a study."""
+
+    def __init__(self, sentence):
+        super().__init__(sentence, 3)
+
+
+@dataclass
+class Outcome:
+    """How a run has ended: one of these. Failure: why the scene could not be
+    computed, in a sentence; interruption: the name of the signal that ended it."""
+
+    record: Optional[RunRecord] = None
+    failure: str = ""
+    interruption: str = ""
+
+
+def make_directory(path):
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+    except OSError:
+        raise UserError(
+            f"The results directory '{path}' cannot be written; change "
+            "'Output/Directory' or its permissions."
+        ) from None
+
+
+def replace_file(path, text):
+    """Write a file at once: others see the old one or the new one."""
+    part = Path(f"{path}.part")
+    try:
+        with open(part, "w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        part.replace(path)
+    except OSError as error:
+        raise UserError(f"'{path}' cannot be written: {error.strerror}.") from error
+
+
+class DirectoryLock:
+    """Keeps other processes out of a directory that this one writes into, as the
+    program does: it vanishes with the process, however that ends. Without one goes on
+    where there is none to be had."""
+
+    def __init__(self, directory):
+        try:
+            self.file = open(Path(directory) / "viscoplastic_contact.lock", "a")
+            fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise UserError(
+                f"Another run is writing into '{directory}'; wait until it has ended, "
+                "or choose another 'Output/Directory' and 'Checkpoint/Directory'."
+            ) from None
+        except OSError:
+            pass
+
+
+def die_with_parent():
+    """In a new process: what nobody waits for any more ends. Linux only."""
+    try:
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+    except (OSError, AttributeError):
+        pass
+
+
+def launch(program, arguments, stdout=subprocess.DEVNULL):
+    """Run the program; returns exit code, messages, and the name of a signal that
+    came meanwhile. Signals go to the program, which ends after a checkpoint."""
+    received = []
+    process = subprocess.Popen(
+        program.command(*arguments),
+        env=program.environment,
+        stdin=subprocess.DEVNULL,
+        stdout=stdout,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=die_with_parent,
+    )
+
+    def forward(number, _):
+        received.append(signal.Signals(number).name)
+        process.send_signal(number)
+
+    before = {n: signal.signal(n, forward) for n in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        _, messages = process.communicate()
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    return process.returncode, messages, received[0] if received else ""
+
+
+class StudyRuns:
+    """The runs of the scene that files and overrides (`Section/Entry=value') give.
+
+    With may_subdivide, runs divide given steps beyond the stability limit where the
+    scene does; otherwise they have the given steps, or fail. With has_outputs they
+    write fields and checkpoints as the scene does. Reference is the key of the run
+    that writes its fields, and with whose fields those of all others are compared,
+    if any; records of runs that have been compared with another one, or none, do
+    not count as finished."""
+
+    def __init__(
+        self,
+        program,
+        files,
+        overrides,
+        scene=None,
+        may_subdivide=False,
+        has_outputs=False,
+    ):
+        self.program = program
+        self.files, self.overrides = [str(file) for file in files], list(overrides)
+        self.scene = scene or Scene(program, self.files, self.overrides)
+        self.directory = self.scene.directory + "study/"
+        self.may_subdivide, self.has_outputs = may_subdivide, has_outputs
+        self.reference = None
+        self.lock = None
+
+    def lock_directory(self):
+        """Make the directory of the study, and keep other studies out of it."""
+        make_directory(self.directory)
+        self.lock = self.lock or DirectoryLock(self.directory)
+
+    def name(self, key):
+        return self.scene.name(key)
+
+    def place(self, key):
+        return self.directory + self.name(key)
+
+    def file_of(self, key, name):
+        """A file of the results of a run."""
+        return Path(self.place(key)) / name
+
+    def is_compared(self, key):
+        """Whether a run is compared with the reference."""
+        return self.reference not in (None, key) and not key.is_timing
+
+    def entries_of(self, key):
+        """What is set for a run. Raises UserError for a mesh that is too coarse."""
+        place = self.place(key)
+        is_reference = key == self.reference
+        result = self.scene.discretization(
+            key,
+            self.scene.phases_of(key),
+            self.scene.step_tolerance(key),
+            self.may_subdivide,
+        )
+        result += [
+            f"Output/Directory={place}",
+            f"Output/Reference fields={'true' if is_reference else 'false'}",
+            "Checkpoint/Wall time limit=0",
+            f"Checkpoint/Directory={place}/checkpoint",
+            "Error control/Two-level comparison=false",
+        ]
+        # A scene without one of its effects may lack what it records.
+        if not self.has_outputs:
+            result += NO_OUTPUTS
+        if self.is_compared(key):
+            result.append(
+                f"Exact solution/Reference directory={self.place(self.reference)}"
+            )
+        return result
+
+    def stamp(self, key, entries):
+        """What tells a run from those of other scenes and programs."""
+        knows_reference = self.reference is not None and not key.is_timing
+        values = dict(self.scene.values)
+        for entry in entries:
+            path, value = entry.split("=", 1)
+            values[path] = value
+        text = f"{self.scene.about['files']}\n"
+        for path, value in sorted(values.items()):
+            if (
+                path in ("Output/Points", "Output/Reference fields")
+                or (self.has_outputs and path.startswith("Output/Fields"))
+                or not (
+                    path.startswith(("Output/", "Study/", "Checkpoint/"))
+                    or (knows_reference and path == "Exact solution/Reference directory")
+                )
+            ):
+                text += f"{path}={value}\n"
+        if knows_reference:
+            text += self.name(self.reference)
+        return {
+            "ranks": str(self.program.ranks),
+            "revision": self.scene.about["revision"],
+            "scene": str(zlib.crc32(text.encode())),
+            "version": self.scene.about["version"],
+        }
+
+    def find(self, key):
+        """The record of a run that is finished. One that is damaged or belongs to
+        something else does not count."""
+        expected = self.stamp(key, self.entries_of(key))
+        path = Path(self.place(key)) / "result.json"
+        try:
+            record = from_json(path.read_text(encoding="utf-8"), path)
+        except (OSError, UserError, UnicodeDecodeError):
+            return None  # the run is made again
+        record.stamp.pop("overrides", None)
+        # Levels count from a tolerance that may have changed, names do not.
+        if key.variant.strategy == "tolerance":
+            has_key = record.key.variant == key.variant and record.name == self.name(key)
+        else:
+            has_key = record.key == key
+        record.key = key
+        return record if has_key and record.stamp == expected else None
+
+    def make(self, key):
+        """Compute a run. It goes on from a checkpoint that a signal has left."""
+        entries = self.entries_of(key)
+        stamp, place = self.stamp(key, entries), Path(self.place(key))
+        # What has been left of the same run goes on, of another one goes.
+        begun = "".join(f"{name} {value}\n" for name, value in sorted(stamp.items()))
+        make_directory(place)
+        (place / "result.json").unlink(missing_ok=True)
+        mark = place / "begun"
+        goes_on = mark.exists() and mark.read_text(errors="replace") == begun
+        replace_file(mark, begun)
+        options = [word for entry in self.overrides + entries for word in ("--set", entry)]
+        code, messages, interruption = launch(
+            self.program,
+            [
+                *("--quiet", "--log", place / "log.txt"),
+                *(["--restart=auto"] if goes_on else []),
+                *self.files,
+                *options,
+            ],
+        )
+        if code != 0:
+            if interruption:
+                return Outcome(interruption=interruption)
+            return Outcome(failure=sentence(messages, code))
+        record = self.record_of(key, place)
+        if record is None:  # there was nothing left to compute
+            mark.unlink()
+            return self.make(key)
+        record.name, record.stamp = self.name(key), dict(stamp)
+        record.stamp["overrides"] = "; ".join(self.overrides + entries)
+        replace_file(place / "result.json", to_json(record))
+        found = self.find(key)
+        if found is None:
+            raise UserError(
+                f"'{place}/result.json' has changed since it was written."
+            )
+        return Outcome(record=found, interruption=interruption)
+
+    def record_of(self, key, place):
+        """The numbers of a run in a directory of results; None if what it has cost is
+        not there."""
+        scene = self.scene
+        costs = json.loads((place / "run.json").read_text(encoding="utf-8")).get("costs")
+        if costs is None:
+            return None
+        record = make_record(
+            key,
+            read_table(place / "statistics.csv"),
+            costs,
+            self.is_compared(key),
+            scene["Error control/Quantity"],
+        )
+        numbers, strategy = record.numbers, key.variant.strategy
+        numbers["h"] = scene.mesh_width(numbers["cells"])
+        if strategy == "tolerance":
+            numbers["tolerance"] = scene.tolerance(key)
+        else:
+            numbers["set_ups"] = scene.n_set_ups(
+                strategy, numbers["steps"], scene.planned_steps(key)
+            )
+            if scene.has_step_control:
+                numbers["step_tolerance"] = scene.step_tolerance(key)
+        return record

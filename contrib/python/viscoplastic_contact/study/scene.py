@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the program says of a scene (`--check=json'), and the entries that make a
+run of it one of a study."""
+
+import copy
+import json
+import math
+
+from ..tables import UserError
+from .phases import n_steps, read_phases, scale_phases, write_phases
+from .record import MethodVariant, RunKey
+
+# Runs with larger tolerances have hardly an error that obeys a law.
+LARGEST_TOLERANCE = 0.5
+
+GENERATOR_WITH_SUBDIVISIONS = "subdivided_hyper_rectangle"
+
+
+class Scene:
+    """Values of all entries, in numbers or as texts, the first mesh, and where
+    results go. With means the program has computed those of the data, too."""
+
+    def __init__(self, program, files, overrides, means=False):
+        options = [word for text in overrides for word in ("--set", text)]
+        check = f"--check={'means' if means else 'json'}"
+        self.use(json.loads(program.alone().call(check, *options, *files)))
+
+    def use(self, about):
+        """Take over what the program says."""
+        self.about, self.values = about, about["values"]
+        self.file, self.directory = about["file"], about["directory"]
+        self.dimension = about["dimension"]
+        self.n_cells, self.h = float(about["cells"]), about["h"]
+        self.phases = read_phases(self["Time/Phases"])
+
+    def with_entries(self, entries):
+        """The scene with other entries `Section/Entry=value', on the same mesh."""
+        values = dict(self.values)
+        for entry in entries:
+            path, value = entry.split("=", 1)
+            values[path] = value
+        result = copy.copy(self)
+        directory = values["Output/Directory"] or self.directory
+        directory += "" if directory.endswith("/") else "/"
+        result.use({**self.about, "values": values, "directory": directory})
+        return result
+
+    def __getitem__(self, path):
+        return self.values[path].strip()
+
+    def number(self, path):
+        return float(self.values[path])
+
+    def items(self, path):
+        return [item.strip() for item in self.values[path].split(",") if item.strip()]
+
+    @property
+    def budget(self):
+        return self.number("Study/Budget")
+
+    @property
+    def has_tolerance(self):
+        return self.number("Error control/Tolerance") > 0.0
+
+    @property
+    def has_step_control(self):
+        return self.number("Step control/Tolerance") > 0.0
+
+    @property
+    def is_adaptive(self):
+        """Whether the scene itself says when its mesh changes, and by how much."""
+        return self["Mesh refinement/Strategy"] != "none" and not self.has_tolerance
+
+    @property
+    def has_exact_solution(self):
+        """Whether it knows what errors are, from an exact solution or the fields of
+        a reference of the user's."""
+        return bool(
+            self["Exact solution/Displacement"]
+            or self["Exact solution/Reference directory"]
+        )
+
+    def key(self):
+        """The run of the scene as it is."""
+        strategy = "adaptive" if self.is_adaptive else "uniform"
+        return RunKey(
+            MethodVariant(strategy, self["Time/Scheme"], self["Material/Stress history"])
+        )
+
+    def steps_per_mesh(self, strategy, n_steps):
+        """After how many of its steps a run has a new mesh: as the scene says if
+        that is adaptive, else ten times in all; 0 for uniform meshes."""
+        if strategy != "adaptive":
+            return 0
+        if self.is_adaptive:
+            return int(self.number("Mesh refinement/Every n steps"))
+        return max(1, n_steps // 10)
+
+    def n_set_ups(self, strategy, n_steps, n_planned):
+        """How often a run of so many steps is set up, once for each of its meshes,
+        where its phases have n_planned steps: by step control these are others."""
+        every = self.steps_per_mesh(strategy, n_planned)
+        return max(1.0, math.ceil(n_steps / every)) if every else 1.0
+
+    def phases_of(self, key):
+        """Those of the scene with twice the steps for each time level."""
+        return scale_phases(self.phases, 2.0**key.time_level)
+
+    def planned_steps(self, key):
+        return n_steps(self.phases_of(key))
+
+    def step_tolerance(self, key):
+        """That of a run's steps where step control chooses them, so that they are
+        half as long for each time level: half of the scene's, or a quarter with a
+        scheme of second order. 0 where steps are given."""
+        return self.number("Step control/Tolerance") * 2.0 ** (
+            -key.variant.order * key.time_level
+        )
+
+    def tolerance(self, key):
+        """That of a run that chooses meshes and steps itself: the scene's, halved
+        level by level. 0 of other runs."""
+        if key.variant.strategy != "tolerance":
+            return 0.0
+        return self.number("Error control/Tolerance") * 0.5**key.mesh_level
+
+    def coarsest_tolerance_level(self):
+        """The level of the largest tolerance that still asks for something."""
+        ratio = self.number("Error control/Tolerance") / LARGEST_TOLERANCE
+        return math.ceil(math.log2(ratio) - 1e-9)
+
+    def subdivisions(self):
+        """Numbers of cells by direction, as the mesh generator has them."""
+        return [int(n) for n in self["Geometry/Arguments"].split(":")[0].split(",")]
+
+    def n_coarser_meshes(self):
+        """How often the mesh can be made coarser by halving."""
+        n = int(self.number("Geometry/Global refinements"))
+        if (
+            not self["Geometry/File"]
+            and self["Geometry/Generator"] == GENERATOR_WITH_SUBDIVISIONS
+        ):
+            fewest = min(self.subdivisions())
+            while fewest >= 2:
+                fewest = (fewest + 1) // 2
+                n += 1
+        return n
+
+    def coarser_arguments(self, factor):
+        """Those of the generator with so many times as many cells a direction."""
+        cells = [max(1, math.floor(factor * n + 0.5)) for n in self.subdivisions()]
+        rest = self["Geometry/Arguments"].split(":", 1)[1]
+        return ", ".join(map(str, cells)) + " :" + rest
+
+    def mesh_width(self, n_cells):
+        """The width that a uniform mesh with so many cells would have."""
+        return self.h * (self.n_cells / n_cells) ** (1.0 / self.dimension)
+
+    def name(self, key):
+        """The name of a run and of its directory."""
+        text = key.variant.strategy
+        for choice, of_scene in (
+            (key.variant.scheme, self["Time/Scheme"]),
+            (key.variant.history, self["Material/Stress history"]),
+        ):
+            if choice != of_scene:
+                text += "_" + identifier(choice)
+        if key.variant.strategy == "tolerance":
+            text += f"_{self.tolerance(key):g}"
+        else:
+            text += f"_h{key.mesh_level}_k{key.time_level}"
+        return text + ("_timing" if key.is_timing else "")
+
+    def discretization(self, key, steps, step_tolerance, may_subdivide=False):
+        """The entries that choose mesh, steps and method of a run, for steps of any
+        number, or to any tolerance of the steps where the scene has one."""
+        strategy, scheme, history = key.variant
+        entries = {"Time/Scheme": scheme, "Material/Stress history": history}
+        if self.has_tolerance:
+            entries["Error control/Tolerance"] = self.tolerance(key)
+            # Where it depends on the scheme, which is set above.
+            entries["Time/Stiffness policy"] = self["Time/Stiffness policy"]
+        if strategy == "tolerance":
+            return assignments(entries)
+
+        adaptive = strategy == "adaptive"
+        # Adaptive runs begin one level coarser: from a much coarser mesh,
+        # refinement at singular points would leave the rest too coarse.
+        level = key.mesh_level - (1 if adaptive and key.mesh_level > 0 else 0)
+        base = int(self.number("Geometry/Global refinements"))
+        refinements = max(0, base + level)
+        if -level > self.n_coarser_meshes():
+            raise UserError(
+                f"The mesh of the scene cannot be made coarser by {-level} levels: "
+                f"'Geometry/Global refinements' = {base}."
+            )
+        entries["Geometry/Global refinements"] = refinements
+        entries["Time/Phases"] = write_phases(steps)
+        if self.has_step_control:
+            entries["Step control/Tolerance"] = step_tolerance
+        # Runs have the steps that the study says, or none.
+        elif not may_subdivide and self["Time/Stiffness policy"] == "subdivide":
+            entries["Time/Stiffness policy"] = "refuse"
+        if base + level < 0:
+            entries["Geometry/Arguments"] = self.coarser_arguments(2.0 ** (base + level))
+        if not adaptive:
+            entries["Mesh refinement/Strategy"] = "none"
+            return assignments(entries)
+        if not self.is_adaptive:
+            entries["Mesh refinement/Strategy"] = "residual"
+            entries["Mesh refinement/Refinement fraction"] = 0.6
+            entries["Mesh refinement/Coarsening fraction"] = 0.05
+            every = self.steps_per_mesh(strategy, n_steps(steps))
+            entries["Mesh refinement/Every n steps"] = every
+        cells = self.n_cells * 2.0 ** (self.dimension * key.mesh_level)
+        entries["Mesh refinement/Minimal level"] = min(refinements, base)
+        entries["Mesh refinement/Maximal level"] = max(
+            refinements, base + key.mesh_level + 2
+        )
+        entries["Mesh refinement/Cell budget"] = max(1, math.floor(cells + 0.5))
+        return assignments(entries)
+
+
+def assignments(entries):
+    """{"Section/Entry": value} as --set has them."""
+    return [
+        f"{path}={value:.12g}" if isinstance(value, float) else f"{path}={value}"
+        for path, value in entries.items()
+    ]
+
+
+def identifier(text):
+    """For directories: letters, digits and `_'."""
+    return "".join(c if c.isascii() and c.isalnum() else "_" for c in text)

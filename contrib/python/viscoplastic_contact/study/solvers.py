@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Which linear solver a scene gets, and what it is expected to cost: the rules of
+the program (source/linear_solvers/solver_choice.cc), which prices need for meshes
+that nobody has. Each run.json says what the program itself has chosen and
+expected; tests/regression/test_study.py compares."""
+
+import math
+from dataclasses import dataclass
+
+DIRECT = "direct"
+GEOMETRIC = "geometric multigrid"
+ALGEBRAIC = "algebraic multigrid"
+SOLVERS = (DIRECT, GEOMETRIC, ALGEBRAIC)
+
+
+@dataclass
+class SolverDemand:
+    """What decides on the solver of a system."""
+
+    choice: str = "automatic"
+    dimension: int = 2
+    ranks: int = 1
+    # The largest Poisson's ratio of the material that the matrix stands for.
+    poissons_ratio: float = 0.0
+    # How often the solver will be used at least, and how often in a step.
+    solves: int = 1
+    solves_per_step: int = 1
+    # Degrees of freedom in all, of these on the contact face, and those of the
+    # mesh that the present one is refined from (0 where it is not refined).
+    dofs: int = 0
+    face_dofs: int = 0
+    first_dofs: int = 0
+
+
+# As benchmarks/results.md has them, at so many degrees of freedom: (seconds,
+# exponent) of a new mesh without a factorization, of what that adds, of a step
+# with each solver, and how many times more algebraic multigrid takes.
+COSTS = {
+    2: (5e5, (7.0, 1.0), (9.4, 1.1), (0.41, 1.07), (1.08, 1.07), 5.0),
+    3: (1.1e5, (2.3, 1.0), (14.5, 1.3), (0.74, 1.24), (0.37, 1.0), 15.0),
+}
+
+
+def has_small_first_mesh(demand):
+    """Whether the mesh is refined from a small one, on which a direct solver costs
+    little against a multigrid cycle on the present one."""
+    share = demand.dofs // 20
+    largest = (
+        max(2000, min(share, 20000)) if demand.dimension == 2 else max(600, min(share, 6000))
+    )
+    return 0 < demand.first_dofs <= largest
+
+
+def has_levels(demand):
+    """Whether geometric multigrid has meshes to work on."""
+    return has_small_first_mesh(demand) or 0 < demand.first_dofs <= demand.dofs // 3
+
+
+def prefer_direct(demand):
+    """Whether the direct solver is expected to win."""
+    is_2d = demand.dimension == 2
+    # The dense face problem: 200 MB and a cubic set-up. Beyond, the memory of the
+    # factor.
+    if demand.face_dofs > 5000 or demand.dofs >= (2000000 if is_2d else 200000):
+        return False
+    # An exact solution, where it costs next to nothing.
+    if demand.dofs < (2000 if demand.solves < 4 and has_levels(demand) else 20000):
+        return True
+    if has_levels(demand):
+        direct, multigrid = (
+            set_up + demand.solves * step
+            for set_up, step in (
+                expected_cost(DIRECT, demand),
+                expected_cost(GEOMETRIC, demand),
+            )
+        )
+        return direct < multigrid
+    # Algebraic multigrid takes several times the iterations.
+    return (
+        is_2d
+        or demand.poissons_ratio > 0.45
+        or (demand.dofs < 150000 and demand.solves >= 20)
+    )
+
+
+def choose_solver(demand):
+    if demand.choice == "direct" or (
+        demand.choice == "automatic" and demand.ranks == 1 and prefer_direct(demand)
+    ):
+        return DIRECT
+    if demand.choice != "algebraic multigrid" and has_levels(demand):
+        return GEOMETRIC
+    return ALGEBRAIC
+
+
+def expected_cost(solver, demand):
+    """Seconds of one set-up, with all that a new mesh brings, and of one step.
+    Only ratios mean anything on other machines and in other scenes."""
+    n_dofs, mesh, factorization, direct, multigrid, algebraic = COSTS[demand.dimension]
+
+    def seconds(power):
+        return power[0] * (demand.dofs / n_dofs) ** power[1]
+
+    # What small systems take, whatever their solver.
+    least_set_up, least_step = 1e-3, 2.5e-3
+    set_up = least_set_up + seconds(mesh)
+    if solver == DIRECT:
+        return set_up + seconds(factorization), least_step + seconds(direct)
+    factor = algebraic
+    if solver == GEOMETRIC:
+        # Cycles of algebraic multigrid on a large first mesh.
+        factor = 1.0 if has_small_first_mesh(demand) else 1.6
+    # Nearly incompressible bodies take more iterations.
+    growth = max(1.0, 0.35 / math.sqrt(max(1.0 - 2.0 * demand.poissons_ratio, 1e-8)))
+    return set_up, least_step + seconds(multigrid) * factor * growth
+
+
+def expected_memory(solver, demand):
+    """In MB, what matrix, solver and vectors take beyond mesh and spaces."""
+    is_2d, n = demand.dimension == 2, float(demand.dofs)
+    # 12 bytes an entry, 9 or 27 neighbors a node; some 20 vectors.
+    matrix, vectors = n * (18.0 if is_2d else 81.0) * 12.0, n * 20.0 * 8.0
+    if solver == GEOMETRIC:
+        return 1e-6 * (matrix + vectors + n * (1200.0 if is_2d else 1500.0))
+    # A second matrix without the prescribed rows, and ML.
+    if solver == ALGEBRAIC:
+        return 1e-6 * (2.0 * matrix + vectors + n * (850.0 if is_2d else 2700.0))
+    # Nested dissection: n log n entries in 2D, n^(4/3) in 3D.
+    factor = n * 78.0 * math.log2(max(n, 2.0)) if is_2d else n * 190.0 * n ** (1 / 3)
+    return 1e-6 * (matrix + vectors + factor + 16.0 * float(demand.face_dofs) ** 2)

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/laws/stiffness.h>
+#include <viscoplastic_contact/parameters/parameter_file.h>
+
+#include <mpi.h>
+
+#include <string>
+
+namespace Viscoplastic
+{
+  /**
+   * What programs that vary a scene need to know of it, as a JSON object:
+   *
+   *   version, revision, ranks     of the program
+   *   file, directory, dimension   of the scene; `directory' is where its
+   *                                results go
+   *   values                       of every entry, without `automatic' where
+   *                                that is replaced when parameters are read
+   *   files                        a checksum of all files that belong to it
+   *   cells, h                     of its first mesh; h is the largest diameter
+   *                                of a cell over sqrt(dim)
+   *   volumetric_integration       what `automatic' stands for
+   *
+   * and @p with_means, see SceneData:
+   *
+   *   means                 by entry, `over_space' and `over_time'; of data
+   *                         that are not their own means
+   *   areas                 of contact boundaries, by id
+   *   nearest_isotropic     Young's modulus and Poisson's ratio, by section of
+   *                         anisotropic materials
+   *
+   * Collective. Throws ExcMessage.
+   */
+  std::string
+  scene_as_json(const Parameters &scene,
+                const bool        with_means,
+                const MPI_Comm    communicator);
+
+  /// The isotropic tensor that is nearest to a stiffness in the Frobenius norm
+  /// of fourth-order tensors, which does not depend on the axes.
+  Stiffness
+  nearest_isotropic(const Stiffness &stiffness);
+} // namespace Viscoplastic

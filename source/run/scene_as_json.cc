@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/base/files.h>
+#include <viscoplastic_contact/base/json_text.h>
+#include <viscoplastic_contact/base/table.h>
+#include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/results/run_record.h>
+#include <viscoplastic_contact/run/scene_as_json.h>
+#include <viscoplastic_contact/run/scene_data.h>
+#include <viscoplastic_contact/scene/material.h>
+
+#include <boost/crc.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+
+
+    /// Entries of boundaries that may change over space and time.
+    const std::vector<std::string> boundary_data{"Friction bound",
+                                                 "Friction coefficient",
+                                                 "Gap",
+                                                 "Foundation motion",
+                                                 "Foundation displacement",
+                                                 "Normal stress",
+                                                 "Traction",
+                                                 "Displacement",
+                                                 "Pressure"};
+
+
+
+    std::map<std::string, std::string>
+    values_in_use(const Parameters &scene)
+    {
+      auto values                        = scene.values();
+      values["Time/Scheme"]              = name_of(scene.time.scheme);
+      values["Time/Stiffness policy"]    = name_of(scene.time.stiffness_policy);
+      values["Mesh refinement/Strategy"] = name_of(scene.refinement.strategy);
+      return values;
+    }
+
+
+
+    /// Of meshes, libraries and tables.
+    unsigned int
+    checksum_of_files(const Parameters &scene)
+    {
+      boost::crc_32_type       crc;
+      std::vector<std::string> files = scene.shared_libraries;
+      if (!scene.geometry.file.empty())
+        files.push_back(scene.geometry.file);
+      std::string text;
+      for (const auto &table : tables_in_use())
+        text += std::to_string(table->checksum) + ' ';
+      for (const std::string &file : files)
+        text += read_file_if_any(file).value_or("");
+      crc.process_bytes(text.data(), text.size());
+      return crc.checksum();
+    }
+
+
+
+    template <int dim>
+    void
+    add_mesh(const Parameters &scene, const MPI_Comm communicator, Json &json)
+    {
+      parallel::distributed::Triangulation<dim> triangulation(communicator);
+      make_mesh(scene.geometry, triangulation);
+      json["cells"] = triangulation.n_global_active_cells();
+      json["h"]     = GridTools::maximal_cell_diameter(triangulation) /
+                  std::sqrt(static_cast<double>(dim));
+    }
+
+
+
+    Json
+    elastic_moduli(const Stiffness &stiffness)
+    {
+      const double mu = stiffness.shear_modulus(),
+                   nu = stiffness.poissons_ratio();
+      return {2. * (1. + nu) * mu, nu};
+    }
+
+
+
+    /// Young's modulus and Poisson's ratio of the isotropic stiffness that is
+    /// nearest to that of a material.
+    Json
+    isotropic_moduli(const Parameters         &scene,
+                     const std::string        &section,
+                     const MaterialParameters &material)
+    {
+      return elastic_moduli(nearest_isotropic(
+        scene.dimension == 2 ?
+          Material<2>(section, material, scene.handler).stiffness(Point<2>()) :
+          Material<3>(section, material, scene.handler).stiffness(Point<3>())));
+    }
+
+
+
+    /// Adds the means of the data of a scene to its record.
+    class Means
+    {
+    public:
+      Means(const Parameters &scene, const SceneData &data, Json &json)
+        : scene(scene)
+        , data(data)
+        , json(json)
+      {
+        for (const char *name : {"means", "areas", "nearest_isotropic"})
+          json[name] = Json::object();
+      }
+
+      void
+      add_all()
+      {
+        if (scene.materials.empty())
+          add_material("Material", scene.material, {});
+        for (const auto &[id, material] : scene.materials)
+          add_material("Material " + std::to_string(id), material, id);
+        for (const auto &[id, boundary] : scene.boundaries)
+          {
+            const std::string section = "Boundary " + std::to_string(id);
+            for (const std::string &name : boundary_data)
+              add(section + '/' + name, [&, id = id](const std::string &text) {
+                return data.over_boundary(text, id);
+              });
+            if (boundary.role == "contact")
+              json["areas"][std::to_string(id)] = data.area(id);
+          }
+        add("Loads/Body force",
+            [&](const std::string &text) { return data.over_body(text); });
+      }
+
+    private:
+      void
+      add_material(const std::string                &section,
+                   const MaterialParameters         &material,
+                   const std::optional<unsigned int> id)
+      {
+        const auto over_space = [&](const std::string &text) {
+          return data.over_body(text, id);
+        };
+        if (!material.voigt_matrix.empty())
+          json["nearest_isotropic"][section] =
+            isotropic_moduli(scene, section, material);
+        const std::string of_law = section + '/' + material.law + '/';
+        for (const auto &entry : values)
+          if (const std::string &path = entry.first;
+              path == section + "/Young's modulus" ||
+              path == section + "/Poisson's ratio" ||
+              // The strain rate of a parsed law is a function of other things.
+              (path.compare(0, of_law.size(), of_law) == 0 &&
+               path != of_law + "Strain rate"))
+            add(path, over_space);
+      }
+
+      template <typename OverSpace>
+      void
+      add(const std::string &path, const OverSpace &over_space)
+      {
+        const std::string &text = values.at(path);
+        if (text.empty())
+          return;
+        try
+          {
+            const auto in_space = over_space(text),
+                       in_time  = data.over_time(text);
+            if (in_space)
+              json["means"][path]["over_space"] = *in_space;
+            if (in_time)
+              json["means"][path]["over_time"] = *in_time;
+          }
+        catch (const ExpressionError &)
+          {} // choices of laws in shared libraries; a run refuses others
+      }
+
+      const Parameters                        &scene;
+      const std::map<std::string, std::string> values = scene.values();
+      const SceneData                         &data;
+      Json                                    &json;
+    };
+  } // namespace
+
+
+
+  Stiffness
+  nearest_isotropic(const Stiffness &stiffness)
+  {
+    // Voigt's averages are the coefficients of the projection.
+    const double mu = stiffness.shear_modulus(),
+                 nu = stiffness.poissons_ratio();
+    return Stiffness::isotropic(2. * (1. + nu) * mu, nu);
+  }
+
+
+
+  std::string
+  scene_as_json(const Parameters &scene,
+                const bool        with_means,
+                const MPI_Comm    communicator)
+  {
+    const TimeSchedule schedule(scene.time.phases); // throws
+    Json               json{{"version", VISCOPLASTIC_CONTACT_VERSION},
+              {"revision", VISCOPLASTIC_CONTACT_GIT_REVISION},
+              {"ranks", Utilities::MPI::n_mpi_processes(communicator)},
+              {"file", scene.file},
+              {"directory", results_directory(scene)},
+              {"dimension", scene.dimension},
+              {"values", values_in_use(scene)},
+              {"files", checksum_of_files(scene)}};
+    if (scene.dimension == 2)
+      add_mesh<2>(scene, communicator, json);
+    else
+      add_mesh<3>(scene, communicator, json);
+    const auto data                = SceneData::of(scene, communicator);
+    json["volumetric_integration"] = name_of(data->volumetric_integration());
+    if (with_means)
+      Means(scene, *data, json).add_all();
+    return json_text(json);
+  }
+} // namespace Viscoplastic

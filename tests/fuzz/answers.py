@@ -40,7 +40,9 @@ UNITS = {
 # Words of refusals that contradict what is known of a scene: that its loads keep
 # the body down between walls, and that its initial stress balances its loads.
 PROMISES = {
-    "held": re.compile(r"No contact force balances|converge|not found|definite"),
+    "held": re.compile(
+        r"No contact force balances|converge|not found|definite|come to rest"
+    ),
     "in balance": re.compile(r"\(2\.12\)|violat|No contact force balances"),
 }
 

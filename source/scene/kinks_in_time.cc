@@ -22,8 +22,11 @@ namespace Viscoplastic
     /// In a window of an eighth of the width, second differences are at least
     /// 3/32 times as large if there is a kink, 1/64 times if the datum is
     /// smooth: halves of a window begin at its eighths.
-    constexpr double       least_fall = 0.04;
-    constexpr unsigned int n_shifts = 5, n_levels_to_tell = 3;
+    constexpr double       least_fall       = 0.04;
+    constexpr unsigned int n_levels_to_tell = 3;
+    /// They also begin an eighth before and after: rounding may put a jump at
+    /// the end of a window outside of it.
+    constexpr int first_shift = -1, last_shift = 5;
     /// More than that are no kinks but noise.
     constexpr std::size_t most_kinks = 1000;
 
@@ -142,10 +145,12 @@ namespace Viscoplastic
               return;
             const double first = start;
             differences.clear();
-            for (unsigned int s = 0; s < n_shifts; ++s)
+            for (int s = first_shift; s <= last_shift; ++s)
               {
                 const double shifted = first + s * width / 8.;
-                auto         there   = second_differences(shifted, 0.5 * width);
+                if (shifted < 0. || shifted + 0.5 * width > end_time)
+                  continue;
+                auto there = second_differences(shifted, 0.5 * width);
                 if (differences.empty() || sum(there) > sum(differences))
                   {
                     differences = std::move(there);

@@ -101,7 +101,7 @@ def draw(scene):
     if kind == "cell":
         # an affine image of the cube, so that all faces are flat
         edges = [
-            [(i == j) + scene.random.uniform(-0.4, 0.4) for j in range(scene.dim)]
+            [(i == j) + scene.random.randint(-40, 40) / 100 for j in range(scene.dim)]
             for i in range(scene.dim)
         ]
         corners = []

@@ -364,16 +364,23 @@ class Scene(Drawing):
         if self.refinements > 0 and self.chance(0.12):
             self.set("Error control/Two-level comparison", "true")
         entry = lambda name: f"Mesh refinement/{name}"
+        strategies = "residual", "kelly"
         if self.chance(0.15):
             self.set("Error control/Quantity", self.quantity())
+            strategies = ("residual",)
         if self.chance(0.15) and "Step control/Tolerance" not in self.entries:
             self.set("Error control/Tolerance", self.random.choice((0.1, 0.3, 0.9)))
             self.set("Step control/Smallest step", self.duration(0.005))
             self.set(entry("Cell budget"), 200 if self.dim == 2 else 60)
+        if self.chance(0.9) and any(
+            f"Error control/{name}" in self.entries for name in ("Quantity", "Tolerance")
+        ):
+            self.entries.pop("Error control/Error bar", None)
+        if "Error control/Tolerance" in self.entries:
             return
         if not self.chance(0.25):
             return
-        self.set(entry("Strategy"), self.random.choice(("residual", "kelly")))
+        self.set(entry("Strategy"), self.random.choice(strategies))
         self.maybe(0.5, entry("Every n steps"), 1, 2, 3)
         self.set(entry("Maximal level"), min(self.refinements + 1, 3))
         self.maybe(0.3, entry("Minimal level"), 1 if self.refinements else 0)

@@ -76,8 +76,8 @@ def held_by_contact(scene):
         share = 1 - cut / scene.sides[0]
         ids = f"if(id == {above} && x > {scene.length(cut)}, 7, id)"
         scene.set("Geometry/Boundary ids", ids)
-        scene.set(f"Boundary {above}/Role", "free")
         above = 7
+        scene.set(f"Boundary {above}/Role", "free")
     way = pick(("pressed", "lifted", "nothing")) if weight else "pressed"
     load = weight * pick((0.1, 0.5, 0.9)) / share
     if way == "pressed":

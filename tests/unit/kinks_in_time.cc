@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
 #include <string>
 
 namespace
@@ -68,6 +69,20 @@ namespace
     // Times that a user writes are these times.
     EXPECT_EQ(kinks_of("abs(t - 0.375)").at(0).t, 0.375);
     EXPECT_EQ(kinks_of("abs(t - 1.1)").at(0).t, 1.1);
+  }
+
+
+
+  TEST(KinksInTime, JumpsAreFoundAtTheEndsOfWindows)
+  {
+    // Times that the search looks at, up to rounding.
+    for (unsigned int i = 1; i < 30; ++i)
+      if (i != 20)
+        {
+          std::ostringstream text;
+          text << "if(t < " << 0.05 * i << ", 1, 0)";
+          expect_kinks(text.str(), {0.05 * i}, true, "1: 1, 1.5: 4");
+        }
   }
 
 

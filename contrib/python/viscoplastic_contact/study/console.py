@@ -3,6 +3,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 
 class Console:
@@ -11,7 +12,9 @@ class Console:
 
     def __init__(self, quiet=True, log=None):
         self.quiet = quiet
-        self.log = open(log, "w", encoding="utf-8") if log else None
+        self.log = Path(log) if log else None
+        if self.log:
+            self.log.write_text("", encoding="utf-8")
         self.has_status = not quiet and sys.stdout.isatty()
         self.shown = ""
 
@@ -20,8 +23,8 @@ class Console:
         if not self.quiet:
             print(text, end=end, flush=True)
         if self.log:
-            self.log.write(text + end)
-            self.log.flush()
+            with open(self.log, "a", encoding="utf-8") as file:
+                file.write(text + end)
 
     def status(self, text):
         """What a run under way is, for those who watch."""

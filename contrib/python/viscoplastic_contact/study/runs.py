@@ -106,6 +106,11 @@ class DirectoryLock:
             self.file.close()
 
 
+def set_options(entries):
+    """Entries `Section/Entry=value' as options of the program."""
+    return [word for entry in entries for word in ("--set", entry)]
+
+
 def die_with_parent():
     """In a new process: what nobody waits for any more ends. Linux only."""
     try:
@@ -270,7 +275,7 @@ class StudyRuns:
         mark = place / "begun"
         goes_on = mark.exists() and mark.read_text(errors="replace") == begun
         replace_file(mark, begun)
-        options = [word for entry in self.overrides + entries for word in ("--set", entry)]
+        options = set_options(self.overrides + entries)
         code, messages, interruption = launch(
             self.program,
             [

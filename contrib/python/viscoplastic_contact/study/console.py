@@ -3,6 +3,7 @@
 
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 
@@ -38,6 +39,14 @@ class Console:
             print(" " * len(self.shown), end="\r", flush=True)
             self.shown = ""
 
-    def output(self):
-        """Where the messages of a run go: None is the standard output."""
-        return subprocess.DEVNULL if self.quiet else None
+    def follow(self, launch):
+        """Let launch(options, output) run the program, whose messages go to the standard
+        output and to the log."""
+        output = subprocess.DEVNULL if self.quiet else None  # the same as ours
+        if not self.log:
+            return launch([], output)
+        with tempfile.NamedTemporaryFile(mode="r", suffix=".txt") as log:
+            result = launch(["--log", log.name], output)
+            with open(self.log, "a", encoding="utf-8") as file:
+                file.write(log.read())
+        return result

@@ -376,8 +376,10 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
         console.say(f"  --set '{entry}'")
     console.say("")
     entries = set_options(runs.overrides + chosen.assignments)
-    code, messages, _ = launch(
-        runs.program, [*options, *runs.files, *entries], console.output()
+    code, messages, _ = console.follow(
+        lambda words, output: launch(
+            runs.program, [*options, *words, *runs.files, *entries], output
+        )
     )
     if code == 3:
         raise Interrupted(sentence(messages, code))

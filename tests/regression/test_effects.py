@@ -450,7 +450,7 @@ class Effects(TestCase):
             self.assertRegex(
                 alone.stdout, r"friction has never acted: .* at most \d+\.\d+ % of"
             )
-            process = scene.run("effects", ranks=2)
+            process = scene.run("effects")
             self.assertEqual(process.returncode, 0, process.stderr)
             verdicts = scene.verdicts()
             self.assertEqual(verdicts["viscous flow", "elastic"], "never acted")

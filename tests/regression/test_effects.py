@@ -7,13 +7,25 @@ import csv
 import io
 import json
 import re
+import signal
+import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
 
-from harness import EXECUTABLE, SOURCE, TestCase, as_prm, main, run_study
+from harness import (
+    EXECUTABLE,
+    SOURCE,
+    TestCase,
+    as_prm,
+    main,
+    run_study,
+    study_command,
+    study_environment,
+)
 from test_study import VERIFICATION, Folder
 
 sys.path.insert(0, str(SOURCE / "contrib"))
@@ -22,6 +34,7 @@ from plotting import effects as picture
 from plotting.command import main as plot
 from plotting.results import read_statistics
 from viscoplastic_contact import Program
+from viscoplastic_contact.study.runs import set_options
 from viscoplastic_contact.study.scene import Scene
 from viscoplastic_contact.study.variants import (
     DISCRETIZATION,
@@ -99,15 +112,17 @@ class Variants(TestCase):
                 for variant in effect_variants(scene, 2.0, force)
                 if variant.kind == kind
             ]
-            for variant in found:
-                # They make a scene.
-                options = [w for entry in variant.overrides for w in ("--set", entry)]
-                self.program.call("--describe", *options, file)
+            # They make a scene; later entries override earlier ones.
+            entries = [entry for variant in found for entry in variant.overrides]
+            self.program.call("--describe", *set_options(entries), file)
             return found
 
     def words(self, text, kind=PROBLEM):
         """With long numbers rounded, as means are."""
-        lines = (f"{v.effect}: {v.instead} ({','.join(v.overrides)})" for v in self.of(text, kind))
+        lines = (
+            f"{variant.effect}: {variant.instead} ({','.join(variant.overrides)})"
+            for variant in self.of(text, kind)
+        )
         return [
             re.sub(r"\d+\.\d{9,}", lambda m: f"{float(m.group()):.9g}", line)
             for line in lines
@@ -153,7 +168,8 @@ class Variants(TestCase):
             "set Dimension = 2\nsubsection Geometry\n"
             "set Arguments = 4, 2 : 0, 0 : 2, 1 : true\nend\n"
             "subsection Boundary 0\nset Role = clamped\nend\n"
-            f"subsection Boundary 1\nset Role = free\nend\nsubsection Boundary 2\n{contact}"
+            "subsection Boundary 1\nset Role = free\nend\n"
+            f"subsection Boundary 2\n{contact}"
             "subsection Boundary 3\n"
         )
         free = "set Role = free\nend\n"
@@ -192,7 +208,8 @@ class Variants(TestCase):
                 "integration=mean dilatation)",
                 "stress history (quadrature points): cell means (Material/Stress "
                 "history=cell means)",
-                "time scheme (forward Euler): backward Euler (Time/Scheme=backward Euler)",
+                "time scheme (forward Euler): backward Euler (Time/Scheme="
+                "backward Euler)",
                 "time scheme (forward Euler): Heun (Time/Scheme=Heun)",
                 "step control: the steps of the phases (Step control/Tolerance=0)",
                 "adaptive mesh: the first mesh (Mesh refinement/Strategy=none)",
@@ -276,8 +293,8 @@ class Variants(TestCase):
         )
         self.assertEqual(
             found[0],
-            "anisotropy: the nearest isotropic stiffness (Material/Voigt matrix=,Material/"
-            "Young's modulus=2.5,Material/Poisson's ratio=0.25)",
+            "anisotropy: the nearest isotropic stiffness (Material/Voigt matrix=,"
+            "Material/Young's modulus=2.5,Material/Poisson's ratio=0.25)",
         )
 
 
@@ -433,7 +450,7 @@ class Effects(TestCase):
             self.assertRegex(
                 alone.stdout, r"friction has never acted: .* at most \d+\.\d+ % of"
             )
-            process = scene.run("effects", ranks=2)
+            process = scene.run("effects")
             self.assertEqual(process.returncode, 0, process.stderr)
             verdicts = scene.verdicts()
             self.assertEqual(verdicts["viscous flow", "elastic"], "never acted")
@@ -493,6 +510,26 @@ class Effects(TestCase):
             self.assertEqual(process.returncode, 2, process.stderr)
             self.assertIn(sentence, process.stderr)
             self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
+
+    def test_after_signal(self):
+        with Case(VERIFICATION / "slab.prm", **SLAB) as scene:
+            process = subprocess.Popen(
+                study_command(*scene.arguments("effects")),
+                cwd=scene.work,
+                env=study_environment(),
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            # Beyond the runs of the scene itself.
+            while len(scene.finished()) < 8 and process.poll() is None:
+                time.sleep(0.02)
+            process.send_signal(signal.SIGTERM)
+            _, stderr = process.communicate()
+            # Between runs a signal just ends it.
+            self.assertIn(process.returncode, (3, -signal.SIGTERM), stderr)
+            if process.returncode == 3:
+                self.assertIn("SIGTERM has ended the study of effects", stderr)
 
     def test_steps_by_their_error(self):
         """Step control: coarser levels have larger tolerances; two ranks."""

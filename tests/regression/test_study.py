@@ -12,7 +12,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import unittest
 from pathlib import Path
 
 import numpy as np
@@ -236,7 +235,8 @@ class Ladders(TestCase):
             for name in walls - {"wall_total"}:
                 seconds = row[f"seconds_{name.removeprefix('wall_')}"]
                 self.assertClose(seconds, table[name].sum(), 1e-9, what=name)
-            costs = json.loads((folder.study / row["run"] / "run.json").read_text())["costs"]
+            record = folder.study / row["run"] / "run.json"
+            costs = json.loads(record.read_text())["costs"]
             self.assertLessEqual(set(costs["seconds"]), set(PHASES))
             parts = sum(row[name] for name in columns - {"seconds_total"})
             self.assertClose(parts, table["wall_total"][-1], 1e-9)

@@ -723,7 +723,9 @@ class Effects(TestCase):
         )
         # Between its rows linear, at t = 1 the vector (3, 3).
         other = self.table(
-            t=[0, 0.5, 1.5, 2], friction_force_x=[0, 2, 4, 1], friction_force_y=[0, 2, 4, 0]
+            t=[0, 0.5, 1.5, 2],
+            friction_force_x=[0, 2, 4, 1],
+            friction_force_y=[0, 2, 4, 0],
         )
         force, reaction = changes_between(run, other)
         self.assertEqual(force.quantity, "friction_force")

@@ -61,6 +61,9 @@ def parser_of(task):
     if task == "price":
         parser.add_argument("--check", action="store_true", help="only say the price")
         parser.add_argument(
+            "--verbose", action="store_true", help="a line for each step of the run"
+        )
+        parser.add_argument(
             "--restart",
             choices=RESTART,
             help="go on from the last checkpoint of the run; =auto: if there is one",
@@ -90,7 +93,9 @@ def run(task, options, program):
 
     console = Console(options.quiet, options.log)
     if task == "price":
-        of_run = ["--quiet"] if options.quiet else []
+        of_run = [
+            f"--{name}" for name in ("quiet", "verbose") if getattr(options, name)
+        ]
         if options.restart:
             of_run.append(RESTART[options.restart])
         runs = StudyRuns(program, options.files, options.set)

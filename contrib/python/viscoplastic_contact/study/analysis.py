@@ -98,7 +98,10 @@ def fit_measure(records, measure, reference):
         for record in records
     ]
     if measure == "estimate_total":
-        space = [r.number("estimate_space") + r.number("estimate_initial") for r in records]
+        space = [
+            record.number("estimate_space") + record.number("estimate_initial")
+            for record in records
+        ]
         time = [record.number("estimate_time") for record in records]
         return fit_error_parts(samples, space, time)
     is_norm = measure in FIELD_ERRORS
@@ -124,7 +127,8 @@ def fit_chosen_steps(records):
         for record in records
     ]
     # Some 10 % of chance.
-    return fit_two_powers(samples, Prior(p=1.0 / records[0].key.variant.order, weight=0.3))
+    prior = Prior(p=1.0 / records[0].key.variant.order, weight=0.3)
+    return fit_two_powers(samples, prior)
 
 
 def expected_steps(scene, records, key):

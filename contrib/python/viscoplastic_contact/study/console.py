@@ -3,6 +3,8 @@
 
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 
 class Console:
@@ -11,7 +13,9 @@ class Console:
 
     def __init__(self, quiet=True, log=None):
         self.quiet = quiet
-        self.log = open(log, "w", encoding="utf-8") if log else None
+        self.log = Path(log) if log else None
+        if self.log:
+            self.log.write_text("", encoding="utf-8")
         self.has_status = not quiet and sys.stdout.isatty()
         self.shown = ""
 
@@ -20,8 +24,8 @@ class Console:
         if not self.quiet:
             print(text, end=end, flush=True)
         if self.log:
-            self.log.write(text + end)
-            self.log.flush()
+            with open(self.log, "a", encoding="utf-8") as file:
+                file.write(text + end)
 
     def status(self, text):
         """What a run under way is, for those who watch."""
@@ -35,6 +39,14 @@ class Console:
             print(" " * len(self.shown), end="\r", flush=True)
             self.shown = ""
 
-    def output(self):
-        """Where the messages of a run go: None is the standard output."""
-        return subprocess.DEVNULL if self.quiet else None
+    def follow(self, launch):
+        """Let launch(options, output) run the program, whose messages go to the standard
+        output and to the log."""
+        output = subprocess.DEVNULL if self.quiet else None  # the same as ours
+        if not self.log:
+            return launch([], output)
+        with tempfile.NamedTemporaryFile(mode="r", suffix=".txt") as log:
+            result = launch(["--log", log.name], output)
+            with open(self.log, "a", encoding="utf-8") as file:
+                file.write(log.read())
+        return result

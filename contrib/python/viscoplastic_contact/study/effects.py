@@ -405,7 +405,9 @@ class EffectsStudy:
             if not variants:
                 table = self.of_scene[level].table
                 variants = effect_variants(
-                    self.scene, largest_of(table, "mean_von_mises"), contact_force_of(table)
+                    self.scene,
+                    largest_of(table, "mean_von_mises"),
+                    contact_force_of(table),
                 )
                 self.console.say(
                     f"Effects of {self.scene.file}: {len(variants)} simplifications"

@@ -61,7 +61,9 @@ def cells_of(result):
         share_of_time(result),
         f"{digits(full.seconds - without.seconds, 2)} s",
         with_chance(
-            full.memory - without.memory, full.memory_chance + without.memory_chance, " MB"
+            full.memory - without.memory,
+            full.memory_chance + without.memory_chance,
+            " MB",
         ),
         digits(result.cells, 9),
     ]
@@ -85,7 +87,8 @@ def print_cells(cells):
     error, and the time."""
     first, *more = lines_of(cells[0], 34)
     row = f"  {first:34} {cells[1]:13} {cells[2]:20} {cells[3]:>7} {cells[4]:>7} "
-    return "".join(line + "\n" for line in [f"{row}{cells[5]:>12}", *("  " + m for m in more)])
+    lines = [f"{row}{cells[5]:>12}", *(f"  {words}" for words in more)]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def print_row(result):
@@ -115,9 +118,9 @@ def interaction_in_words(interaction):
         verdict = "interact."
     return (
         f"{without(first)} {quantity} changes by {percent(first.change_of(quantity))}, "
-        f"w{without(second)[1:]} by {percent(second.change_of(quantity))}, without both by "
-        f"{percent(interaction.joint.change_of(quantity))}. This differs from the sum of "
-        f"both changes by up to {percent(largest.change)}, where the error of this "
+        f"w{without(second)[1:]} by {percent(second.change_of(quantity))}, without both "
+        f"by {percent(interaction.joint.change_of(quantity))}. This differs from the sum "
+        f"of both changes by up to {percent(largest.change)}, where the error of this "
         f"quantity is {percent(largest.error)}: they {verdict}"
     )
 
@@ -138,12 +141,13 @@ def effects_in_words(study):
 def markdown(study, about):
     text = f"# Effects of {Path(study.scene.file).stem}\n\n" + (
         "What each effect changes, beside the error of the discretization, and what it "
-        "costs. Changes are the largest of all times over the largest value; the quantity "
-        "is that whose change is the largest in proportion to its error, which is the "
-        "difference to a run with twice the mesh width and time steps (in the energy norm: "
-        "the error bar). Energy norm: of the difference of the displacements at the ends of "
-        "the phases of time. Time and memory: what the scene takes less what it takes "
-        "without the effect, +- the difference between two runs of the same.\n\n"
+        "costs. Changes are the largest of all times over the largest value; the "
+        "quantity is that whose change is the largest in proportion to its error, which "
+        "is the difference to a run with twice the mesh width and time steps (in the "
+        "energy norm: the error bar). Energy norm: of the difference of the "
+        "displacements at the ends of the phases of time. Time and memory: what the "
+        "scene takes less what it takes without the effect, +- the difference between "
+        "two runs of the same.\n\n"
     )
     if Path(study.directory, "effects.png").exists():
         text += "![What effects change and cost](effects.png)\n\n"
@@ -204,8 +208,8 @@ def csv(study):
     ]
     for result in study.results:
         variant, costs = result.variant, (result.with_it, result.without)
-        head = f'"{variant.effect}","{variant.instead}",{variant.kind},"{result.verdict}",'
-        head += f"{result.level},{result.cells:.12g}"
+        head = f'"{variant.effect}","{variant.instead}",{variant.kind},'
+        head += f'"{result.verdict}",{result.level},{result.cells:.12g}'
         numbers = [cost.seconds for cost in costs] + [cost.memory for cost in costs]
         for change in result.changes:
             values = (f"{v:.12g}" for v in (change.change, change.error, *numbers))

@@ -278,12 +278,8 @@ def fit_once(samples, prior, smallest, finer):
     s_12 = problem.coordinates.prod(axis=1).sum()
     varies_1, varies_2 = s_11 > SAME**2, s_22 > SAME**2
     x = np.array([0.0, prior.p, SMALLEST[2], prior.q])
-    if (
-        not (prior.is_one_term)
-        and varies_1
-        and varies_2
-        and s_12**2 >= 0.998 * s_11 * s_22
-    ):
+    are_parallel = varies_1 and varies_2 and s_12**2 >= 0.998 * s_11 * s_22
+    if are_parallel and not prior.is_one_term:
         # One coordinate follows from the other. Half of one power each: this is
         # all that the samples say.
         result.is_separable = False

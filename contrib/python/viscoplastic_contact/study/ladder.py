@@ -96,8 +96,12 @@ class Study:
         for scheme in self.schemes:
             for history in self.histories:
                 if (scheme, history) != scene.key().variant[1:]:
-                    entries = [f"Time/Scheme={scheme}", f"Material/Stress history={history}"]
-                    Scene(self.runs.program, self.runs.files, self.runs.overrides + entries)
+                    entries = [
+                        f"Time/Scheme={scheme}",
+                        f"Material/Stress history={history}",
+                    ]
+                    runs = self.runs
+                    Scene(runs.program, runs.files, runs.overrides + entries)
 
     def levels_of(self, strategy, ladder):
         """The runs of a method variant in a ladder, as levels of mesh and time."""
@@ -109,7 +113,10 @@ class Study:
         if ladder not in self.ladders:
             return []
         return [
-            (finest if ladder == "time" else level, finest if ladder == "space" else level)
+            (
+                finest if ladder == "time" else level,
+                finest if ladder == "space" else level,
+            )
             for level in range(self.n_levels)
         ]
 
@@ -170,8 +177,8 @@ class Study:
         for run in self.plan:
             if run.record and run.is_reference:
                 return run.record
-            strategy = run.key.variant.strategy
-            if run.record and strategy == self.reference_strategy and "both" in run.ladders:
+            is_like_it = run.key.variant.strategy == self.reference_strategy
+            if run.record and is_like_it and "both" in run.ladders:
                 finest = run.record
         return finest
 
@@ -182,7 +189,11 @@ class Study:
 
     def variants(self):
         """Those of which there are finished runs, in the order of the plan."""
-        found = [run.key.variant for run in self.plan if run.record and not run.is_reference]
+        found = (
+            run.key.variant
+            for run in self.plan
+            if run.record and not run.is_reference
+        )
         return list(dict.fromkeys(found))
 
     def levels_in_words(self):
@@ -249,12 +260,15 @@ class Study:
         run.record = None  # such as that of a coarse run before there was a reference
         is_known, left = isfinite(seconds), self.left()
         if (seconds if is_known else 0.0) > left:
-            reason = f"would take about {seconds_in_words(seconds)}, and " if is_known else ""
             run.skipped = (
-                f"{reason}{seconds_in_words(max(0.0, left))} of 'Study/Budget' = "
+                f"{seconds_in_words(max(0.0, left))} of 'Study/Budget' = "
                 f"{seconds_in_words(self.budget)} were left"
             )
-            self.console.say(f"{name}: left out,{' it' if is_known else ''} {run.skipped}")
+            if is_known:
+                about = seconds_in_words(seconds)
+                run.skipped = f"would take about {about}, and {run.skipped}"
+            it = " it" if is_known else ""
+            self.console.say(f"{name}: left out,{it} {run.skipped}")
             return
         about = f", about {seconds_in_words(seconds)}" if is_known else ""
         self.console.status(f"{name}: running{about}")
@@ -425,7 +439,8 @@ class Study:
             skipped = [run for run in self.plan if run.skipped]
             reason = "'Study/Budget' leaves no time."
             if skipped:
-                reason = f"the run {self.runs.name(skipped[-1].key)} {skipped[-1].skipped}"
+                last = skipped[-1]
+                reason = f"the run {self.runs.name(last.key)} {last.skipped}"
             raise UserError(f"No run of the study could be computed: {reason}")
         self.make_timings()
         self.report(True)

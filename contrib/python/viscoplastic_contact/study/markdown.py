@@ -132,20 +132,17 @@ def orders_table(study, result):
     for ladder in ("space", "time", "both"):
         runs = runs_of(study, result.variant, ladder)
         for one, two in zip(runs, runs[1:]):
-            sizes = [r.step_measure if ladder == "time" else r.number("h") for r in (one, two)]
-            orders = [
-                ratio_of_logs(
-                    quotient(
-                        error_of(one, measure, reference), error_of(two, measure, reference)
-                    ),
-                    sizes[0] / sizes[1],
-                )
+            halving = one.number("h") / two.number("h")
+            if ladder == "time":
+                halving = one.step_measure / two.step_measure
+            errors = [
+                [error_of(run, measure, reference) for run in (one, two)]
                 for measure in measures
             ]
+            orders = [ratio_of_logs(quotient(*pair), halving) for pair in errors]
             if any(map(isfinite, orders)):
-                text += table_row(
-                    [ladder, f"`{one.name}`", f"`{two.name}`", *map(number_or_dash, orders)]
-                )
+                names = [ladder, f"`{one.name}`", f"`{two.name}`"]
+                text += table_row([*names, *map(number_or_dash, orders)])
     return text
 
 
@@ -191,15 +188,15 @@ def fits_in_words(study, result):
         f"The fit misses {error.misfit.n_samples} runs by a factor of "
         f"{digits(exp(error.misfit.rms))} (root mean square) and "
         f"{digits(error.misfit.worst_factor)} at worst (`{worst.name}`).\n"
-        f"At the finest run `{finest.name}` the mesh has {100.0 * share:.0f} % of the sum "
-        "of both parts, the steps have the rest.\n\n"
+        f"At the finest run `{finest.name}` the mesh has {100.0 * share:.0f} % of the "
+        "sum of both parts, the steps have the rest.\n\n"
     )
     if steps:
         text += (
             f"The number of steps to their tolerance:\n\n    steps = {digits(steps.c_1)} "
-            f"TOL^-{digits(steps.p)} + {digits(steps.c_2)}\n\nwhich misses by a factor of "
-            f"{digits(exp(steps.misfit.rms))} and {digits(steps.misfit.worst_factor)} at "
-            "worst.\n\n"
+            f"TOL^-{digits(steps.p)} + {digits(steps.c_2)}\n\nwhich misses by a factor "
+            f"of {digits(exp(steps.misfit.rms))} and {digits(steps.misfit.worst_factor)} "
+            "at worst.\n\n"
         )
 
     def power(fit):
@@ -297,7 +294,9 @@ def tolerance_results(study, result):
         text += f" + {digits(fit.c_2)}\n" if fit.c_2 > 0.0 else "\n"
     text += f"\n{exponents_in_words(model)}"
     if not model.error.p_is_fitted:
-        text += " The exponent of the error does not show in these runs and is taken for 1."
+        text += (
+            " The exponent of the error does not show in these runs and is taken for 1."
+        )
     if not model.seconds.p_is_fitted:
         text += " That of the seconds does not show either and is the theoretical one."
 

@@ -217,7 +217,8 @@ def list_prices(model, errors, budget):
         price = Price(error, run, run is not None and run.seconds <= budget)
         if run:
             price.is_far = run.is_far
-            price.halving = ideal_seconds(model, error / 2.0) / ideal_seconds(model, error)
+            half = ideal_seconds(model, error / 2.0)
+            price.halving = half / ideal_seconds(model, error)
         prices.append(price)
     return prices
 
@@ -266,5 +267,9 @@ def next_refinement(model):
         text += "seconds."
         gains.append(log(now.error / run.error) / log(max(1.001, ratio)))
     of_h, of_k, _ = gains
-    refine = "the mesh" if of_h > 1.2 * of_k else "the steps" if of_k > 1.2 * of_h else "both"
+    refine = "both"
+    if of_h > 1.2 * of_k:
+        refine = "the mesh"
+    elif of_k > 1.2 * of_h:
+        refine = "the steps"
     return f"{text} Refine {refine} next."

@@ -29,7 +29,7 @@ from .price import (
     price_in_words,
 )
 from .record import RunKey
-from .runs import Interrupted, launch
+from .runs import Interrupted, launch, set_options
 from .scene import LARGEST_TOLERANCE
 from .timing import affordable_memory, make_timing_runs, seconds_for_timing
 from .tolerance import exponents_in_words, price_of, tolerance_price_in_words
@@ -200,8 +200,8 @@ def price_with_given_meshes(runs, eps, seconds, console):
     console.say("Pilot runs:\n" + runs_in_words(pilots, measure), end="")
     if not has_two_meshes and len(pilots) == 2:
         console.say(
-            "A finer mesh would take too long for a pilot, and there is none coarser: the "
-            "error of the mesh is taken to be of first order in h."
+            "A finer mesh would take too long for a pilot, and there is none coarser: "
+            "the error of the mesh is taken to be of first order in h."
         )
     # A run on a mesh that is much finer than those of the pilots may have another
     # solver.
@@ -267,8 +267,8 @@ def price_to_tolerance(runs, eps, console):
     price = price_of(model, eps, budget)
     if not price.is_in_budget:
         raise UserError(
-            f"{tolerance_price_in_words(model, price, budget)} Raise 'Study/Budget' or take "
-            "a larger error."
+            f"{tolerance_price_in_words(model, price, budget)} Raise 'Study/Budget' or "
+            "take a larger error."
         )
     return measure, price
 
@@ -375,9 +375,11 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
     for entry in chosen.assignments:
         console.say(f"  --set '{entry}'")
     console.say("")
-    entries = [w for e in runs.overrides + chosen.assignments for w in ("--set", e)]
-    code, messages, _ = launch(
-        runs.program, [*options, *runs.files, *entries], console.output()
+    entries = set_options(runs.overrides + chosen.assignments)
+    code, messages, _ = console.follow(
+        lambda words, output: launch(
+            runs.program, [*options, *words, *runs.files, *entries], output
+        )
     )
     if code == 3:
         raise Interrupted(sentence(messages, code))

@@ -75,20 +75,40 @@ def replace_file(path, text):
 
 class DirectoryLock:
     """Keeps other processes out of a directory that this one writes into, as the
-    program does: it vanishes with the process, however that ends. Without one goes on
-    where there is none to be had."""
+    program does: the lock vanishes with the process, however that ends. Without one
+    goes on where there is none to be had."""
 
     def __init__(self, directory):
+        self.path, self.file = Path(directory) / "viscoplastic_contact.lock", None
         try:
-            self.file = open(Path(directory) / "viscoplastic_contact.lock", "a")
-            fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            while True:
+                file = open(self.path, "a")
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                # Who has had the lock removes the file: then it is made again.
+                if self.path.exists() and os.path.samestat(
+                    os.fstat(file.fileno()), self.path.stat()
+                ):
+                    break
+                file.close()
+            self.file = file
         except BlockingIOError:
+            file.close()
             raise UserError(
                 f"Another run is writing into '{directory}'; wait until it has ended, "
                 "or choose another 'Output/Directory' and 'Checkpoint/Directory'."
             ) from None
         except OSError:
             pass
+
+    def __del__(self):
+        if self.file:
+            self.path.unlink(missing_ok=True)
+            self.file.close()
+
+
+def set_options(entries):
+    """Entries `Section/Entry=value' as options of the program."""
+    return [word for entry in entries for word in ("--set", entry)]
 
 
 def die_with_parent():
@@ -255,7 +275,7 @@ class StudyRuns:
         mark = place / "begun"
         goes_on = mark.exists() and mark.read_text(errors="replace") == begun
         replace_file(mark, begun)
-        options = [word for entry in self.overrides + entries for word in ("--set", entry)]
+        options = set_options(self.overrides + entries)
         code, messages, interruption = launch(
             self.program,
             [

@@ -45,9 +45,9 @@ def has_small_first_mesh(demand):
     """Whether the mesh is refined from a small one, on which a direct solver costs
     little against a multigrid cycle on the present one."""
     share = demand.dofs // 20
-    largest = (
-        max(2000, min(share, 20000)) if demand.dimension == 2 else max(600, min(share, 6000))
-    )
+    largest = max(600, min(share, 6000))
+    if demand.dimension == 2:
+        largest = max(2000, min(share, 20000))
     return 0 < demand.first_dofs <= largest
 
 

@@ -47,7 +47,8 @@ def make_timing_runs(runs, records, mesh_level, seconds, console):
             if record or expected <= 0.5 * left:
                 break
         if not record:
-            if expected > left or cost.memory(dofs, steps, n_set_ups) > affordable_memory():
+            memory = cost.memory(dofs, steps, n_set_ups)
+            if expected > left or memory > affordable_memory():
                 break
             console.status(
                 f"Timing run {runs.name(key)}, about {seconds_in_words(expected)}"

@@ -140,5 +140,6 @@ def exponents_in_words(model):
         for cost in (model.seconds, model.cells, model.steps)
     )
     return (
-        f"Seconds grow as {seconds}, the mean number of cells as {cells}, steps as {steps}."
+        f"Seconds grow as {seconds}, the mean number of cells as {cells}, steps as "
+        f"{steps}."
     )

@@ -235,7 +235,8 @@ class Variants:
         on, role = f" on {section}", data("Role")
         is_contact = role == "contact"
         friction, contact = (
-            (data(f"{name} law") if is_contact else "") for name in ("Friction", "Contact")
+            data(f"{name} law") if is_contact else ""
+            for name in ("Friction", "Contact")
         )
         gives_way = contact == "normal compliance"
         is_unilateral = contact == "unilateral" or gives_way
@@ -386,7 +387,11 @@ class Variants:
             or scene.has_step_control
         )
         if not needs_estimate and scene["Error control/Error bar"] == "true":
-            self.add("error bar", "none, and a fixed tolerance", "Error control/Error bar=false")
+            self.add(
+                "error bar",
+                "none, and a fixed tolerance",
+                "Error control/Error bar=false",
+            )
         if any(
             scene.number(path) > 0.0
             for path in (

@@ -382,15 +382,16 @@ namespace Viscoplastic
         bool is_good = false;
         try
           {
-            const auto bytes = read_file_if_any(file);
-            is_good          = bytes.has_value();
-            BinaryReader        archive(bytes.value_or(""));
-            double              magic = 0.;
-            std::vector<double> cells, faces;
-            archive &magic &result.t &cells &faces;
-            is_good = is_good && magic == magic_number<dim> &&
-                      archive.is_at_end() && split(cells, result.cells) &&
-                      split(faces, result.faces);
+            if (const auto bytes = read_file_if_any(file))
+              {
+                BinaryReader        archive(*bytes);
+                double              magic = 0.;
+                std::vector<double> cells, faces;
+                archive &magic &result.t &cells &faces;
+                is_good = magic == magic_number<dim> && archive.is_at_end() &&
+                          split(cells, result.cells) &&
+                          split(faces, result.faces);
+              }
           }
         catch (const std::exception &)
           {

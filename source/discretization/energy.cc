@@ -49,29 +49,35 @@ namespace Viscoplastic
       stress_space.strains(c, old_state.u.begin(), old_strain.data());
     for (unsigned int s = 0; s < n; ++s)
       {
-        const auto  &z      = state.z[c * n + s];
-        const double weight = stress_space.weight(c, s);
-        result.irreversible_energy += 0.5 * weight * (stiffness.strain(z) * z);
+        const SymmetricTensor<2, 3> &z      = state.z[c * n + s];
+        const double                 weight = stress_space.weight(c, s);
+        result.irreversible_energy +=
+          0.5 * weight * stiffness.complementary_square(z);
         if (!flows)
           continue;
-        const auto &old_z  = old_state.z[c * n + s];
-        const auto  stress = stiffness.stress(strain[s]) + z;
-        const auto  mean_stress =
-          0.5 * (stiffness.stress(old_strain[s]) + old_z + stress);
-        SymmetricTensor<2, 3> driving_strain;
+        const SymmetricTensor<2, 3> &old_z = old_state.z[c * n + s];
+        const SymmetricTensor<2, 3>  mean_strain =
+                                      0.5 * (old_strain[s] + strain[s]),
+                                    mean_z = 0.5 * (old_z + z);
+        // E^-1 sigma, of the mean stress of the step.
+        SymmetricTensor<2, 3> driving_strain =
+          mean_strain + stiffness.strain(mean_z);
         // Parameters may be expressions: only for laws that use them.
         if (law && law->has_own_energy())
           {
-            const LawPoint point = now.point(c, s);
-            driving_strain       = law->driving_strain(
-              mean_stress, 0.5 * (old_strain[s] + strain[s]), stiffness, point);
+            const LawPoint              point = now.point(c, s);
+            const SymmetricTensor<2, 3> stress =
+              stiffness.stress(strain[s]) + z;
+            driving_strain =
+              law->driving_strain(stiffness.stress(mean_strain) + mean_z,
+                                  mean_strain,
+                                  stiffness,
+                                  point);
             result.irreversible_energy +=
               weight *
               (law->stored_energy(stress, strain[s], stiffness, point) -
-               0.5 * (stiffness.strain(stress) * stress));
+               0.5 * stiffness.complementary_square(stress));
           }
-        else
-          driving_strain = stiffness.strain(mean_stress);
         result.viscous_dissipation -= weight * ((z - old_z) * driving_strain);
       }
     return result;

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/discretization/flow_laws.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -220,12 +221,9 @@ namespace Viscoplastic
 
   namespace
   {
-    /// A NaN compares as no limit at all.
     void
-    require_rate(const double r, const Point<3> &x, const double t)
+    refuse_rate(const double r, const Point<3> &x, const double t)
     {
-      if (r >= 0.)
-        return;
       std::ostringstream message;
       message << "The relaxation rate is " << r << " at x = (" << x
               << "), t = " << t
@@ -246,36 +244,44 @@ namespace Viscoplastic
                 const typename ExactSolution<dim>::Side side)
   {
     const StressSpace<dim> &stress_space = laws.stress_space;
+    const unsigned int      n            = stress_space.n_samples;
     const MPI_Comm          comm         = stress_space.space.communicator;
     const auto              now          = laws.at(t);
     FlowRate                result{IrreversibleStress(z.size()), 0., 0.};
-    std::vector<SymmetricTensor<2, 3>> strain(stress_space.n_samples);
-    LargestPlace<3>                    worst;
+    std::array<SymmetricTensor<2, 3>, GeometryInfo<dim>::vertices_per_cell>
+                                                               strain, stress;
+    std::array<LawPoint, GeometryInfo<dim>::vertices_per_cell> points;
+    std::array<Flow, GeometryInfo<dim>::vertices_per_cell>     flow;
+    LargestPlace<3>                                            worst;
     // An expression without a value there, on some rank.
     fail_together(comm, [&] {
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
           if (laws.source_solution)
-            for (unsigned int s = 0; s < stress_space.n_samples; ++s)
-              result.rate[c * stress_space.n_samples + s] =
-                laws.source(now, c, s, side);
+            for (unsigned int s = 0; s < n; ++s)
+              result.rate[c * n + s] = laws.source(now, c, s, side);
           const ViscoplasticLaw *law = now.law(c);
           if (law == nullptr)
             continue;
           const Stiffness &stiffness = stress_space.moduli(c);
           stress_space.strains(c, ghosted_u.begin(), strain.data());
-          for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+          for (unsigned int s = 0; s < n; ++s)
             {
-              const std::size_t           i = c * stress_space.n_samples + s;
-              const LawPoint              point = now.point(c, s);
-              const SymmetricTensor<2, 3> stress =
-                stiffness.stress(strain[s]) + z[i];
-              result.rate[i] += law->rate(stress, strain[s], stiffness, point);
-              const double r =
-                law->relaxation_rate(stress, strain[s], stiffness, point);
-              require_rate(r, position(stress_space, c, s), t);
-              worst.add(r, position(stress_space, c, s));
-              if (law->is_beyond_cap(stress, point))
+              stress[s] = stiffness.stress(strain[s]) + z[c * n + s];
+              points[s] = now.point(c, s);
+            }
+          law->flow({n, stress.data(), strain.data(), points.data(), stiffness},
+                    flow.data());
+          for (unsigned int s = 0; s < n; ++s)
+            {
+              result.rate[c * n + s] += flow[s].rate;
+              const double r = flow[s].relaxation_rate;
+              // A NaN compares as no limit at all.
+              if (!(r >= 0.))
+                refuse_rate(r, points[s].x, t);
+              if (worst.may_take(r))
+                worst.add(r, points[s].x);
+              if (flow[s].is_beyond_cap)
                 result.capped_volume += stress_space.weight(c, s);
             }
         }

@@ -80,7 +80,10 @@ namespace Viscoplastic
                             SymmetricTensor<2, 3> *strain) const
   {
     const unsigned int *node = &nodes[cell * n_vertices];
-    double              mean = 0.;
+    double              mean = 0., values[n_vertices][dim];
+    for (unsigned int v = 0; v < n_vertices; ++v)
+      for (unsigned int i = 0; i < dim; ++i)
+        values[v][i] = u[node[v] + i];
     for (unsigned int s = 0; s < n_samples; ++s)
       {
         const Tensor<1, dim> *g =
@@ -89,7 +92,7 @@ namespace Viscoplastic
         for (unsigned int v = 0; v < n_vertices; ++v)
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j)
-              gradient[i][j] += u[node[v] + i] * g[v][j];
+              gradient[i][j] += values[v][i] * g[v][j];
         strain[s] = 0.;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = i; j < dim; ++j)
@@ -126,24 +129,31 @@ namespace Viscoplastic
           pressure += trace(stress[s]) / 3. * weight(cell, s);
         pressure /= volumes[cell];
       }
+    double forces[n_vertices][dim] = {};
     for (unsigned int s = 0; s < n_samples; ++s)
       {
         const Tensor<1, dim> *g =
           &gradients[(cell * n_samples + s) * n_vertices];
-        SymmetricTensor<2, 3> acting = stress[s];
+        const double weighted = factor * weight(cell, s);
+        // What acts in the plane, in 2D.
+        double acting[dim][dim];
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            acting[i][j] = stress[s][i][j];
         if (mean_pressure)
-          for (unsigned int d = 0; d < 3; ++d)
+          for (unsigned int d = 0; d < dim; ++d)
             acting[d][d] += pressure - trace(stress[s]) / 3.;
-        acting *= factor * weight(cell, s);
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            acting[i][j] *= weighted;
         for (unsigned int v = 0; v < n_vertices; ++v)
           for (unsigned int i = 0; i < dim; ++i)
-            {
-              double force = 0.;
-              for (unsigned int j = 0; j < dim; ++j)
-                force += acting[i][j] * g[v][j];
-              load[node[v] + i] += force;
-            }
+            for (unsigned int j = 0; j < dim; ++j)
+              forces[v][i] += acting[i][j] * g[v][j];
       }
+    for (unsigned int v = 0; v < n_vertices; ++v)
+      for (unsigned int i = 0; i < dim; ++i)
+        load[node[v] + i] += forces[v][i];
   }
 
 

@@ -79,58 +79,61 @@ namespace Viscoplastic
     const StressSpace<dim>            &stress_space = laws.stress_space;
     const unsigned int                 n            = stress_space.n_samples;
     const auto                         now          = laws.at(t);
-    std::vector<SymmetricTensor<4, 3>> new_tangents;
-    new_tangents.reserve(stress_space.n_cells() * n);
     std::vector<SymmetricTensor<2, 3>> strain(n);
     const MPI_Comm                     comm = stress_space.space.communicator;
+    // Never the same before the first time, also on ranks without cells; nor
+    // after this if it does not come to its end.
+    const double old_max_nu = max_nu;
+    bool         is_same    = max_nu > -1.;
+    max_nu                  = -1.;
+    step_size               = 0.;
+    tangents.resize(stress_space.n_cells() * n);
+    compliances.resize(tangents.size());
+    double                largest = 1., largest_nu = -1.;
+    const Stiffness      *last = nullptr;
+    SymmetricTensor<4, 3> E, E_inverse;
     // A law without derivatives at a sample fails the step.
     fail_together(comm, [&] {
       for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
         {
           const ViscoplasticLaw *law       = now.law(c);
           const Stiffness       &stiffness = stress_space.moduli(c);
-          stress_space.strains(c, ghosted_u.begin(), strain.data());
+          if (&stiffness != last)
+            {
+              E         = stiffness.tensor();
+              E_inverse = invert(E);
+              last      = &stiffness;
+            }
+          if (law)
+            stress_space.strains(c, ghosted_u.begin(), strain.data());
           for (unsigned int s = 0; s < n; ++s)
-            new_tangents.push_back(
-              law ?
-                definite_tangent(algorithmic_tangent(
-                                   *law,
-                                   stiffness.stress(strain[s]) + z[c * n + s],
+            {
+              const std::size_t i = c * n + s;
+              const StepTangent next =
+                law ? step_tangent(*law,
+                                   stiffness.stress(strain[s]) + z[i],
                                    strain[s],
                                    k,
                                    stiffness,
-                                   now.point(c, s)),
-                                 stiffness) :
-                stiffness.tensor());
+                                   now.point(c, s)) :
+                      StepTangent{E, E_inverse};
+              is_same        = is_same && next.tangent == tangents[i];
+              tangents[i]    = next.tangent;
+              compliances[i] = next.compliance;
+              largest_nu = std::max(largest_nu, poissons_ratio(tangents[i]));
+              // The largest eigenvalue of C^-1 E: with a potential, all others
+              // are at least 1.
+              largest = std::max(largest, trace(compliances[i], E) - 5.);
+            }
         }
     });
     step_size = k;
-    // Never the same before the first time, also on ranks without cells.
-    const bool is_same =
-      Utilities::MPI::min(max_nu > -1. && new_tangents == tangents ? 1 : 0,
-                          comm);
-    if (is_same)
-      return false;
-
-    tangents = std::move(new_tangents);
-    compliances.clear();
-    max_nu                        = -1.;
-    double                largest = 1.;
-    const Stiffness      *last    = nullptr;
-    SymmetricTensor<4, 3> E;
-    for (std::size_t i = 0; i < tangents.size(); ++i)
+    if (Utilities::MPI::min(is_same ? 1 : 0, comm) == 1)
       {
-        compliances.push_back(invert(tangents[i]));
-        max_nu = std::max(max_nu, poissons_ratio(tangents[i]));
-        // The largest eigenvalue of C^-1 E: with a potential, all others are at
-        // least 1.
-        const Stiffness &stiffness = stress_space.moduli(i / n);
-        if (&stiffness != last)
-          E = stiffness.tensor();
-        last    = &stiffness;
-        largest = std::max(largest, trace(compliances[i], E) - 5.);
+        max_nu = old_max_nu;
+        return false;
       }
-    max_nu = Utilities::MPI::max(max_nu, comm);
+    max_nu = Utilities::MPI::max(largest_nu, comm);
     ratio  = std::sqrt(Utilities::MPI::max(largest, comm));
     assemble();
     return true;

@@ -59,6 +59,63 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// dev a P + vol a I (x) I + along a s (x) s, P the deviator.
+    SymmetricTensor<4, 3>
+    transversal_tensor(const double                 dev,
+                       const double                 vol,
+                       const double                 along,
+                       const SymmetricTensor<2, 3> &s)
+    {
+      SymmetricTensor<4, 3> result;
+      for (unsigned int i = 0; i < 6; ++i)
+        for (unsigned int j = 0; j < 6; ++j)
+          result.access_raw_entry(6 * i + j) =
+            along * s.access_raw_entry(i) * s.access_raw_entry(j) +
+            (i < 3 && j < 3 ? vol - dev / 3. : 0.) +
+            (i == j ? (i < 3 ? dev : 0.5 * dev) : 0.);
+      return result;
+    }
+
+
+
+    /**
+     * The tangent where radial_return() has given the stress, and its inverse:
+     * dev sigma is that of the trial stress over 1 + a, and changes by 1/(1 +
+     * b) along itself. Both are definite, since f is convex. Nothing for other
+     * laws and bodies, and where nothing flows.
+     */
+    std::optional<StepTangent>
+    radial_tangent(const ViscoplasticLaw       &law,
+                   const SymmetricTensor<2, 3> &stress,
+                   const double                 k,
+                   const Stiffness             &stiffness,
+                   const LawPoint              &point)
+    {
+      if (!stiffness.is_isotropic())
+        return {};
+      SymmetricTensor<2, 3> s    = deviator(stress);
+      const double          size = s.norm();
+      const auto            f = law.radial_flow(std::sqrt(1.5) * size, point);
+      if (!f)
+        return {};
+      const double mu = stiffness.shear_modulus(), K = stiffness.bulk_modulus(),
+                   a = 3. * mu * k * f->secant, b = 3. * mu * k * f->tangent;
+      if (!(a + b > 0.)) // or not a number
+        return {};
+      if (size > 0.)
+        s /= size;
+      return StepTangent{
+        transversal_tensor(
+          2. * mu / (1. + a), K, 2. * mu * (a - b) / ((1. + a) * (1. + b)), s),
+        transversal_tensor(
+          (1. + a) / (2. * mu), 1. / (9. * K), (b - a) / (2. * mu), s)};
+    }
+  } // namespace
+
+
+
   SymmetricTensor<2, 3>
   implicit_irreversible_stress(const ViscoplasticLaw       &law,
                                const SymmetricTensor<2, 3> &strain,
@@ -119,22 +176,8 @@ namespace Viscoplastic
                       const Stiffness             &stiffness,
                       const LawPoint              &point)
   {
-    if (const auto f = law.radial_flow(von_mises(stress), point);
-        f && stiffness.is_isotropic())
-      {
-        // dev sigma is that of the trial stress over 1 + a, along itself it
-        // changes by 1/(1 + b).
-        const double mu = stiffness.shear_modulus(),
-                     a = 3. * mu * k * f->secant, b = 3. * mu * k * f->tangent;
-        const SymmetricTensor<2, 3> s    = deviator(stress);
-        const double                size = s.norm();
-        SymmetricTensor<4, 3>       C    = stiffness.tensor();
-        C -= 2. * mu * (a / (1. + a)) * deviator_tensor<3>();
-        if (size > 0.)
-          C -= 2. * mu * (b / (1. + b) - a / (1. + a)) / (size * size) *
-               outer_product(s, s);
-        return C;
-      }
+    if (const auto radial = radial_tangent(law, stress, k, stiffness, point))
+      return radial->tangent;
     const auto tangents = law.tangents(stress, strain, stiffness, point);
     const SymmetricTensor<4, 3> E = stiffness.tensor();
     // Exactly, so that a matrix is known to be that of an elastic body.
@@ -187,5 +230,22 @@ namespace Viscoplastic
           return blend;
       }
     return E;
+  }
+
+
+
+  StepTangent
+  step_tangent(const ViscoplasticLaw       &law,
+               const SymmetricTensor<2, 3> &stress,
+               const SymmetricTensor<2, 3> &strain,
+               const double                 k,
+               const Stiffness             &stiffness,
+               const LawPoint              &point)
+  {
+    if (const auto radial = radial_tangent(law, stress, k, stiffness, point))
+      return *radial;
+    const SymmetricTensor<4, 3> C = definite_tangent(
+      algorithmic_tangent(law, stress, strain, k, stiffness, point), stiffness);
+    return {C, invert(C)};
   }
 } // namespace Viscoplastic

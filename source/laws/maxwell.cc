@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#include <viscoplastic_contact/laws/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/pointwise_law.h>
 
 namespace Viscoplastic
 {
@@ -13,60 +13,22 @@ namespace Viscoplastic
      * G = -E dev sigma/(2 eta): an elastic spring in series with a dashpot
      * whose strain rate is dev sigma/(2 eta).
      */
-    class Maxwell : public ViscoplasticLaw
+    class Maxwell final : public RadialLaw<Maxwell>
     {
     public:
       explicit Maxwell(const LawSection &section)
-        : ViscoplasticLaw(
-            {{section, "Viscosity", LawParameter::Range::positive}})
+        : RadialLaw({{section, "Viscosity", LawParameter::Range::positive}})
       {}
 
-      SymmetricTensor<2, 3>
-      rate(const SymmetricTensor<2, 3> &stress,
-           const SymmetricTensor<2, 3> & /*strain*/,
-           const Stiffness &stiffness,
-           const LawPoint  &point) const override
+      FlowSlopes
+      slopes(const double /*sigma_eq*/, const LawPoint &point) const
       {
-        return stiffness.stress(deviator(stress) /
-                                (-2 * point.parameters[viscosity]));
-      }
-
-      Tangents
-      tangents(const SymmetricTensor<2, 3> & /*stress*/,
-               const SymmetricTensor<2, 3> & /*strain*/,
-               const Stiffness &stiffness,
-               const LawPoint  &point) const override
-      {
-        Tangents tangents;
-        tangents.stress = stiffness.tensor() * deviator_tensor<3>() /
-                          (-2 * point.parameters[viscosity]);
-        return tangents;
+        const double fluidity = 1. / (3. * point.parameters[viscosity]);
+        return {fluidity, fluidity};
       }
 
       bool
       has_constant_tangents() const override
-      {
-        return true;
-      }
-
-      bool
-      has_symmetric_tangents() const override
-      {
-        return true;
-      }
-
-      double
-      relaxation_rate(const SymmetricTensor<2, 3> & /*stress*/,
-                      const SymmetricTensor<2, 3> & /*strain*/,
-                      const Stiffness &stiffness,
-                      const LawPoint  &point) const override
-      {
-        return stiffness.largest_deviatoric_eigenvalue() /
-               (2 * point.parameters[viscosity]);
-      }
-
-      bool
-      deviatoric_flow() const override
       {
         return true;
       }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#include <viscoplastic_contact/laws/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Viscoplastic
 {
@@ -21,67 +22,31 @@ namespace Viscoplastic
      *
      * the tangent there, without which G were not Lipschitz.
      */
-    class Norton : public ViscoplasticLaw
+    class Norton final : public RadialLaw<Norton>
     {
     public:
       explicit Norton(const LawSection &section)
-        : ViscoplasticLaw(
+        : RadialLaw(
             {{section, "Rate factor", LawParameter::Range::non_negative},
              {section, "Exponent", LawParameter::Range::at_least_one},
              {section, "Stress cap", LawParameter::Range::positive}})
       {}
 
-      SymmetricTensor<2, 3>
-      rate(const SymmetricTensor<2, 3> &stress,
-           const SymmetricTensor<2, 3> & /*strain*/,
-           const Stiffness &stiffness,
-           const LawPoint  &point) const override
+      FlowSlopes
+      slopes(const double sigma_eq, const LawPoint &point) const
       {
-        return stiffness.stress(-1.5 * slopes(von_mises(stress), point).secant *
-                                deviator(stress));
-      }
-
-      Tangents
-      tangents(const SymmetricTensor<2, 3> &stress,
-               const SymmetricTensor<2, 3> & /*strain*/,
-               const Stiffness &stiffness,
-               const LawPoint  &point) const override
-      {
-        const FlowSlopes slope = slopes(von_mises(stress), point);
-        Tangents         tangents;
-        tangents.stress = -1. * stiffness.tensor() *
-                          flow_tangent(stress, slope.secant, slope.tangent);
-        return tangents;
-      }
-
-      double
-      relaxation_rate(const SymmetricTensor<2, 3> &stress,
-                      const SymmetricTensor<2, 3> & /*strain*/,
-                      const Stiffness &stiffness,
-                      const LawPoint  &point) const override
-      {
-        // The tangent is the larger slope. It changes continuously with the
-        // stress, so the present one counts.
-        return 1.5 * stiffness.largest_deviatoric_eigenvalue() *
-               slopes(von_mises(stress), point).tangent;
-      }
-
-      std::optional<FlowSlopes>
-      radial_flow(const double sigma_eq, const LawPoint &point) const override
-      {
-        return slopes(sigma_eq, point);
-      }
-
-      bool
-      has_symmetric_tangents() const override
-      {
-        return true;
-      }
-
-      bool
-      deviatoric_flow() const override
-      {
-        return true;
+        // A sigma^n is formed as (A^(1/n) sigma)^n: in SI units neither A nor
+        // sigma^n need be within the range of a double.
+        const double n     = point.parameters[exponent];
+        const double a     = point.parameters[root_of_rate_factor];
+        const double sigma = std::min(sigma_eq, point.parameters[cap]);
+        FlowSlopes   result;
+        result.secant  = a * power(a * sigma, n - 1.);
+        result.tangent = n * result.secant;
+        if (sigma_eq > sigma)
+          result.secant +=
+            (result.tangent - result.secant) * (1. - sigma / sigma_eq);
+        return result;
       }
 
       bool
@@ -91,10 +56,9 @@ namespace Viscoplastic
       }
 
       bool
-      is_beyond_cap(const SymmetricTensor<2, 3> &stress,
-                    const LawPoint              &point) const override
+      is_capped(const double sigma_eq, const LawPoint &point) const
       {
-        return von_mises(stress) > point.parameters[cap];
+        return sigma_eq > point.parameters[cap];
       }
 
       std::string
@@ -110,23 +74,30 @@ namespace Viscoplastic
       {
         rate_factor,
         exponent,
-        cap
+        cap,
+        root_of_rate_factor // A^(1/n), added by prepare()
       };
 
-      static FlowSlopes
-      slopes(const double equivalent_stress, const LawPoint &point)
+      void
+      prepare(LawPoint &point) const override
       {
-        // A sigma^n is formed as (A^(1/n) sigma)^n: in SI units neither A nor
-        // sigma^n need be within the range of a double.
-        const double n     = point.parameters[exponent];
-        const double a     = std::pow(point.parameters[rate_factor], 1. / n);
-        const double sigma = std::min(equivalent_stress, point.parameters[cap]);
-        FlowSlopes   result;
-        result.secant  = a * std::pow(a * sigma, n - 1.);
-        result.tangent = n * result.secant;
-        if (equivalent_stress > sigma)
-          result.secant +=
-            (result.tangent - result.secant) * (1. - sigma / equivalent_stress);
+        point.parameters[root_of_rate_factor] =
+          std::pow(point.parameters[rate_factor],
+                   1. / point.parameters[exponent]);
+      }
+
+      /// x^m; most exponents of laws are whole numbers, whose powers are a few
+      /// products.
+      static double
+      power(double x, const double m)
+      {
+        const double most = 16.;
+        if (!(m <= most && m == std::floor(m)))
+          return std::pow(x, m);
+        double result = 1.;
+        for (auto n = static_cast<unsigned int>(m); n > 0; n /= 2, x *= x)
+          if (n % 2 == 1)
+            result *= x;
         return result;
       }
     };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#include <viscoplastic_contact/laws/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
 #include <sstream>
@@ -20,12 +20,11 @@ namespace Viscoplastic
      *     sigma_eq = sqrt(3/2) |s|,   p = -tr(sigma)/3,
      *     eps_eq = sqrt(2/3) |d|,     d = dev(eps - E^-1 sigma).
      */
-    class Parsed : public ViscoplasticLaw
+    class Parsed final : public PointwiseLaw<Parsed>
     {
     public:
       explicit Parsed(const LawSection &section)
-        : ViscoplasticLaw(
-            {{section, "Factor", LawParameter::Range::non_negative}})
+        : PointwiseLaw({{section, "Factor", LawParameter::Range::non_negative}})
         , f(section.prm.get("Strain rate"),
             section.path + "/Strain rate",
             "sigma_eq,p,eps_eq")

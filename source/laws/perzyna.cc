@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#include <viscoplastic_contact/laws/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/pointwise_law.h>
 
 namespace Viscoplastic
 {
@@ -20,11 +20,11 @@ namespace Viscoplastic
      *
      *     R = k_Y + H sqrt(2/3) |d|,   d = dev(eps - E^-1 sigma).
      */
-    class Perzyna : public ViscoplasticLaw
+    class Perzyna final : public PointwiseLaw<Perzyna>
     {
     public:
       explicit Perzyna(const LawSection &section)
-        : ViscoplasticLaw(
+        : PointwiseLaw(
             {{section, "Yield radius", LawParameter::Range::non_negative},
              {section, "Hardening modulus", LawParameter::Range::non_negative},
              {section, "Viscosity", LawParameter::Range::positive}})

@@ -124,4 +124,20 @@ namespace Viscoplastic
     result.anisotropic_data = std::move(data);
     return result;
   }
+
+
+
+  SymmetricTensor<2, 3>
+  Stiffness::anisotropic_stress(const SymmetricTensor<2, 3> &strain) const
+  {
+    return anisotropic_data->stiffness * strain;
+  }
+
+
+
+  SymmetricTensor<2, 3>
+  Stiffness::anisotropic_strain(const SymmetricTensor<2, 3> &stress) const
+  {
+    return anisotropic_data->compliance * stress;
+  }
 } // namespace Viscoplastic

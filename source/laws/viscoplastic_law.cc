@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
 #include <viscoplastic_contact/base/subsection.h>
-#include <viscoplastic_contact/laws/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
 #include <sstream>
@@ -115,6 +115,7 @@ namespace Viscoplastic
     LawPoint result{x, t, {}};
     for (unsigned int i = 0; i < parameters.size(); ++i)
       result.parameters[i] = parameters[i].value(x, t);
+    prepare(result);
     return result;
   }
 
@@ -140,6 +141,14 @@ namespace Viscoplastic
                        [](const LawParameter &p) {
                          return p.depends_on_time();
                        });
+  }
+
+
+
+  void
+  ViscoplasticLaw::flow(const LawStates &states, Flow *result) const
+  {
+    flow_at_points(*this, states, result);
   }
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#include <viscoplastic_contact/laws/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
 #include <array>
@@ -202,11 +202,11 @@ namespace Viscoplastic
      * in place of 1/2 B^-1 q_N : q_N, as in the other laws: all of it is
      * 1/2 E^-1 sigma : sigma if no mode relaxes.
      */
-    class Zener : public ViscoplasticLaw
+    class Zener final : public PointwiseLaw<Zener>
     {
     public:
       explicit Zener(const LawSection &section)
-        : ViscoplasticLaw(
+        : PointwiseLaw(
             {{section,
               "Long-term Young's modulus",
               LawParameter::Range::non_negative},

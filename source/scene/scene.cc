@@ -460,6 +460,19 @@ namespace Viscoplastic
   {
     std::vector<std::string> result{dim == 2 ? "elasticity (plane strain)" :
                                                "elasticity (3D)"};
+    // Of scenes that are older than a default and leave it to the program.
+    const auto earlier = [&](const std::string &entry,
+                             const std::string &choice) {
+      return parameters.origin_of(entry).empty() ?
+               " (default; '" + entry + "' = " + choice +
+                 " in earlier versions)" :
+               "";
+    };
+    const std::string history =
+                        name_of(parameters.stress.stress_history) +
+                        earlier("Material/Stress history", "cell means"),
+                      pressure = "the computed pressure" +
+                                 earlier("Solver/Coulomb pressure", "lagged");
     for (const auto &material : materials)
       {
         const std::string of =
@@ -469,10 +482,10 @@ namespace Viscoplastic
         if (!material->law)
           continue;
         const std::string announcement = material->law->announcement();
-        result.push_back(
-          "viscoplastic flow" + of + " (" + material->law_name +
-          ", history at " + name_of(parameters.stress.stress_history) +
-          (announcement.empty() ? "" : "; " + announcement) + ")");
+        result.push_back("viscoplastic flow" + of + " (" + material->law_name +
+                         ", history at " + history +
+                         (announcement.empty() ? "" : "; " + announcement) +
+                         ")");
       }
     if (has_viscosity())
       result.push_back("time integration by " +
@@ -508,8 +521,7 @@ namespace Viscoplastic
     add_contact("unilateral contact with Tresca friction",
                 ContactLaw::unilateral,
                 FrictionLaw::tresca);
-    add_contact("unilateral contact with Coulomb friction of the computed "
-                "pressure",
+    add_contact("unilateral contact with Coulomb friction of " + pressure,
                 ContactLaw::unilateral,
                 FrictionLaw::coulomb);
     add_contact("frictionless unilateral contact",
@@ -518,8 +530,7 @@ namespace Viscoplastic
     add_contact("normal compliance with Tresca friction",
                 ContactLaw::compliance,
                 FrictionLaw::tresca);
-    add_contact("normal compliance with Coulomb friction of the computed "
-                "pressure",
+    add_contact("normal compliance with Coulomb friction of " + pressure,
                 ContactLaw::compliance,
                 FrictionLaw::coulomb);
     add_contact("frictionless normal compliance",

@@ -125,6 +125,9 @@ namespace Viscoplastic
   AcceptedStep<dim>
   TimeStepper<dim>::next(const EvaluatedState<dim> &accepted)
   {
+    // What settled the state on a new mesh has done so.
+    if (!quantity_estimator)
+      elastic_solver.reset();
     const State<dim>       &state = accepted.state;
     std::optional<FlowRate> evaluated;
     const FlowRate         *rate = accepted.rate ? &*accepted.rate : nullptr;
@@ -446,8 +449,6 @@ namespace Viscoplastic
     });
     d.space.to_cartesian(u, state.u);
     carried.forces = evaluate_forces(d.stress_space, d.matrix, load, state);
-    if (!quantity_estimator)
-      elastic_solver.reset();
   }
 
 

@@ -33,6 +33,7 @@ MISBEHAVING = r"""
 #include <viscoplastic_contact/laws/law_library.h>
 
 #include <cstdlib>
+#include <iostream>
 #include <limits>
 
 namespace Viscoplastic
@@ -50,12 +51,26 @@ namespace Viscoplastic
         std::exit(0);
     }
 
+    ~Misbehaving()
+    {
+      if (name == "counts")
+        std::cout << n_cells << " cells, " << n_points << " points" << std::endl;
+    }
+
+    void
+    flow(const LawStates &states, Flow *result) const override
+    {
+      ++n_cells;
+      ViscoplasticLaw::flow(states, result);
+    }
+
     SymmetricTensor<2, 3>
     rate(const SymmetricTensor<2, 3> &stress,
          const SymmetricTensor<2, 3> &,
          const Stiffness &,
          const LawPoint &point) const override
     {
+      ++n_points;
       if (name == "throws_in_a_run" && point.t > 0.)
         throw 3;
       if (name == "exits_in_a_run" && point.t > 0.)
@@ -92,7 +107,8 @@ namespace Viscoplastic
     }
 
   private:
-    const std::string name;
+    const std::string    name;
+    mutable unsigned int n_cells = 0, n_points = 0;
   };
 
   LawDescription
@@ -115,7 +131,8 @@ VISCOPLASTIC_LAW_LIBRARY(describe("throws_when_made"),
                          describe("throws_in_a_run"),
                          describe("exits_in_a_run"),
                          describe("nan_limit"),
-                         describe("negative_limit"))
+                         describe("negative_limit"),
+                         describe("counts"))
 """
 
 
@@ -264,6 +281,27 @@ class Example(Libraries):
             with self.subTest(law=law, ranks=ranks):
                 library = self.library.with_name("misbehaving.so")
                 self.refused(library, sentence, ranks=ranks, **{"Material/Law": law})
+
+    def test_a_step_evaluates_a_law_once(self):
+        """At each point of each cell, G at the end of a step is that at the start
+        of the next one, of its balance and of its estimate."""
+        library = self.library.with_name("misbehaving.so")
+        for history, n_points in (("cell means", 1), ("quadrature points", 4)):
+            with self.subTest(history=history):
+                result = run(
+                    "slab",
+                    {
+                        "Additional shared libraries": library,
+                        "Material/Law": "counts",
+                        "Material/Stress history": history,
+                    },
+                )
+                cells, points = re.search(
+                    r"(\d+) cells, (\d+) points", result.stdout
+                ).groups()
+                n_cells = result["cells"][0] * len(result["step"])
+                self.assertEqual(int(cells), n_cells)
+                self.assertEqual(int(points), n_points * n_cells)
 
     def test_scenes_without_it_do_not_know_the_law(self):
         result = run("slab", GAROFALO, check=False)

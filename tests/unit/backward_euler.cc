@@ -139,6 +139,36 @@ namespace
 
 
 
+  TEST(StepTangent, HasItsInverse)
+  {
+    for (const Stiffness &E : {isotropic, anisotropic()})
+      for (const auto &[law, entries] :
+           {std::make_pair("norton",
+                           "set Rate factor = 0.5\nset Exponent = 4\nset "
+                           "Stress cap = 3"),
+            std::make_pair("maxwell", "set Viscosity = 0.7"),
+            std::make_pair("perzyna", "set Yield radius = 0.2")})
+        for (const double k : {0., 1e-3, 1., 1e3})
+          {
+            const Sample  sample(law, entries, E);
+            const Tensor2 strain = symmetric(0.7, -0.2, 0.1, 0.3, -0.4, 0.2),
+                          stress = E.stress(strain);
+            const StepTangent both =
+              step_tangent(*sample.law, stress, strain, k, E, sample.point);
+            const auto tangents =
+              sample.law->tangents(stress, strain, E, sample.point);
+            const Tensor4 C =
+              invert(identity_tensor<3>() - k * tangents.stress) * E.tensor();
+            EXPECT_LT((both.tangent - C).norm(), 1e-12 * C.norm()) << law << k;
+            EXPECT_LT(
+              (both.tangent * both.compliance - identity_tensor<3>()).norm(),
+              1e-9)
+              << law << k;
+          }
+  }
+
+
+
   TEST(BackwardEuler, MaxwellAndZenerByHand)
   {
     const Sample  maxwell("maxwell", "set Viscosity = 0.5");

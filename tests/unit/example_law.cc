@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-#include <viscoplastic_contact/laws/viscoplastic_law.h>
+#include <viscoplastic_contact/laws/pointwise_law.h>
 
 #include <algorithm>
 
@@ -15,59 +15,32 @@ namespace Viscoplastic
      * G = -E (strain rate), strain rate = 3/2 f dev(sigma)/sigma_eq with
      * f = A sinh(sigma_eq/sigma_0) up to the cap, and its tangent beyond.
      */
-    class Garofalo : public ViscoplasticLaw
+    class Garofalo final : public RadialLaw<Garofalo>
     {
     public:
       explicit Garofalo(const LawSection &section)
-        : ViscoplasticLaw(
+        : RadialLaw(
             {{section, "Rate factor", LawParameter::Range::non_negative},
              {section, "Stress scale", LawParameter::Range::positive},
              {section, "Stress cap", LawParameter::Range::positive}})
       {}
 
-      SymmetricTensor<2, 3>
-      rate(const SymmetricTensor<2, 3> &stress,
-           const SymmetricTensor<2, 3> & /*strain*/,
-           const Stiffness &stiffness,
-           const LawPoint  &point) const override
+      /// f/sigma_eq and df/dsigma_eq.
+      FlowSlopes
+      slopes(const double sigma, const LawPoint &point) const
       {
-        return stiffness.stress(-1.5 * slopes(stress, point).secant *
-                                deviator(stress));
-      }
+        const double A       = point.parameters[rate_factor];
+        const double sigma_0 = point.parameters[stress_scale];
+        const double capped  = std::min(sigma, point.parameters[cap]);
 
-      Tangents
-      tangents(const SymmetricTensor<2, 3> &stress,
-               const SymmetricTensor<2, 3> & /*strain*/,
-               const Stiffness &stiffness,
-               const LawPoint  &point) const override
-      {
-        const Slopes slope = slopes(stress, point);
-        Tangents     tangents;
-        tangents.stress = -1. * stiffness.tensor() *
-                          flow_tangent(stress, slope.secant, slope.tangent);
-        return tangents;
-      }
-
-      double
-      relaxation_rate(const SymmetricTensor<2, 3> &stress,
-                      const SymmetricTensor<2, 3> & /*strain*/,
-                      const Stiffness &stiffness,
-                      const LawPoint  &point) const override
-      {
-        return 1.5 * stiffness.largest_deviatoric_eigenvalue() *
-               slopes(stress, point).tangent;
-      }
-
-      bool
-      has_symmetric_tangents() const override
-      {
-        return true;
-      }
-
-      bool
-      deviatoric_flow() const override
-      {
-        return true;
+        FlowSlopes result;
+        result.tangent = A / sigma_0 * std::cosh(capped / sigma_0);
+        result.secant  = A / sigma_0; // the limit of zero stress
+        if (sigma > 0)
+          result.secant = (A * std::sinh(capped / sigma_0) +
+                           result.tangent * (sigma - capped)) /
+                          sigma;
+        return result;
       }
 
       bool
@@ -77,10 +50,9 @@ namespace Viscoplastic
       }
 
       bool
-      is_beyond_cap(const SymmetricTensor<2, 3> &stress,
-                    const LawPoint              &point) const override
+      is_capped(const double sigma, const LawPoint &point) const
       {
-        return von_mises(stress) > point.parameters[cap];
+        return sigma > point.parameters[cap];
       }
 
     private:
@@ -91,31 +63,6 @@ namespace Viscoplastic
         stress_scale,
         cap
       };
-
-      /// f/sigma_eq and df/dsigma_eq; the first is at most the second, since
-      /// sinh is convex.
-      struct Slopes
-      {
-        double secant, tangent;
-      };
-
-      static Slopes
-      slopes(const SymmetricTensor<2, 3> &stress, const LawPoint &point)
-      {
-        const double A       = point.parameters[rate_factor];
-        const double sigma_0 = point.parameters[stress_scale];
-        const double sigma   = von_mises(stress);
-        const double capped  = std::min(sigma, point.parameters[cap]);
-
-        Slopes result;
-        result.tangent = A / sigma_0 * std::cosh(capped / sigma_0);
-        result.secant  = A / sigma_0; // the limit of zero stress
-        if (sigma > 0)
-          result.secant = (A * std::sinh(capped / sigma_0) +
-                           result.tangent * (sigma - capped)) /
-                          sigma;
-        return result;
-      }
     };
   } // namespace
 

@@ -84,6 +84,45 @@ namespace
 
 
 
+  TEST(Laws, FlowOfACellIsThatOfItsPoints)
+  {
+    RandomTensors random;
+    for (const Case &c : all_cases())
+      {
+        SCOPED_TRACE(c.name);
+        const FlowingBody    &body = c.body;
+        std::vector<Tensor2>  stress, strain;
+        std::vector<LawPoint> points(8, body.point);
+        for (unsigned int i = 0; i < points.size(); ++i)
+          {
+            const State state = random_state(body.stiffness, random);
+            stress.push_back(i == 0 ? Tensor2() : state.stress);
+            strain.push_back(state.strain);
+          }
+        // Other parameters at the last point.
+        points.back().parameters[0] *= 2.;
+        std::vector<Flow> flow(points.size());
+        body.law->flow(
+          {8, stress.data(), strain.data(), points.data(), body.stiffness},
+          flow.data());
+        for (unsigned int i = 0; i < points.size(); ++i)
+          {
+            const Tensor2 rate =
+              body.law->rate(stress[i], strain[i], body.stiffness, points[i]);
+            expect_near(flow[i].rate, rate, 1e-14 * (1. + rate.norm()));
+            const double r = body.law->relaxation_rate(stress[i],
+                                                       strain[i],
+                                                       body.stiffness,
+                                                       points[i]);
+            EXPECT_NEAR(flow[i].relaxation_rate, r, 1e-14 * (1. + r));
+            EXPECT_EQ(flow[i].is_beyond_cap,
+                      body.law->is_beyond_cap(stress[i], points[i]));
+          }
+      }
+  }
+
+
+
   TEST(Laws, TangentsAgainstCentralDifferences)
   {
     RandomTensors random;

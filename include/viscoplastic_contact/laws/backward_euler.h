@@ -137,4 +137,20 @@ namespace Viscoplastic
   SymmetricTensor<4, 3>
   definite_tangent(const SymmetricTensor<4, 3> &tangent,
                    const Stiffness             &stiffness);
+
+  /// What a solver takes for C, and its inverse.
+  struct StepTangent
+  {
+    SymmetricTensor<4, 3> tangent, compliance;
+  };
+
+  /// definite_tangent() of algorithmic_tangent(); in closed form for radial
+  /// flow in isotropic bodies.
+  StepTangent
+  step_tangent(const ViscoplasticLaw       &law,
+               const SymmetricTensor<2, 3> &stress,
+               const SymmetricTensor<2, 3> &strain,
+               const double                 k,
+               const Stiffness             &stiffness,
+               const LawPoint              &point);
 } // namespace Viscoplastic

@@ -124,6 +124,12 @@ namespace Viscoplastic
 
     Stiffness(const double shear_modulus, const double bulk_modulus);
 
+    // Not inline, which leaves the isotropic case short enough to be so.
+    SymmetricTensor<2, 3>
+    anisotropic_stress(const SymmetricTensor<2, 3> &strain) const;
+    SymmetricTensor<2, 3>
+    anisotropic_strain(const SymmetricTensor<2, 3> &stress) const;
+
     double                             mu;
     double                             bulk;
     std::shared_ptr<const Anisotropic> anisotropic_data;
@@ -174,11 +180,11 @@ namespace Viscoplastic
 
 
 
-  inline SymmetricTensor<2, 3>
+  DEAL_II_ALWAYS_INLINE inline SymmetricTensor<2, 3>
   Stiffness::stress(const SymmetricTensor<2, 3> &strain) const
   {
     if (anisotropic_data)
-      return anisotropic_data->stiffness * strain;
+      return anisotropic_stress(strain);
 
     SymmetricTensor<2, 3> result   = 2 * mu * strain;
     const double          pressure = (bulk - 2. / 3. * mu) * trace(strain);
@@ -189,11 +195,11 @@ namespace Viscoplastic
 
 
 
-  inline SymmetricTensor<2, 3>
+  DEAL_II_ALWAYS_INLINE inline SymmetricTensor<2, 3>
   Stiffness::strain(const SymmetricTensor<2, 3> &stress) const
   {
     if (anisotropic_data)
-      return anisotropic_data->compliance * stress;
+      return anisotropic_strain(stress);
 
     // The deviator is formed first: with 1/(9K) - 1/(6 mu) in one factor, the
     // small strain of a nearly incompressible body under high pressure would
@@ -207,11 +213,11 @@ namespace Viscoplastic
 
 
 
-  inline double
+  DEAL_II_ALWAYS_INLINE inline double
   Stiffness::complementary_square(const SymmetricTensor<2, 3> &stress) const
   {
     if (anisotropic_data)
-      return strain(stress) * stress;
+      return anisotropic_strain(stress) * stress;
     const double pressure = trace(stress) / 3.;
     return (stress * stress - 3. * pressure * pressure) / (2. * mu) +
            pressure * pressure / bulk;

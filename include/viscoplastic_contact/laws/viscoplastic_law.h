@@ -100,13 +100,37 @@ namespace Viscoplastic
 
 
   /// Where and when a law is evaluated (in 2D, z = 0), and what the
-  /// parameters of the law are there, in the order of its constructor.
+  /// parameters of the law are there, in the order of its constructor; behind
+  /// them there may be what the law derives from them, see
+  /// ViscoplasticLaw::prepare().
   struct LawPoint
   {
     Point<3>              x;
     double                t = 0;
     std::array<double, 6> parameters{};
   };
+
+  /// States at several points of one body, such as those of a cell.
+  struct LawStates
+  {
+    unsigned int                 n; // of each of these:
+    const SymmetricTensor<2, 3> *stress, *strain;
+    const LawPoint              *point;
+    const Stiffness             &stiffness;
+  };
+
+
+
+  /// G at a state, and what a step asks for beside it: r, and whether the
+  /// stress is beyond the cap of the law.
+  struct Flow
+  {
+    SymmetricTensor<2, 3> rate;
+    double                relaxation_rate = 0.;
+    bool                  is_beyond_cap   = false;
+  };
+
+
 
   /**
    * The function G of the constitutive equation (1.1),
@@ -270,6 +294,14 @@ namespace Viscoplastic
       return false;
     }
 
+    /**
+     * G at all points of a cell, what rate(), relaxation_rate() and
+     * is_beyond_cap() give at each. Steps call this once a cell; PointwiseLaw
+     * and RadialLaw do it without a virtual call a point.
+     */
+    virtual void
+    flow(const LawStates &states, Flow *result) const;
+
     /// What the user should know of this law at the start of a run, such as
     /// its cap; may be empty.
     virtual std::string
@@ -279,6 +311,11 @@ namespace Viscoplastic
     }
 
   protected:
+    /// Add to a point what is worth computing once from its parameters.
+    virtual void
+    prepare(LawPoint & /*point*/) const
+    {}
+
     /// Points will hold the values of the parameters in this order.
     explicit ViscoplasticLaw(std::vector<LawParameter> parameters);
 

@@ -235,6 +235,35 @@ class Held(TestCase):
                 opening = gap.point_data["gap"][first]
                 self.assertClose(opening, opening[::-1], absolute=1e-5)
 
+    def test_lifted_against_its_weight(self):
+        """Weitsman's beam: by its force and by its lift, which follow each
+        other. What touches down is not as thin as in the theory."""
+        coarse, fine = "96, 4", "192, 8"
+        mesh = lambda cells: {"Geometry/Arguments": f"{cells} : 0, 0 : 6, 0.25 : true"}
+        by_force = run("lifted_beam_2d", mesh(coarse))
+        t, lift = by_force["t"], by_force["point0_y"]
+        self.assertClose(by_force["contact_force_y"], by_force["load_y"], 1e-5)
+        self.assertClose(np.diff(by_force["contact_area"][1:]), -1, absolute=1e-9)
+        self.assertClose(6 - by_force["contact_area"][1:], 4 * t[1:], absolute=0.2)
+        theory = 0.004 * (4 * t) ** 4 / (72 * 1000 * 0.25**3 / 12)
+        self.assertClose(lift[-1], theory[-1], relative=0.02)
+        finer = run("lifted_beam_2d", mesh(fine))["point0_y"]
+        self.assertClose(finer[-1], theory[-1], relative=0.01)
+        ranks = run("lifted_beam_2d", {"Solver/Linear solver": "multigrid"}, 3)
+        self.assertClose(ranks["point0_y"], lift, absolute=1e-4 * lift[-1])
+
+        by_lift = run(
+            "lifted_beam_2d",
+            {
+                **mesh(coarse),
+                "Boundary 0/Displacement": f"0; {lift[-1]!r}*t^4",
+                "Boundary 0/Traction": "0; 0",
+            },
+        )
+        self.assertClose(by_lift["reaction_0_y"][-1], 2 / 3 * 0.016, relative=2e-3)
+        areas = by_lift["contact_area"][-1], by_force["contact_area"][-1]
+        self.assertClose(*areas, absolute=1e-9)
+
     def test_ground_softer_than_the_body(self):
         """It sinks in by p/c, to a tenth of its size."""
         for stiffness, load in ((1e-5, 1e-6), (1, 0.01)):

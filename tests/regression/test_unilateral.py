@@ -817,6 +817,48 @@ class Refused(TestCase):
             "must not be negative",
         )
 
+    def test_lost_in_rounding(self):
+        """Flat cells: the error that stays is told, and is what the same scene in
+        another unit of stress differs by; flatter ones leave no digits."""
+        plate = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "8, 2 : 0, 0 : 1, 1e-4 : true",
+            "Material/Poisson's ratio": 0.3,
+            "Boundary 0/Role": "contact",
+            "Boundary 0/Contact law": "unilateral",
+            "Boundary 0/Friction law": "none",
+            "Boundary 0/Gap": 0.0076,
+            "Boundary 1/Role": "clamped",
+            "Boundary 2/Role": "traction",
+            "Boundary 3/Role": "contact",
+            "Boundary 3/Friction law": "coulomb",
+            "Boundary 3/Friction coefficient": 20,
+            "Solver/Contact tolerance": 1e-14,
+            "Time/Phases": "1: 1",
+        }
+
+        def in_unit(unit, **more):
+            entries = {
+                **plate,
+                "Material/Young's modulus": 0.93 * unit,
+                "Boundary 2/Traction": f"{0.0082 * unit}*t; 0",
+                "Boundary 3/Normal stress": f"{0.009 * unit}*t",
+            }
+            return run("flat", {**entries, **more}, text="", check=not more)
+
+        results = {unit: in_unit(unit) for unit in (1, 3, 7)}
+        norms = [results[unit]["energy_norm"][-1] / unit**0.5 for unit in results]
+        spread = (max(norms) - min(norms)) / norms[0]
+        for result in results.values():
+            self.assertIn("rounding leaves an error of the solver", result.stdout)
+            error = result["algebraic_error"][-1]
+            self.assertLess(error, 1e-3)
+            self.assertLess(spread, 2 * error)
+            self.assertLess(error, 10 * spread)
+
+        flatter = {"Geometry/Arguments": "8, 2 : 0, 0 : 1, 1e-5 : true"}
+        self.assertRefused(in_unit(1, **flatter), "rounding alone makes", "less flat")
+
     def test_foundations(self):
         normal = "Boundary 2/Foundation normal"
         self.refused({normal: "0, 1"}, "points into the body")

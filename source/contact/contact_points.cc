@@ -554,13 +554,19 @@ namespace Viscoplastic
              ++p)
           {
             const ContactLayout::Point &point = face.points[p];
-            const double                limit = inverse_diagonal.empty() ?
-                                                  std::numeric_limits<double>::max() :
-                                                  stiffest / inverse_diagonal[node].norm();
-            if (point.gives_way())
+            // A spring along a row that resists as the node itself or more.
+            const auto add_spring = [&](const double        stiffness,
+                                        const Tensor<1, 3> &row) {
+              const double limit =
+                inverse_diagonal.empty() ?
+                  std::numeric_limits<double>::max() :
+                  stiffest / (row * (inverse_diagonal[node] * row));
               truncation.spring[node] +=
-                std::min(point.compliance.slope(state.penetration(p)), limit) *
-                outer_product(point.map[0], point.map[0]);
+                std::min(stiffness, limit) * outer_product(row, row);
+            };
+            if (point.gives_way())
+              add_spring(point.compliance.slope(state.penetration(p)),
+                         point.map[0]);
             else if (state.sticks[p])
               for (unsigned int i = 0; i < point.n_tangents; ++i)
                 {
@@ -576,13 +582,9 @@ namespace Viscoplastic
               {
                 // kappa P_e with kappa = rho/|s|, which tends to infinity as
                 // a point comes to rest.
-                const double kappa =
-                  std::min(state.bound[p] / state.slip[p].norm(), limit);
                 const Tensor<1, 2> e = state.slip[p] / state.slip[p].norm();
-                const Tensor<1, 3> across =
-                  -e[1] * point.map[0] + e[0] * point.map[1];
-                truncation.spring[node] +=
-                  kappa * outer_product(across, across);
+                add_spring(state.bound[p] / state.slip[p].norm(),
+                           -e[1] * point.map[0] + e[0] * point.map[1]);
               }
           }
         // Remove rounding, so that equal sets compare equal.

@@ -27,6 +27,11 @@ namespace Viscoplastic
     constexpr double least_limited_step = 0.5;
     /// The least decrease of J in a correction, relative to the duality gap.
     constexpr double least_descent = 0.1;
+    /// After so many iterations that have not halved the error, it may be what
+    /// rounding leaves of the residual, or some times as much, since rounding
+    /// of each term counts. More than this part of the solution is refused.
+    constexpr unsigned int patience        = 15;
+    constexpr double       rounding_margin = 10., largest_rounding = 1e-3;
 
 
 
@@ -201,6 +206,12 @@ namespace Viscoplastic
     bool
     is_solved();
 
+    /// Whether the iteration has come to rest above the tolerance with an error
+    /// that is rounding of the residual; then this is the rounding error of the
+    /// bulk.
+    bool
+    is_rounding(const Certificate &certificate);
+
     /// The bound on the error that a dual norm of the residual means, for the
     /// report.
     double
@@ -221,7 +232,7 @@ namespace Viscoplastic
     follow();
 
     void
-    give_up(const unsigned int max_iterations) const;
+    give_up();
 
     /// What a solve without friction would have taken.
     double
@@ -251,6 +262,9 @@ namespace Viscoplastic
     /// Bound on the error and size of the solution in the energy norm.
     double error = 0., size = 0.;
     double best_error = std::numeric_limits<double>::max();
+    /// The iteration that has halved that last, and that before which rounding
+    /// is not to be asked for again.
+    unsigned int last_gain = 0, next_question = patience;
     /// The error of the start over the tolerance.
     double first_ratio = 0.;
     /// Wall time of the corrections, and by how many powers of ten they were to
@@ -299,7 +313,7 @@ namespace Viscoplastic
         if (is_solved())
           break;
         if (iteration == max_iterations)
-          give_up(max_iterations);
+          give_up();
         correct();
         const double energy_change = search();
         ++report.iterations;
@@ -430,10 +444,15 @@ namespace Viscoplastic
     AssertThrow(std::isfinite(error),
                 ExcMessage("The contact solver met a value that is not "
                            "finite."));
+    if (report.relative_error < 0.5 * best_error)
+      {
+        last_gain     = report.iterations;
+        next_question = last_gain + patience;
+      }
     best_error = std::min(best_error, report.relative_error);
     if (report.iterations == 0 && size > 0.)
       first_ratio = error / (tolerance * size);
-    if (error > tolerance * size)
+    if (error > tolerance * size && !is_rounding(certificate))
       return false;
     report.error = error;
     for (const auto &[point, multiplier] : certificate.replaced)
@@ -446,8 +465,15 @@ namespace Viscoplastic
           const ContactLayout::Point &point = face.points[p];
           const double                stiffness =
             point.map[0] * (diagonal[point.node] * point.map[0]);
+          // Of soft ground, rounding of displacements makes less.
+          const double share =
+            point.gives_way() ?
+              std::min(1.,
+                       point.compliance.slope(state.penetration(p)) /
+                         stiffness) :
+              1.;
           if (state.multiplier[p][0] <=
-              bulk.rounding_error() * std::sqrt(stiffness))
+              share * bulk.rounding_error() * std::sqrt(stiffness))
             {
               state.multiplier[p][0] = 0.;
               state.sticks[p]        = false;
@@ -458,13 +484,36 @@ namespace Viscoplastic
 
 
 
+  bool
+  ContactSolver::Iteration::is_rounding(const Certificate &certificate)
+  {
+    if (report.iterations < next_question)
+      return false;
+    next_question += patience;
+    const double rounding = bulk.rounding_of_residual();
+    error                 = bound(bulk.confirmed_dual_norm(certificate.force,
+                                           report.linear_iterations),
+                  certificate);
+    if (rounding > largest_rounding * size)
+      give_up();
+    if (error > rounding_margin * rounding)
+      return false;
+    // Data are no better known than that.
+    error                 = std::max(error, rounding);
+    report.relative_error = error / size;
+    bulk.set_rounding_error(std::max(bulk.rounding_error(), error));
+    return true;
+  }
+
+
+
   void
-  ContactSolver::Iteration::give_up(const unsigned int max_iterations) const
+  ContactSolver::Iteration::give_up()
   {
     std::ostringstream message;
-    message << "The active set iteration did not converge in " << max_iterations
-            << " iterations: the relative error bound is " << best_error
-            << " at best, and the tolerance is " << tolerance
+    message << "The active set iteration did not converge in "
+            << report.iterations << " iterations: the relative error bound is "
+            << best_error << " at best, and the tolerance is " << tolerance
             << " ('Solver/Contact tolerance'); ";
     // Rounding of displacements makes forces of all sizes of it.
     constexpr double beyond_rounding = 1e13;
@@ -481,6 +530,16 @@ namespace Viscoplastic
               << " times as stiff as the body, which no number resolves: give "
                  "a smaller 'Compliance', or 'Contact law' = unilateral, its "
                  "limit.";
+    else if (report.iterations >= last_gain + patience)
+      {
+        const double rounding = bulk.rounding_of_residual() / size;
+        message << "it has come to rest there, and rounding alone makes "
+                << rounding
+                << " or more of it. Cells that are less flat, stiffness that "
+                   "differs less or Poisson's ratio farther from 1/2 mend that"
+                << (rounding > largest_rounding ? "." :
+                                                  ", or a larger tolerance.");
+      }
     else
       message << "raise 'Solver/Maximal contact iterations' or the tolerance.";
     AssertThrow(false, ExcMessage(message.str()));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/numerics/error_estimator.h>
 
 #include <viscoplastic_contact/error/kelly_estimator.h>
@@ -47,6 +48,31 @@ namespace Viscoplastic
 
   template <int dim>
   double
+  strain_norm(const AdmissibleSpace<dim> &space,
+              const DistributedVector    &ghosted_u)
+  {
+    const FEValuesExtractors::Vector     displacement(0);
+    const QMidpoint<dim>                 midpoint;
+    FEValues<dim>                        values(space.dof_handler.get_fe(),
+                         midpoint,
+                         update_gradients | update_JxW_values);
+    std::vector<SymmetricTensor<2, dim>> strain(1);
+    double                               sum = 0.;
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          values.reinit(cell);
+          values[displacement].get_function_symmetric_gradients(ghosted_u,
+                                                                strain);
+          sum += (strain[0] * strain[0]) * values.JxW(0);
+        }
+    return std::sqrt(Utilities::MPI::sum(sum, space.communicator));
+  }
+
+
+
+  template <int dim>
+  double
   total_estimate(const Vector<double>     &squared_estimate,
                  const Triangulation<dim> &triangulation)
   {
@@ -63,6 +89,10 @@ namespace Viscoplastic
   total_estimate(const Vector<double> &, const Triangulation<2> &);
   template double
   total_estimate(const Vector<double> &, const Triangulation<3> &);
+  template double
+  strain_norm<2>(const AdmissibleSpace<2> &, const DistributedVector &);
+  template double
+  strain_norm<3>(const AdmissibleSpace<3> &, const DistributedVector &);
   template Vector<double>
   kelly_estimate<2>(const AdmissibleSpace<2> &, const DistributedVector &);
   template Vector<double>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/memory_bound.h>
 #include <viscoplastic_contact/error/memory_loss.h>
 #include <viscoplastic_contact/error/mesh_controller.h>
@@ -130,16 +131,23 @@ namespace Viscoplastic
     const EnergyRounding rounding = energy_rounding(discretization.space,
                                                     discretization.matrix,
                                                     accepted.forces);
-    if (wanted.strategy == RefinementStrategy::kelly)
-      return rounding.is_all_of_the_strain;
-    const double energy_norm =
+    const double         energy_norm =
       std::sqrt(2. * std::max(0., accepted.forces.strain_energy));
+    const double of_solver =
+      10. * std::max(1e-10, scene.parameters.solver.strict_tolerance());
+    if (wanted.strategy == RefinementStrategy::kelly)
+      {
+        // Jumps of strains, relative to the strains as the error to the norm.
+        const double jumps =
+          total_estimate(accepted.space_estimate.squared_indicators,
+                         triangulation);
+        return rounding.is_all_of_the_strain ||
+               jumps * energy_norm <=
+                 std::max(of_solver * energy_norm, rounding.size) *
+                   strain_norm(discretization.space, accepted.state.u);
+      }
     return accepted.space_estimate.total <=
-           std::max(10. *
-                      std::max(1e-10,
-                               scene.parameters.solver.strict_tolerance()) *
-                      energy_norm,
-                    rounding.size);
+           std::max(of_solver * energy_norm, rounding.size);
   }
 
 

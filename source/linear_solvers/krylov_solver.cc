@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/contact/sparse_face_matrix.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
+#include <viscoplastic_contact/linear_solvers/residual_rounding.h>
 
 #include <Epetra_CrsMatrix.h>
 #include <Epetra_Import.h>
@@ -296,11 +297,33 @@ namespace Viscoplastic
   KrylovSolver::confirmed_dual_norm(const Vector<double> &force,
                                     unsigned int         &iterations)
   {
+    product = residual;
+    restriction.add(-1., force, product);
+    return dual_norm_of_product(iterations);
+  }
+
+
+
+  double
+  KrylovSolver::rounding_of_residual()
+  {
+    return Viscoplastic::rounding_of_residual(
+      matrix, *load, *u, [&](const DistributedVector &error) {
+        product = error;
+        restrict_to_unknowns(product);
+        unsigned int iterations = 0;
+        return Utilities::fixed_power<2>(dual_norm_of_product(iterations));
+      });
+  }
+
+
+
+  double
+  KrylovSolver::dual_norm_of_product(unsigned int &iterations)
+  {
     // A preconditioner for another stick set misjudges residuals on the face,
     // so solve A w = R on all unknowns: w . R is the square of the norm up to
     // the square of the error.
-    product = residual;
-    restriction.add(-1., force, product);
     w           = 0.;
     double norm = 0.;
     if (product.l2_norm() > 0.)

@@ -3,6 +3,7 @@
 #include <deal.II/lac/solver_cg.h>
 
 #include <viscoplastic_contact/base/linear_algebra.h>
+#include <viscoplastic_contact/linear_solvers/residual_rounding.h>
 #include <viscoplastic_contact/linear_solvers/schur_solver.h>
 
 #include <cholmod.h>
@@ -356,10 +357,11 @@ namespace Viscoplastic
 
 
   void
-  SchurSolver::begin(const DistributedVector &load, DistributedVector &u_)
+  SchurSolver::begin(const DistributedVector &load_, DistributedVector &u_)
   {
-    u = &u_;
-    forward(load, u_);
+    load = &load_;
+    u    = &u_;
+    forward(load_, u_);
     // y = (y_i, y_c); the face's load after condensation is L_cc y_c.
     const unsigned int n_interior = unknowns.size() - face.n_dofs();
     for (unsigned int i = 0; i < n_interior; ++i)
@@ -425,6 +427,25 @@ namespace Viscoplastic
                                    unsigned int & /*iterations*/)
   {
     return dual_norm(force);
+  }
+
+
+
+  double
+  SchurSolver::rounding_of_residual()
+  {
+    const Vector<double> kept(y);
+    DistributedVector    end(*u);
+    complete(end);
+    const double result = Viscoplastic::rounding_of_residual(
+      matrix, *load, end, [&](const DistributedVector &error) {
+        for (unsigned int i = 0; i < unknowns.size(); ++i)
+          y[i] = error.begin()[unknowns[i]];
+        factor->solve(CHOLMOD_L, y);
+        return y.norm_sqr();
+      });
+    y = kept;
+    return result;
   }
 
 
@@ -510,15 +531,23 @@ namespace Viscoplastic
 
 
 
-  unsigned int
-  SchurSolver::finish()
+  void
+  SchurSolver::complete(DistributedVector &target)
   {
     Vector<double> c(face_change.size());
     face_factor.Tvmult(c, face_change);
     const unsigned int n_interior = unknowns.size() - face.n_dofs();
     for (unsigned int i = 0; i < face.n_dofs(); ++i)
       y[n_interior + i] = c[i];
-    backward(*u);
+    backward(target);
+  }
+
+
+
+  unsigned int
+  SchurSolver::finish()
+  {
+    complete(*u);
     return 1;
   }
 } // namespace Viscoplastic

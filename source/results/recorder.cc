@@ -162,6 +162,19 @@ namespace Viscoplastic
                 "Poisson's ratio is next to 1/2 or the body hardly resists.";
         console.remark(text.str());
       }
+    if (!solver_error_is_told && step.report.tolerance > 0. &&
+        step.report.relative_error > 1.01 * step.report.tolerance)
+      {
+        solver_error_is_told = true;
+        std::ostringstream text;
+        text << "Warning: rounding leaves an error of the solver of "
+             << step.report.relative_error << " at t = " << step.time_step.t
+             << time_unit << ", more than its tolerance of "
+             << step.report.tolerance
+             << ": cells that are less flat, stiffness that differs less or "
+                "Poisson's ratio farther from 1/2 would leave less.";
+        console.remark(text.str());
+      }
     if (run.capped_volume.value == 0. && step.capped_volume > 0.)
       {
         std::ostringstream text;

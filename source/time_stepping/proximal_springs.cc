@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/contact/kink_search.h>
 #include <viscoplastic_contact/time_stepping/proximal_springs.h>
@@ -281,8 +282,8 @@ namespace Viscoplastic
     // The error of the solver is measured with the springs, relative to a norm
     // in which the body's way to the foundation counts, too.
     ContactReport     report;
-    double            inner_tolerance = tolerance;
-    const HeldBody    body            = held_body(problem);
+    double            inner_tolerance = tolerance, left_by_rounding = 0.;
+    const HeldBody    body = held_body(problem);
     DistributedVector center(u), right(u), change(u);
     for (unsigned int n = 0; n < max_proximal_steps; ++n)
       {
@@ -290,7 +291,10 @@ namespace Viscoplastic
         add_load(center, right);
         ContactReport again = solve(right, inner_tolerance);
         again.add_earlier(report);
-        report = again;
+        report           = again;
+        left_by_rounding = report.relative_error > 1.01 * inner_tolerance ?
+                             report.relative_error :
+                             0.;
 
         change = u;
         change -= center;
@@ -347,10 +351,16 @@ namespace Viscoplastic
     AssertThrow(false,
                 ExcMessage(
                   "The body that only contact holds has not come to rest in " +
-                  std::to_string(max_proximal_steps) +
-                  " solves of a step, although contact could balance its loads "
-                  "if it were closed everywhere, or nearly so. Prescribe "
-                  "displacements that hold it."));
+                  std::to_string(max_proximal_steps) + " solves of a step, " +
+                  (left_by_rounding > 0. ?
+                     "in which rounding leaves the error " +
+                       Utilities::to_string(left_by_rounding) +
+                       ": cells that are less flat, stiffness that differs "
+                       "less, Poisson's ratio farther from 1/2 or prescribed "
+                       "displacements mend that." :
+                     "although contact could balance its loads if it were "
+                     "closed everywhere, or nearly so. Prescribe "
+                     "displacements that hold it.")));
     return report;
   }
 

@@ -258,6 +258,10 @@ namespace Viscoplastic
                    "friction meet at an edge, the problem itself may have no "
                    "unique solution; 'Solver/Coulomb pressure' = lagged takes "
                    "the pressure of the step before.";
+        if (change < 1e-3 * sum)
+          message << " Where stiffness differs much, or cells are flat, "
+                     "rounding of forces may allow no less: a larger "
+                     "'Solver/Coulomb tolerance' accepts that.";
         AssertThrow(report.bound_iterations < parameters.maximal_iterations,
                     ExcMessage(message.str()));
         // Friction may hold what would press, and where pieces meet, each holds

@@ -332,6 +332,36 @@ class Reports(TestCase):
             if not is_told:
                 self.assertGreater(share, -0.01)
 
+    def test_uniform_strain_refines_nothing(self):
+        """The jumps that Kelly's estimator finds are rounding."""
+        affine = {
+            2: "t*(0.1*x + 0.04*y); t*(0.02*x - 0.07*y + 5)",
+            3: "t*(0.1*x + 0.04*y); t*(0.02*x - 0.07*y); 0.03*t*(x - z)",
+        }
+        for dim, solver, ranks in (
+            (2, "direct", 1),
+            (2, "multigrid", 2),
+            (3, "multigrid", 3),
+        ):
+            with self.subTest(dim=dim, solver=solver):
+                result = run(
+                    "uniform_strain",
+                    {
+                        "Dimension": dim,
+                        "Geometry/Arguments": {
+                            2: "3, 2 : 0, 0 : 1, 1 : false",
+                            3: "3, 2, 2 : 0, 0, 0 : 1, 1, 1 : false",
+                        }[dim],
+                        "Boundary 0/Displacement": affine[dim],
+                        "Mesh refinement/Strategy": "kelly",
+                        "Mesh refinement/Maximal level": 2,
+                        "Solver/Linear solver": solver,
+                        "Time/Phases": "1: 3",
+                    },
+                    ranks,
+                )
+                self.assertEqual(set(result["cells"]), {6 * (dim - 1)})
+
     def test_slipping_area_is_that_of_a_step(self):
         """All slips on each mesh, but for half a cell at the clamped corner;
         coarser ones have a smaller face."""

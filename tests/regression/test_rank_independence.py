@@ -100,6 +100,7 @@ SCENES = {
             {**refined(2), "Geometry/Boundary refinements": ""}
         ),
         "verification/indentation_3d": Scene({**refined(0), **phases("0.1: 1, 2: 5")}),
+        "verification/lifted_beam_2d": Scene(phases("1: 2")),
         "verification/partial_slip_2d": Scene(
             {
                 **refined(2),

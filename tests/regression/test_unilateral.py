@@ -235,6 +235,35 @@ class Held(TestCase):
                 opening = gap.point_data["gap"][first]
                 self.assertClose(opening, opening[::-1], absolute=1e-5)
 
+    def test_lifted_against_its_weight(self):
+        """Weitsman's beam: by its force and by its lift, which follow each
+        other. What touches down is not as thin as in the theory."""
+        coarse, fine = "96, 4", "192, 8"
+        mesh = lambda cells: {"Geometry/Arguments": f"{cells} : 0, 0 : 6, 0.25 : true"}
+        by_force = run("lifted_beam_2d", mesh(coarse))
+        t, lift = by_force["t"], by_force["point0_y"]
+        self.assertClose(by_force["contact_force_y"], by_force["load_y"], 1e-5)
+        self.assertClose(np.diff(by_force["contact_area"][1:]), -1, absolute=1e-9)
+        self.assertClose(6 - by_force["contact_area"][1:], 4 * t[1:], absolute=0.2)
+        theory = 0.004 * (4 * t) ** 4 / (72 * 1000 * 0.25**3 / 12)
+        self.assertClose(lift[-1], theory[-1], relative=0.02)
+        finer = run("lifted_beam_2d", mesh(fine))["point0_y"]
+        self.assertClose(finer[-1], theory[-1], relative=0.01)
+        ranks = run("lifted_beam_2d", {"Solver/Linear solver": "multigrid"}, 3)
+        self.assertClose(ranks["point0_y"], lift, absolute=1e-4 * lift[-1])
+
+        by_lift = run(
+            "lifted_beam_2d",
+            {
+                **mesh(coarse),
+                "Boundary 0/Displacement": f"0; {lift[-1]!r}*t^4",
+                "Boundary 0/Traction": "0; 0",
+            },
+        )
+        self.assertClose(by_lift["reaction_0_y"][-1], 2 / 3 * 0.016, relative=2e-3)
+        areas = by_lift["contact_area"][-1], by_force["contact_area"][-1]
+        self.assertClose(*areas, absolute=1e-9)
+
     def test_ground_softer_than_the_body(self):
         """It sinks in by p/c, to a tenth of its size."""
         for stiffness, load in ((1e-5, 1e-6), (1, 0.01)):
@@ -758,6 +787,48 @@ class Refused(TestCase):
             f"'{coefficient}' is -0.1",
             "must not be negative",
         )
+
+    def test_lost_in_rounding(self):
+        """Flat cells: the error that stays is told, and is what the same scene in
+        another unit of stress differs by; flatter ones leave no digits."""
+        plate = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "8, 2 : 0, 0 : 1, 1e-4 : true",
+            "Material/Poisson's ratio": 0.3,
+            "Boundary 0/Role": "contact",
+            "Boundary 0/Contact law": "unilateral",
+            "Boundary 0/Friction law": "none",
+            "Boundary 0/Gap": 0.0076,
+            "Boundary 1/Role": "clamped",
+            "Boundary 2/Role": "traction",
+            "Boundary 3/Role": "contact",
+            "Boundary 3/Friction law": "coulomb",
+            "Boundary 3/Friction coefficient": 20,
+            "Solver/Contact tolerance": 1e-14,
+            "Time/Phases": "1: 1",
+        }
+
+        def in_unit(unit, **more):
+            entries = {
+                **plate,
+                "Material/Young's modulus": 0.93 * unit,
+                "Boundary 2/Traction": f"{0.0082 * unit}*t; 0",
+                "Boundary 3/Normal stress": f"{0.009 * unit}*t",
+            }
+            return run("flat", {**entries, **more}, text="", check=not more)
+
+        results = {unit: in_unit(unit) for unit in (1, 3, 7)}
+        norms = [results[unit]["energy_norm"][-1] / unit**0.5 for unit in results]
+        spread = (max(norms) - min(norms)) / norms[0]
+        for result in results.values():
+            self.assertIn("rounding leaves an error of the solver", result.stdout)
+            error = result["algebraic_error"][-1]
+            self.assertLess(error, 1e-3)
+            self.assertLess(spread, 2 * error)
+            self.assertLess(error, 10 * spread)
+
+        flatter = {"Geometry/Arguments": "8, 2 : 0, 0 : 1, 1e-5 : true"}
+        self.assertRefused(in_unit(1, **flatter), "rounding alone makes", "less flat")
 
     def test_foundations(self):
         normal = "Boundary 2/Foundation normal"

@@ -6,6 +6,7 @@
 
 #include <deal.II/base/tensor.h>
 #include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include "random.h"
@@ -107,6 +108,17 @@ namespace Viscoplastic::Testing
       return std::sqrt(A.matrix_norm_square(u));
     }
 
+    /// What rounding leaves in any case, as StepSolver sees it.
+    double
+    rounding_error(const Vector<double> &start) const
+    {
+      double sum = 0.;
+      for (unsigned int i = 0; i < size(); ++i)
+        sum += A(i, i) * (start[i] * start[i] + u_prev[i] * u_prev[i]) +
+               load[i] * load[i] / A(i, i);
+      return 100. * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+    }
+
     void
     add_node(const unsigned int                            n_dofs,
              const std::vector<std::vector<Tensor<1, 3>>> &planes,
@@ -135,12 +147,32 @@ namespace Viscoplastic::Testing
 
 
 
-  inline Vector<double>
-  solve_dense(FullMatrix<double> matrix, const Vector<double> &right_side)
+  /// L of a positive definite matrix L L^T.
+  inline LAPACKFullMatrix<double>
+  cholesky_factor(const FullMatrix<double> &matrix)
   {
-    matrix.gauss_jordan();
-    Vector<double> result(right_side.size());
-    matrix.vmult(result, right_side);
+    const unsigned int       n = matrix.m();
+    LAPACKFullMatrix<double> factor(n, n), result(n, n);
+    factor = matrix;
+    factor.set_property(LAPACKSupport::symmetric);
+    factor.compute_cholesky_factorization();
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j <= i; ++j)
+        result(i, j) = factor(i, j);
+    result.set_property(LAPACKSupport::lower_triangular);
+    return result;
+  }
+
+
+
+  inline Vector<double>
+  solve_dense(const FullMatrix<double> &matrix,
+              const Vector<double>     &right_side)
+  {
+    const LAPACKFullMatrix<double> factor = cholesky_factor(matrix);
+    Vector<double>                 result(right_side);
+    factor.solve(result);
+    factor.solve(result, /* transposed = */ true);
     return result;
   }
 
@@ -283,6 +315,93 @@ namespace Viscoplastic::Testing
       if (problem.face.points[p].is_obstacle)
         problem.bounds[p] =
           std::max(0., problem.bounds[p] - 0.5) * random.integer(0, 1);
+    return problem;
+  }
+
+
+
+  /// A network of springs whose stiffnesses lie up to @p decades apart from 1
+  /// in either direction, held by springs of its own or by hardly anything but
+  /// contact: without obstacles, with rigid ones, or with some that are as much
+  /// softer or stiffer than the body. Loads and bounds of all sizes.
+  inline Problem
+  spring_network(const unsigned int seed, const double decades)
+  {
+    Random             random(seed);
+    Problem            problem;
+    const unsigned int n_tangents = random.integer(0, 2),
+                       kind       = random.integer(n_tangents > 0 ? 0 : 1, 2),
+                       n_nodes    = random.integer(2, 8);
+    const auto stiffness          = [&] {
+      return random.logarithmic(std::pow(10., -decades),
+                                std::pow(10., decades));
+    };
+    for (unsigned int n = 0; n < n_nodes; ++n)
+      {
+        const unsigned int n_dofs = n_tangents + (kind > 0 ? 1 : 0);
+        auto               rows   = random_rows(random, n_dofs, n_dofs);
+        std::vector<std::vector<Tensor<1, 3>>> planes;
+        std::vector<Tensor<1, 3>>              normals;
+        if (kind > 0)
+          {
+            normals.push_back(rows.back());
+            rows.pop_back();
+          }
+        if (!rows.empty())
+          planes.push_back(rows);
+        problem.add_node(n_dofs, planes, normals);
+      }
+
+    const unsigned int  n = random.integer(2, 12) + problem.face.n_dofs();
+    FullMatrix<double> &A = problem.A;
+    A.reinit(n, n);
+    const auto connect = [&](const unsigned int i, const unsigned int j) {
+      const double k     = stiffness(),
+                   ratio = random.integer(0, 2) > 0 ? 1. : random.uniform();
+      A(i, i) += k;
+      A(j, j) += k * ratio * ratio;
+      A(i, j) -= k * ratio;
+      A(j, i) -= k * ratio;
+    };
+    for (unsigned int i = 1; i < n; ++i)
+      connect(i, random.integer(0, i - 1));
+    for (unsigned int i = 0; i < n; ++i)
+      for (const unsigned int j :
+           {random.integer(0, n - 1), random.integer(0, n - 1)})
+        if (i != j)
+          connect(i, j);
+    const unsigned int held_by = random.integer(0, 2);
+    for (unsigned int i = 0; i < n; ++i)
+      A(i, i) += held_by == 0 ? stiffness() :
+                 held_by == 1 && (i == 0 || random.integer(0, 3) == 0) ?
+                                1e-3 * A(i, i) :
+                                1e-9 * A(i, i);
+
+    const double size = random.logarithmic(1e-6, 1e6);
+    problem.load.reinit(n);
+    problem.u_prev.reinit(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        problem.load[i] = size * random.uniform() *
+                          (random.integer(0, 1) ? 1. : std::sqrt(A(i, i)));
+        if (random.integer(0, 1) == 1)
+          problem.u_prev[i] = random.uniform(-0.3, 0.3);
+      }
+    for (auto &point : problem.face.points)
+      if (point.is_obstacle)
+        {
+          problem.bounds.push_back(random.integer(0, 1) *
+                                   random.logarithmic(1e-9, 1.) *
+                                   (random.integer(0, 3) > 0 ? 1. : -1.));
+          const unsigned int first =
+            problem.first() + problem.face.first_dof[point.node];
+          if (kind == 2)
+            point.compliance.add(A(first, first) * stiffness(),
+                                 1. + 0.5 * random.integer(0, 2));
+        }
+      else
+        problem.bounds.push_back(
+          random.integer(0, 5) > 0 ? size * random.logarithmic(1e-6, 1e3) : 0.);
     return problem;
   }
 

@@ -11,6 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -31,19 +34,19 @@ namespace Viscoplastic::Testing
       : u(problem.u_prev)
       , problem(problem)
       , condensed(condensed)
-      , inverse(problem.A)
+      , factor(cholesky_factor(problem.A))
       , w(problem.size())
     {
-      inverse.gauss_jordan();
       const unsigned int first = problem.first(), n = problem.face.n_dofs();
       FullMatrix<double> K(n, n);
       if (condensed)
         {
-          // The Schur complement is the inverse of the inverse's block.
+          // The Schur complement has the last block of the factor.
           for (unsigned int i = 0; i < n; ++i)
             for (unsigned int j = 0; j < n; ++j)
-              K(i, j) = inverse(first + i, first + j);
-          K.gauss_jordan();
+              for (unsigned int k = 0; k <= std::min(i, j); ++k)
+                K(i, j) +=
+                  factor(first + i, first + k) * factor(first + j, first + k);
         }
       else
         for (unsigned int i = 0; i < n; ++i)
@@ -118,7 +121,9 @@ namespace Viscoplastic::Testing
     double
     dual_norm(const Vector<double> &force) override
     {
-      return std::sqrt(inverse.matrix_norm_square(unbalanced(force)));
+      Vector<double> r = unbalanced(force);
+      factor.solve(r);
+      return r.l2_norm();
     }
 
     double
@@ -126,6 +131,23 @@ namespace Viscoplastic::Testing
                         unsigned int & /*iterations*/) override
     {
       return dual_norm(force);
+    }
+
+    double
+    rounding_of_residual() override
+    {
+      // The mean over all signs.
+      double sum = 0.;
+      for (unsigned int i = 0; i < u.size(); ++i)
+        {
+          Vector<double> error(u.size());
+          error[i] = std::abs(problem.load[i]);
+          for (unsigned int j = 0; j < u.size(); ++j)
+            error[i] += std::abs(problem.A(i, j) * u[j]);
+          factor.solve(error);
+          sum += error.norm_sqr();
+        }
+      return std::numeric_limits<double>::epsilon() * std::sqrt(sum);
     }
 
     double
@@ -145,61 +167,29 @@ namespace Viscoplastic::Testing
       face_part = 0.;
       if (r.l2_norm() == 0.)
         return 0;
-      struct Truncated
-      {
-        const DenseBulk &bulk;
-        void
-        vmult(Vector<double> &y, const Vector<double> &x) const
+      const FullMatrix<double> matrix     = truncated_matrix();
+      unsigned int             iterations = 0;
+      if (condensed)
+        w = solve_dense(matrix, r);
+      else
         {
-          bulk.problem.A.vmult(y, x);
-          const ContactLayout &face = bulk.problem.face;
-          for (unsigned int n = 0; n < face.n_nodes(); ++n)
-            for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
-              for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
-                y[bulk.problem.first() + face.first_dof[n] + i] +=
-                  bulk.truncation.spring[n][i][j] *
-                  x[bulk.problem.first() + face.first_dof[n] + j];
-          bulk.project(y);
-        }
-      };
-      // Springs tend to infinity where a point comes to rest.
-      struct Diagonal
-      {
-        const DenseBulk &bulk;
-        void
-        vmult(Vector<double> &y, const Vector<double> &x) const
-        {
-          y                         = x;
-          const ContactLayout &face = bulk.problem.face;
-          for (unsigned int n = 0; n < face.n_nodes(); ++n)
+          ReductionControl                       control(1000, 0., tolerance);
+          SolverCG<Vector<double>>               cg(control);
+          PreconditionJacobi<FullMatrix<double>> diagonal;
+          diagonal.initialize(matrix);
+          try
             {
-              Tensor<2, 3> block = Tensor<2, 3>(unit_symmetric_tensor<3>()) +
-                                   bulk.truncation.spring[n];
-              block = invert(block);
-              for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
-                {
-                  const unsigned int at =
-                    bulk.problem.first() + face.first_dof[n];
-                  y[at + i] = 0.;
-                  for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
-                    y[at + i] += block[i][j] * x[at + j];
-                }
+              cg.solve(matrix, w, r, diagonal);
             }
-          bulk.project(y);
+          catch (const SolverControl::NoConvergence &)
+            {
+              // As good as rounding lets it be.
+            }
+          iterations = control.last_step();
         }
-      };
-      ReductionControl         control(1000, 0., condensed ? 1e-13 : tolerance);
-      SolverCG<Vector<double>> cg(control);
-      try
-        {
-          cg.solve(Truncated{*this}, w, r, Diagonal{*this});
-        }
-      catch (const SolverControl::NoConvergence &)
-        {
-          // As good as rounding lets it be.
-        }
+      project(w);
       face_part = problem.on_face(w);
-      return control.last_step();
+      return iterations;
     }
 
     SearchTerms
@@ -253,6 +243,41 @@ namespace Viscoplastic::Testing
         v[problem.first() + i] = c[i];
     }
 
+    /// P (A + springs) P + (I - P), the latter of the size of the former.
+    FullMatrix<double>
+    truncated_matrix() const
+    {
+      const ContactLayout &face = problem.face;
+      FullMatrix<double>   result(problem.A);
+      for (unsigned int n = 0; n < face.n_nodes(); ++n)
+        {
+          const unsigned int at = problem.first() + face.first_dof[n];
+          for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+            for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
+              result(at + i, at + j) += truncation.spring[n][i][j];
+        }
+      Vector<double> row(problem.size());
+      for (const bool columns : {true, false})
+        for (unsigned int i = 0; i < problem.size(); ++i)
+          {
+            for (unsigned int j = 0; j < problem.size(); ++j)
+              row[j] = columns ? result(i, j) : result(j, i);
+            project(row);
+            for (unsigned int j = 0; j < problem.size(); ++j)
+              (columns ? result(i, j) : result(j, i)) = row[j];
+          }
+      for (unsigned int n = 0; n < face.n_nodes(); ++n)
+        {
+          const unsigned int at = problem.first() + face.first_dof[n];
+          for (unsigned int i = 0; i < face.n_node_dofs(n); ++i)
+            for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
+              result(at + i, at + j) +=
+                problem.A(at, at) *
+                ((i == j ? 1. : 0.) - truncation.projector[n][i][j]);
+        }
+      return result;
+    }
+
     /// Solve for the unknowns off the face.
     void
     relax_bulk()
@@ -276,7 +301,7 @@ namespace Viscoplastic::Testing
 
     const Problem                   &problem;
     const bool                       condensed;
-    FullMatrix<double>               inverse;
+    const LAPACKFullMatrix<double>   factor;
     std::unique_ptr<DenseFaceMatrix> matrix;
     FaceTruncation                   truncation;
     Vector<double>                   w;
@@ -299,9 +324,11 @@ namespace Viscoplastic::Testing
         const double          tolerance,
         ContactState          state,
         const Vector<double> &start,
-        const unsigned int    max_iterations = 60)
+        const unsigned int    max_iterations = 60,
+        const double          rounding_error = 0.)
   {
     DenseBulk bulk(problem, condensed);
+    bulk.set_rounding_error(rounding_error);
     bulk.start_at(start);
     Vector<double> increment(start);
     increment -= problem.u_prev;

@@ -254,4 +254,85 @@ namespace
             EXPECT_LE(result.report.iterations, 6u);
           }
   }
+
+
+
+  TEST(Obstacles, StiffnessesOfManyDecades)
+  {
+    // A solution as good as it says, up to rounding, or a sentence about that.
+    constexpr double tolerance = 1e-8;
+    unsigned int     n_refused = 0, n_solved = 0;
+    for (const double decades : {0., 3., 6., 9.})
+      for (unsigned int seed = 0; seed < 100; ++seed)
+        for (const bool condensed : {true, false})
+          {
+            // The linear solver of the other has no such preconditioner.
+            if (!condensed && decades > 3.)
+              continue;
+            SCOPED_TRACE("decades " + std::to_string(decades) + ", seed " +
+                         std::to_string(seed) +
+                         (condensed ? ", condensed" : ", frozen bulk"));
+            const Problem problem = spring_network(seed, decades);
+            Result        result;
+            try
+              {
+                result = solve(problem,
+                               condensed,
+                               tolerance,
+                               ContactState(problem.bounds),
+                               problem.u_prev,
+                               200,
+                               problem.rounding_error(problem.u_prev));
+              }
+            catch (const ExceptionBase &refusal)
+              {
+                std::ostringstream sentence;
+                refusal.print_info(sentence);
+                EXPECT_NE(sentence.str().find("ounding"), std::string::npos)
+                  << sentence.str();
+                ++n_refused;
+                continue;
+              }
+            ++n_solved;
+            Vector<double> unbalanced = problem.residual(result.u);
+            unbalanced -= problem.force(result.state.multiplier);
+            cholesky_factor(problem.A).solve(unbalanced);
+            const double size     = problem.energy_norm(result.u),
+                         rounding = problem.rounding_error(problem.u_prev) +
+                                    problem.rounding_error(result.u);
+            EXPECT_LE(unbalanced.l2_norm(),
+                      1.1 * std::max(result.report.error, tolerance * size) +
+                        rounding);
+            // The laws of contact, up to rounding of the way there.
+            const auto   slips = problem.slips(result.u);
+            const double way   = 1e-11 * (result.u.linfty_norm() + 1.);
+            for (unsigned int c = 0; c < slips.size(); ++c)
+              {
+                const auto        &point = problem.face.points[c];
+                const Tensor<1, 2> force = result.state.multiplier[c];
+                const double       w     = slips[c][0] - problem.bounds[c];
+                if (point.gives_way())
+                  {
+                    EXPECT_GE(force[0], 0.);
+                    EXPECT_LE(point.compliance.force(w - way),
+                              force[0] * (1. + 1e-6) + rounding);
+                    EXPECT_GE(point.compliance.force(w + way),
+                              force[0] * (1. - 1e-6) - rounding);
+                  }
+                else if (point.is_obstacle)
+                  {
+                    EXPECT_LE(w, way);
+                    EXPECT_GE(force[0], 0.);
+                    EXPECT_TRUE(force[0] == 0. || w > -way);
+                  }
+                else
+                  {
+                    EXPECT_LE(force.norm(), problem.bounds[c] * (1. + 1e-14));
+                    EXPECT_TRUE(slips[c].norm() <= way ||
+                                force * slips[c] >= 0.);
+                  }
+              }
+          }
+    EXPECT_LT(n_refused, 0.02 * n_solved);
+  }
 } // namespace

@@ -125,6 +125,16 @@ namespace Viscoplastic
     confirmed_dual_norm(const Vector<double> &force,
                         unsigned int         &iterations) = 0;
 
+    /**
+     * What dual_norm() makes of l - A u if each of its rows is off by a unit of
+     * rounding of its terms, this way or that by chance. Flat cells, stiffness
+     * that differs and bodies next to incompressible make much of it. No solver
+     * can do better, nor are the entries of A any better known. As dear as some
+     * solves.
+     */
+    virtual double
+    rounding_of_residual() = 0;
+
     /// A norm of the solution to compare dual_norm() with. Zero for rigid
     /// translations, hence the next one.
     virtual double

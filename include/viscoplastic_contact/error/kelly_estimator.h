@@ -14,6 +14,13 @@ namespace Viscoplastic
   kelly_estimate(const AdmissibleSpace<dim> &space,
                  const DistributedVector    &ghosted_u);
 
+  /// The norm of the strains at the midpoints of cells, which is the size of
+  /// jumps that Kelly's estimate is small or large against. Collective.
+  template <int dim>
+  double
+  strain_norm(const AdmissibleSpace<dim> &space,
+              const DistributedVector    &ghosted_u);
+
   /// The root of the sum over all cells of all ranks. Collective.
   template <int dim>
   double

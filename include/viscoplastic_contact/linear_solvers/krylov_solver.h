@@ -71,6 +71,9 @@ namespace Viscoplastic
                         unsigned int         &iterations) override;
 
     double
+    rounding_of_residual() override;
+
+    double
     energy_norm() const override;
 
     unsigned int
@@ -97,6 +100,11 @@ namespace Viscoplastic
 
     void
     make_face_matrix();
+
+    /// The dual norm of the vector in product, without the quality of the
+    /// preconditioner in it.
+    double
+    dual_norm_of_product(unsigned int &iterations);
 
     const DistributedMatrix          &matrix;
     const std::vector<bool>          &excluded;

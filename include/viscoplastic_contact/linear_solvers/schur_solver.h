@@ -77,6 +77,9 @@ namespace Viscoplastic
                         unsigned int         &iterations) override;
 
     double
+    rounding_of_residual() override;
+
+    double
     energy_norm() const override;
 
     unsigned int
@@ -117,6 +120,11 @@ namespace Viscoplastic
     void
     backward(DistributedVector &u);
 
+    /// Add what the solve under way has found to the displacement from which it
+    /// began.
+    void
+    complete(DistributedVector &target);
+
     const DistributedMatrix &matrix;
     const ContactLayout     &face;
     std::unique_ptr<Factor>  factor;
@@ -127,9 +135,10 @@ namespace Viscoplastic
     std::unique_ptr<DenseFaceMatrix> schur_complement;
 
     // The solve under way.
-    DistributedVector *u = nullptr;
-    Vector<double>     y, face_load, face_change, correction, product;
-    FaceTruncation     truncation;
-    double             squared_norm = 0.;
+    const DistributedVector *load = nullptr;
+    DistributedVector       *u    = nullptr;
+    Vector<double>           y, face_load, face_change, correction, product;
+    FaceTruncation           truncation;
+    double                   squared_norm = 0.;
   };
 } // namespace Viscoplastic

@@ -208,6 +208,8 @@ namespace Viscoplastic
     ActingEffects<dim> effects;
     /// Whether the user has been told that forces do not balance well.
     bool balance_is_doubtful = false;
+    /// Whether an error of the solver above its tolerance has been told.
+    bool solver_error_is_told = false;
 
     std::unique_ptr<Statistics> statistics;
     Progress                    progress;

@@ -373,7 +373,20 @@ namespace Viscoplastic
         if (data.role == "displacement")
           loads.emplace_back("Displacement", data.displacement);
         if (data.role == "traction" || data.role == "displacement")
-          loads.emplace_back("Pressure", data.pressure);
+          {
+            loads.emplace_back("Pressure", data.pressure);
+            for (const auto &[name, text] :
+                 {std::make_pair("Normal stiffness", data.normal_stiffness),
+                  std::make_pair("Tangential stiffness",
+                                 data.tangential_stiffness)})
+              if (!is_nothing(text))
+                {
+                  add(in_a_sentence(name) + " of springs" + on,
+                      "none",
+                      {section + '/' + name + "=0"});
+                  others.emplace_back(name, text);
+                }
+          }
         const auto add_over_space = [&](const std::string &name,
                                         const std::string &components) {
           if (!is_zero(components))

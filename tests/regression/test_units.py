@@ -400,6 +400,7 @@ class Scaled:
             "stress": (1, 0, 0),
             "stress times time": (1, 0, 1),
             "force per volume": (1, -1, 0),
+            "stress/length": (1, -1, 0),
             "1/(stress^n time)": (-exponent["n"], 0, -1),
             "stress/length^m": (1, -exponent["m"], 0),
         }[unit]
@@ -477,6 +478,7 @@ SHORT = (
         "coulomb_block_3d",
         {"Solver/Linear solver": "multigrid", "Boundary 4/Slip rate factor": "1/(1 + v)"},
     ),
+    ("springs_block_2d", {"Boundary 2/Tangential stiffness": "0.1 + 0.2*x"}),
     ("rubbing_2d", {}),
     ("junction_2d", {}),
     ("excavated_column", {}),

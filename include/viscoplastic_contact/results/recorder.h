@@ -208,6 +208,7 @@ namespace Viscoplastic
     ActingEffects<dim> effects;
     /// Whether the user has been told that forces do not balance well.
     bool balance_is_doubtful = false;
+    bool support_carries     = false;
 
     std::unique_ptr<Statistics> statistics;
     Progress                    progress;

@@ -186,7 +186,8 @@ def documented_units():
 
 def documented_name(column):
     name = re.sub(r"_[xyz]$", "_x", column)
-    return re.sub(r"^reaction_\d+", "reaction_<id>", re.sub(r"^point\d+", "point<i>", name))
+    name = re.sub(r"^(|reaction_)(point|edge)\d+", r"\1\2<i>", name)
+    return re.sub(r"^reaction_\d+", "reaction_<id>", name)
 
 
 class Labels(TestCase):
@@ -479,6 +480,7 @@ SHORT = (
         {"Solver/Linear solver": "multigrid", "Boundary 4/Slip rate factor": "1/(1 + v)"},
     ),
     ("springs_block_2d", {"Boundary 2/Tangential stiffness": "0.1 + 0.2*x"}),
+    ("supports_block_3d", {}),
     ("rubbing_2d", {}),
     ("junction_2d", {}),
     ("excavated_column", {}),

@@ -100,7 +100,7 @@ namespace Viscoplastic
       else
         {
           result.boundaries = read_ids(where, text);
-          place << "where boundaries " << list(result.boundaries) << " meet";
+          place << "the meeting of boundaries " << list(result.boundaries);
         }
       result.place = place.str();
       return result;

@@ -87,7 +87,7 @@ QUANTITY = Panel(
 PANELS = (
     Panel("friction force\non the foundation", ["friction_force_[xyz]"]),
     Panel("contact force\non the foundation", ["contact_force_[xyz]"]),
-    Panel("reactions\non the body", ["reaction_\\d+_[xyz]"]),
+    Panel("reactions\non the body", ["reaction_(point|edge)?\\d+_[xyz]"]),
     Panel("loads on the body", ["load_[xyz]"]),
     AREA,
     Panel("contact pressure", ["max_pressure"]),
@@ -160,6 +160,9 @@ def label(name):
     match = re.fullmatch(r"(friction_force|contact_force|load)_([xyz])", name)
     if match:
         return f"${match.group(2)}$"
+    match = re.fullmatch(r"reaction_(point|edge)(\d+)_([xyz])", name)
+    if match:
+        return f"support {match.group(1)} {match.group(2)}, ${match.group(3)}$"
     match = re.fullmatch(r"(reaction|point)_?(\d+)_([xyz])", name)
     if match:
         what = "boundary" if match.group(1) == "reaction" else "point"

@@ -9,6 +9,7 @@ formulas of other programs, is not drawn.
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
+from matplotlib.markers import CARETUP
 from matplotlib.patches import Patch
 from scipy.spatial import cKDTree
 
@@ -36,6 +37,7 @@ FARTHEST = 0.055  # where a foundation is drawn from the body
 HATCH = 0.016
 SPACING = 0.016
 ROLLER = 0.009
+SPRING = 0.04
 LONGEST = 0.07  # of arrows
 
 
@@ -73,6 +75,20 @@ class Supports:
             return "unilateral"
         pressed = self.entry(number, "Pressure") or self.entry(number, "Traction")
         return "traction" if role == "free" and pressed else role
+
+    def has_springs(self, number):
+        return self.role(number) in ("traction", "displacement") and any(
+            self.entry(number, f"{name} stiffness") for name in ("Normal", "Tangential")
+        )
+
+    def points(self):
+        """The places of `Supports/Points'."""
+        text = self.parameters.get(("Supports", "Points"), "")
+        places = [part.partition(":")[0] for part in text.split(";") if part.strip()]
+        try:
+            return np.array([[float(x) for x in place.split(",")] for place in places])
+        except ValueError:  # with units
+            return np.zeros((0, len(self.axes)))
 
     def entry(self, number, name):
         text = self.parameters.get((f"Boundary {number}", name), "").strip()
@@ -176,9 +192,16 @@ class Supports:
                 d = int(np.argmax(flat))
                 at = centres[0, d] + 0.0
                 place = f"${'xyz'[d]}$ = {length.value(at)}"
-            text = f"{place}: {HATCHED.get(role, role)}"
+            what = HATCHED.get(role, role)
+            if self.has_springs(number):
+                loaded = self.entry(number, "Pressure") or self.entry(number, "Traction")
+                bare = role == "traction" and not loaded
+                what = "springs" if bare else f"{what} and springs"
+            text = f"{place}: {what}"
             if text not in found:  # pieces of one face
                 found.append(text)
+        for point in self.points():
+            found.append(f"held at ({', '.join(f'{x:g}' for x in point)})")
         if self.parameters.get(("Loads", "Body force"), "").strip():
             found.append("body force")
         return "; ".join(found)
@@ -263,7 +286,7 @@ def draw(axes, body, supports):
     size, time = body.scale.size, body.time
     centres = body.body.points[body.faces].mean(axis=1)
     ids = supports.of(centres)
-    hatched, rollers, pushed, lines = [], [], [], []
+    hatched, rollers, pushed, lines, springs = [], [], [], [], []
     for number in np.unique(ids):
         role = supports.role(number)
         if role == "free":
@@ -280,6 +303,8 @@ def draw(axes, body, supports):
             elif role == "symmetry":
                 place, normals, _ = piece.sample(4 * SPACING * size)
                 rollers.append(place + ROLLER * size * normals)
+            if supports.has_springs(number):
+                springs.append(spring_symbols(piece, size))
             try:
                 if role == "traction":
                     pushed.append(load(piece, supports, number, size, time))
@@ -294,6 +319,18 @@ def draw(axes, body, supports):
         )
         label = ", ".join(dict.fromkeys(hatched))
         handles.append(Patch(fc="white", ec=INK, lw=0.0, hatch="/////", label=label))
+    if springs:
+        axes.add_collection(
+            LineCollection(np.concatenate(springs), colors=INK, linewidths=0.8, zorder=3)
+        )
+        look = {"ls": "none", "marker": r"$\wr$", "ms": 10, "color": INK}
+        handles.append(Line2D([], [], label="springs", **look))
+    points = supports.points()
+    if len(points):
+        _, nodes = cKDTree(body.body.points[:, :2]).query(points)
+        look = {"ls": "none", "marker": CARETUP, "ms": 9, "mfc": "white", "mec": INK}
+        axes.plot(*body.deformed[nodes, :2].T, zorder=4, **look)
+        handles.append(Line2D([], [], label="held points", **look))
     if rollers:
         look = {"ls": "none", "marker": "o", "ms": 4, "mfc": "white", "mec": INK}
         axes.plot(*np.concatenate(rollers).T, zorder=3, **look)
@@ -309,6 +346,17 @@ def hatching(piece, size, gap):
     along = np.column_stack([-normals[:, 1], normals[:, 0]])
     begin = place + gap * size * normals
     return np.stack([begin, begin + HATCH * size * (normals - along)], axis=1)
+
+
+def spring_symbols(piece, size):
+    """Zigzag lines from a piece to the ground."""
+    place, normals, _ = piece.sample(4 * SPACING * size)
+    along = np.column_stack([-normals[:, 1], normals[:, 0]])
+    out = np.array([0, 0.25, 0.35, 0.5, 0.65, 0.75, 1, 1, 1]) * SPRING * size
+    aside = np.array([0, 0, 1, -1, 1, 0, 0, -1, 1]) * 0.2 * SPRING * size
+    corners = place[:, None] + out[:, None] * normals[:, None]
+    corners = corners + aside[:, None] * along[:, None]
+    return np.stack([corners[:, :-1], corners[:, 1:]], axis=2).reshape(-1, 2, 2)
 
 
 def foundation(piece, supports, number, body):

@@ -42,14 +42,16 @@ namespace Viscoplastic
                           "Foundation normal",
                           "Friction law",
                           "Compliance",
-                          "Compliance exponent"});
+                          "Compliance exponent",
+                          "Normal stiffness",
+                          "Tangential stiffness"});
       if (section == "Initial state")
         return entry != "Compatibility tolerance";
       return section == "Dimension" || section == "Units" ||
-             path == "Mesh refinement/Strategy" || path == "Output/Points" ||
-             path == "Output/Point fields" || path == "Output/Lines" ||
-             path == "Output/Line fields" || path == "Output/Integrals" ||
-             path == "Error control/Error bar" ||
+             section == "Supports" || path == "Mesh refinement/Strategy" ||
+             path == "Output/Points" || path == "Output/Point fields" ||
+             path == "Output/Lines" || path == "Output/Line fields" ||
+             path == "Output/Integrals" || path == "Error control/Error bar" ||
              path == "Error control/Quantity";
     }
 

@@ -102,9 +102,12 @@ namespace Viscoplastic
     for (const auto &pair : scene.boundary)
       if (pair.second.constrains() || pair.second.has_contact_points())
         listed.push_back(&pair.second);
+    const std::size_t n_boundaries = listed.size();
+    for (const Support<dim> &support : scene.supports)
+      listed.push_back(&support.condition);
     AssertThrow(listed.size() <= 52,
-                ExcMessage("At most 52 boundary ids may carry displacement or "
-                           "contact conditions."));
+                ExcMessage("At most 52 boundary ids and supports may carry "
+                           "displacement or contact conditions."));
 
     // What holds an absent material does not hold the nodes that it shares with
     // the body.
@@ -123,22 +126,49 @@ namespace Viscoplastic
              !scene.is_present(cell->material_id());
     };
 
-    std::vector<std::uint64_t> mask(owned.n_elements() / dim, 0);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (!cell->is_artificial())
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            for (unsigned int i = 0; i < listed.size(); ++i)
-              if (listed[i]->id == cell->face(f)->boundary_id())
-                for (const unsigned int v : cell->face(f)->vertex_indices())
-                  {
-                    const auto dof = cell->face(f)->vertex_dof_index(v, 0);
-                    if (owned.is_element(dof) &&
-                        !hanging_cartesian.is_constrained(dof) &&
-                        !is_released(cell, owned.index_within_set(dof) / dim))
-                      mask[owned.index_within_set(dof) / dim] |=
-                        std::uint64_t(1) << i;
-                  }
+    // For each owned node the boundaries that it is on.
+    const auto boundaries_of_nodes =
+      [&](const std::vector<types::boundary_id> &ids) {
+        std::vector<std::uint64_t> result(owned.n_elements() / dim, 0);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary())
+                for (unsigned int i = 0; i < ids.size(); ++i)
+                  if (ids[i] == cell->face(f)->boundary_id())
+                    for (const unsigned int v : cell->face(f)->vertex_indices())
+                      {
+                        const auto dof = cell->face(f)->vertex_dof_index(v, 0);
+                        if (owned.is_element(dof) &&
+                            !hanging_cartesian.is_constrained(dof) &&
+                            !is_released(cell,
+                                         owned.index_within_set(dof) / dim))
+                          result[owned.index_within_set(dof) / dim] |=
+                            std::uint64_t(1) << i;
+                      }
+        return result;
+      };
+    std::vector<types::boundary_id> ids;
+    for (unsigned int i = 0; i < n_boundaries; ++i)
+      ids.push_back(listed[i]->id);
+    std::vector<std::uint64_t> mask = boundaries_of_nodes(ids);
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      {
+        const Support<dim> &support = scene.supports[s];
+        const std::uint64_t bit     = std::uint64_t(1) << (n_boundaries + s),
+                            all =
+                              (std::uint64_t(1) << support.boundaries.size()) -
+                              1;
+        std::vector<std::uint64_t> here;
+        if (!support.position)
+          here = boundaries_of_nodes(
+            {support.boundaries.begin(), support.boundaries.end()});
+        // Vertices of the coarse mesh are the same numbers on all meshes.
+        for (std::size_t n = 0; n < mask.size(); ++n)
+          if (support.position ? node_position[n] == *support.position :
+                                 here[n] == all)
+            mask[n] |= bit;
+      }
 
     DistributedVector masks = owned_vector(), ghosted_masks = ghosted_vector();
     for (std::size_t n = 0; n < mask.size(); ++n)
@@ -409,7 +439,7 @@ namespace Viscoplastic
         for (unsigned int i = 0; i < m; ++i)
           {
             const auto &condition =
-              scene.boundary.at(frame.condition_boundary[i]);
+              scene.condition(frame.condition_boundary[i]);
             if (condition.role == BoundaryRole::displacement)
               datum[i] =
                 condition.displacement[frame.condition_component[i]]->value(

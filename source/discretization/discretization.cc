@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/discretization/volumetric_integration.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace Viscoplastic
 {
@@ -85,6 +86,8 @@ namespace Viscoplastic
                    mean_dilatation)
     , laws(stress_space)
     , loads(space)
+    , springs(scene.has_springs() ? std::make_unique<Springs<dim>>(space) :
+                                    nullptr)
     , tension(has_bilateral_contact(scene) ?
                 std::make_unique<ContactTension<dim>>(stress_space) :
                 nullptr)
@@ -101,6 +104,23 @@ namespace Viscoplastic
   Discretization<dim>::assemble_matrix()
   {
     assemble_elastic_matrix(space, moduli, mean_dilatation, matrix);
+    if (!springs)
+      return;
+    if (space.is_held_by_springs())
+      {
+        // What rounding of the matrix resists a rigid motion with.
+        double sum = 0.;
+        for (const auto dof : space.owned)
+          sum += matrix.diag_element(dof);
+        sum = Utilities::MPI::sum(sum, space.communicator);
+        AssertThrow(springs->total_stiffness() >
+                      10. * std::numeric_limits<double>::epsilon() * sum,
+                    ExcMessage("The springs are so soft beside the body that "
+                               "the rigid motions which they alone hold are "
+                               "lost in rounding. Let them be stiffer, or "
+                               "prescribe displacements that hold the body."));
+      }
+    springs->add_to(matrix);
   }
 
 

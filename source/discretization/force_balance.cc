@@ -109,6 +109,8 @@ namespace Viscoplastic
     for (const auto &pair : space.scene.boundary)
       if (pair.second.constrains())
         result[pair.first]; // the same entries on all ranks
+    for (const Support<dim> &support : space.scene.supports)
+      result[support.condition.id];
     // A constraint pushes along the direction that it prescribes. These may be
     // oblique to each other, and so parts, not projections.
     for_each_prescribed(

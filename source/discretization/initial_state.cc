@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/discretization/springs.h>
 
 #include <algorithm>
 #include <cmath>
@@ -229,12 +230,25 @@ namespace Viscoplastic
         const ElasticModuli<dim> identity(Stiffness::isotropic(1., 0.));
         DistributedMatrix        matrix;
         assemble_elastic_matrix(space, identity, false, matrix);
-        const DistributedVector load =
+        DistributedVector load =
           virtual_work(space,
                        3,
                        [&](const Point<dim> &x, const types::material_id) {
                          return initial_strain(scene, x);
                        });
+        if (scene.has_springs())
+          {
+            // In the form with springs, which may be all that holds the body.
+            const Springs<dim> springs(space);
+            double             unit = 0.;
+            for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+              unit = std::max(
+                unit, stress_space.moduli(c).smallest_deviatoric_eigenvalue());
+            unit = Utilities::MPI::max(unit, space.communicator);
+            space.to_cartesian(prescribed, state.u);
+            springs.add_force(state.u, load, -1. / unit);
+            springs.add_to(matrix, 1. / unit);
+          }
         const FaceRestriction no_face;
         make_bulk_solver(make_bulk_system(space, matrix, no_face), {})
           ->solve(load, prescribed, 1e-10);
@@ -445,6 +459,15 @@ namespace Viscoplastic
         space.restrict_to_unknowns(internal);
         size = std::max(size, internal.l2_norm());
         residual -= internal;
+      }
+
+    if (space.scene.has_springs() && space.scene.initial_displacement)
+      {
+        DistributedVector of_springs = space.owned_vector();
+        Springs<dim>(space).add_force(u, of_springs);
+        space.restrict_to_unknowns(of_springs);
+        size = std::max(size, of_springs.l2_norm());
+        residual += of_springs;
       }
 
     if (face != nullptr)

@@ -174,16 +174,20 @@ namespace Viscoplastic
       frame.condition_component[frame.n_fixed] = component;
       ++frame.n_fixed;
     };
+    const auto require_components =
+      [&](const BoundaryCondition<dim> &condition) {
+        for (unsigned int d = 0; d < dim; ++d)
+          if (condition.displacement[d])
+            require(axis<dim>(d), condition.id, d);
+      };
     // Where conditions compete, what fixes more comes first.
     for (const auto *condition : conditions)
       if (condition->role == BoundaryRole::clamped)
         for (unsigned int d = 0; d < dim; ++d)
           require(axis<dim>(d), condition->id, d);
     for (const auto *condition : conditions)
-      if (condition->role == BoundaryRole::displacement)
-        for (unsigned int d = 0; d < dim; ++d)
-          if (condition->displacement[d])
-            require(axis<dim>(d), condition->id, d);
+      if (condition->id < first_support_id)
+        require_components(*condition);
     for (const auto *condition : conditions)
       if (condition->is_glued())
         for (unsigned int d = 0; d < dim; ++d)
@@ -195,6 +199,9 @@ namespace Viscoplastic
           require(condition->normal,
                   condition->id,
                   numbers::invalid_unsigned_int);
+    for (const auto *condition : conditions)
+      if (condition->id >= first_support_id)
+        require_components(*condition);
 
     // The normals of pieces with given normal stress or unilateral contact come
     // next, so that the slip of a single piece is made of single components.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
@@ -177,19 +179,41 @@ namespace Viscoplastic
 
 
 
-    /// Which parts of the present body, joined by faces, each boundary node
-    /// belongs to, by its position in the list of boundary nodes. Without
-    /// stages the body is one. Returns the number of parts.
     template <int dim>
-    unsigned int
-    find_parts(const AdmissibleSpace<dim>          &space,
-               std::vector<std::set<unsigned int>> &parts)
+    typename Triangulation<dim>::cell_iterator
+    coarse_cell_of(typename Triangulation<dim>::cell_iterator cell)
+    {
+      while (cell->level() > 0)
+        cell = cell->parent();
+      return cell;
+    }
+
+
+
+    /// The parts of the present body, joined by faces. Without stages the body
+    /// is one.
+    struct BodyParts
+    {
+      unsigned int n = 1;
+      /// Those that each boundary node belongs to, by its position in the list
+      /// of boundary nodes.
+      std::vector<std::set<unsigned int>> of_node;
+      /// That of each cell of the coarse mesh; empty without stages.
+      std::vector<unsigned int> of_cell;
+    };
+
+
+
+    template <int dim>
+    BodyParts
+    find_parts(const AdmissibleSpace<dim> &space)
     {
       const auto &nodes = space.boundary_nodes();
+      BodyParts   result;
       if (!space.scene.has_stages())
         {
-          parts.assign(nodes.size(), {0});
-          return 1;
+          result.of_node.assign(nodes.size(), {0});
+          return result;
         }
       // All ranks have the coarse mesh, whose cells are present or absent as a
       // whole.
@@ -197,9 +221,11 @@ namespace Viscoplastic
       const auto  is_present    = [&space](const auto &cell) {
         return space.scene.is_present(cell->material_id());
       };
-      std::vector<unsigned int> part_of_cell(triangulation.n_cells(0),
-                                             numbers::invalid_unsigned_int);
-      unsigned int              n_parts = 0;
+      unsigned int              &n_parts      = result.n;
+      std::vector<unsigned int> &part_of_cell = result.of_cell;
+      n_parts                                 = 0;
+      part_of_cell.assign(triangulation.n_cells(0),
+                          numbers::invalid_unsigned_int);
       for (const auto &first : triangulation.cell_iterators_on_level(0))
         {
           if (!is_present(first) ||
@@ -229,7 +255,7 @@ namespace Viscoplastic
       std::map<types::global_dof_index, std::size_t> number;
       for (std::size_t i = 0; i < nodes.size(); ++i)
         number[nodes[i].first_dof] = i;
-      parts.assign(nodes.size(), {});
+      result.of_node.resize(nodes.size());
       for (const auto &cell : space.dof_handler.active_cell_iterators())
         if (!cell->is_artificial() && is_present(cell))
           for (const unsigned int v : cell->vertex_indices())
@@ -237,12 +263,10 @@ namespace Viscoplastic
               const auto node = number.find(cell->vertex_dof_index(v, 0));
               if (node == number.end())
                 continue;
-              typename Triangulation<dim>::cell_iterator ancestor = cell;
-              while (ancestor->level() > 0)
-                ancestor = ancestor->parent();
-              parts[node->second].insert(part_of_cell[ancestor->index()]);
+              result.of_node[node->second].insert(
+                part_of_cell[coarse_cell_of<dim>(cell)->index()]);
             }
-      return n_parts;
+      return result;
     }
   } // namespace
 
@@ -252,9 +276,9 @@ namespace Viscoplastic
   void
   AdmissibleSpace<dim>::check_rigid_motions()
   {
-    std::vector<std::set<unsigned int>> parts;
-    std::vector<SeenMotions<dim>>       seen(find_parts(*this, parts));
-    const Point<dim>                    center = this->center();
+    const BodyParts               parts = find_parts(*this);
+    std::vector<SeenMotions<dim>> seen(parts.n);
+    const Point<dim>              center = this->center();
     for (const auto &x : node_position)
       radius = std::max(radius, x.distance(center));
     radius = Utilities::MPI::max(radius, communicator);
@@ -282,11 +306,51 @@ namespace Viscoplastic
     };
     for (std::size_t m = 0; m < nodes.size(); ++m)
       for (unsigned int i = 0; i < frames[nodes[m].frame].n_fixed; ++i)
-        for (const unsigned int part : parts[m])
+        for (const unsigned int part : parts.of_node[m])
           add_row(seen[part],
                   nodes[m].position,
                   column(frames[nodes[m].frame].directions,
                          frames[nodes[m].frame].fixed[i]));
+
+    if (scene.has_springs())
+      {
+        for (SeenMotions<dim> of_part : seen) // a copy
+          {
+            of_part.join(communicator);
+            needs_springs |= !of_part.unseen().empty();
+          }
+        FEFaceValues<dim> face_values(dof_handler.get_fe(),
+                                      QGauss<dim - 1>(2),
+                                      update_quadrature_points |
+                                        update_normal_vectors);
+        for (const auto &cell : cells)
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary())
+              {
+                const auto &condition =
+                  scene.boundary.at(cell->face(f)->boundary_id());
+                if (!condition.has_springs())
+                  continue;
+                const unsigned int part =
+                  parts.of_cell.empty() ?
+                    0 :
+                    parts.of_cell[coarse_cell_of<dim>(cell)->index()];
+                face_values.reinit(cell, f);
+                for (const unsigned int q :
+                     face_values.quadrature_point_indices())
+                  {
+                    const auto K =
+                      condition.spring_stiffness(face_values.quadrature_point(
+                                                   q),
+                                                 face_values.normal_vector(q));
+                    if (const double size = K.norm(); size > 0.)
+                      for (unsigned int d = 0; d < dim; ++d)
+                        add_row(seen[part],
+                                face_values.quadrature_point(q),
+                                K * Point<dim>::unit_vector(d) / size);
+                  }
+              }
+      }
 
     for (SeenMotions<dim> &of_part : seen)
       {

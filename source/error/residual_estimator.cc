@@ -275,7 +275,11 @@ namespace Viscoplastic
                               std::max(0., density * condition.normal));
               }
           }
+        if (!face.springs.empty())
+          given -= face.springs[q].stiffness * at_point(fields.u.begin());
         result[q] = contradiction(condition, tractions[q], given, density);
+        if (!face.springs.empty())
+          result[q] = face.springs[q].weight * result[q];
       }
     return result;
   }

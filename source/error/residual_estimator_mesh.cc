@@ -192,7 +192,7 @@ namespace Viscoplastic
     const BoundaryCondition<dim> &condition)
   {
     BoundaryFace face{
-      number, f, &condition, cell->face(f)->diameter(), {}, {}, {}, {}, {}};
+      number, f, &condition, cell->face(f)->diameter(), {}, {}, {}, {}, {}, {}};
     const FaceShape &shape = shapes[cells[number].shape].faces[f];
     for (unsigned int q = 0; q < n_face_points; ++q)
       {
@@ -206,6 +206,22 @@ namespace Viscoplastic
           face.gaps[q] = condition.gap(x, 0.);
         if (condition.gives_way())
           face.compliances[q] = condition.compliance(x);
+        if (condition.has_springs())
+          {
+            const Tensor<1, dim> &nu = shape.normals[q];
+            const auto            K  = condition.spring_stiffness(x, nu);
+            const double          h =
+              face.diameter /
+              cells[number].stiffness.smallest_deviatoric_eigenvalue();
+            const double k_n    = nu * (K * nu),
+                         k_t    = (trace(K) - k_n) / (dim - 1),
+                         across = 1. / std::sqrt(1. + h * k_t),
+                         along  = 1. / std::sqrt(1. + h * k_n);
+            face.springs.push_back(
+              {K,
+               across * unit_symmetric_tensor<dim>() +
+                 (along - across) * symmetrize(outer_product(nu, nu))});
+          }
       }
     boundary_faces.push_back(face);
   }

@@ -153,6 +153,7 @@ namespace Viscoplastic
     in_subsection("Exact solution", exact_solution);
     for (auto &[id, boundary] : boundaries)
       in_subsection("Boundary " + std::to_string(id), boundary);
+    in_subsection("Supports", supports);
     in_subsection("Time", time);
     in_subsection("Step control", step_control);
     in_subsection("Solver", solver);

@@ -168,6 +168,24 @@ namespace Viscoplastic
 
 
   void
+  SupportParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Points",
+                      points,
+                      "Nodes that are held, as `coordinates: components' "
+                      "separated by semicolons, such as `0, 0: x y; 2, 0: y', "
+                      "which holds the rigid motions of a plane body: these "
+                      "components of u are zero. They have to be vertices of "
+                      "the coarse mesh. Unit: length.");
+    prm.add_parameter("Edges",
+                      edges,
+                      "The same where boundaries meet, by their ids, such as "
+                      "`1, 3: y; 1, 4: y z'.");
+  }
+
+
+
+  void
   LoadParameters::declare(ParameterHandler &prm)
   {
     prm.add_parameter("Body force",
@@ -249,7 +267,7 @@ namespace Viscoplastic
       "Role",
       role,
       "`clamped': u = 0; `displacement': given components of u; `traction': "
-      "sigma nu = F - p nu; `free': sigma nu = 0; `symmetry': u_nu = 0 without "
+      "sigma nu = F - p nu, also with springs; `free': sigma nu = 0; `symmetry': u_nu = 0 without "
       "friction on a flat piece; `contact': a flat piece of Gamma_3 with a "
       "friction law.",
       Patterns::Selection("not given|clamped|displacement|traction|free|"
@@ -270,6 +288,18 @@ namespace Viscoplastic
                       "the body where it is positive. It acts along the normal "
                       "of the faces as they are in the mesh: F = -p nu. Unit: "
                       "stress.");
+    prm.add_parameter(
+      "Normal stiffness",
+      normal_stiffness,
+      "k_n(x) >= 0 of springs between the piece and the ground, "
+      "beside traction and pressure and for the same roles: "
+      "sigma nu = F - p nu - k_n u_nu nu - k_t u_tau. Springs "
+      "push and pull. Ground that moves by d adds k d to the "
+      "traction. Unit: stress/length.");
+    prm.add_parameter("Tangential stiffness",
+                      tangential_stiffness,
+                      "k_t(x) >= 0 of these springs along the piece. Unit: "
+                      "stress/length.");
     prm.add_parameter(
       "Contact law",
       contact_law,

@@ -138,7 +138,8 @@ namespace Viscoplastic
                            " has never acted: what " + entries +
                            " gives has been zero everywhere and at all "
                            "times, and " +
-                           (condition.role == BoundaryRole::displacement ?
+                           (condition.role == BoundaryRole::displacement ||
+                                condition.has_springs() ?
                               "can go." :
                               "'Role' = free gives the same for less."));
         if (scene.has_friction() && !foundation_has_moved &&

@@ -175,6 +175,27 @@ namespace Viscoplastic
                 "Poisson's ratio farther from 1/2 would leave less.";
         console.remark(text.str());
       }
+    // Beside the nodal forces of the stress: loads may balance each other.
+    if (!scene.supports.empty() && !support_carries && step.time_step.n > 0)
+      {
+        const double size = step.end.forces.internal.l1_norm();
+        for (const Support<dim> &support : scene.supports)
+          {
+            const double force =
+              stable_norm(quantities.reactions.at(support.condition.id));
+            if (support_carries || force <= 1e-3 * size)
+              continue;
+            support_carries = true;
+            std::ostringstream text;
+            text
+              << "Note: at t = " << step.time_step.t << time_unit
+              << " the support at " << support.place << " carries a force, of "
+              << force << scene.parameters.units.suffix(Quantity::force, dim)
+              << "; there is no bounded stress there, and the body gives way "
+                 "at the support without bound as the mesh is refined.";
+            console.remark(text.str());
+          }
+      }
     if (run.capped_volume.value == 0. && step.capped_volume > 0.)
       {
         std::ostringstream text;

@@ -127,10 +127,11 @@ namespace Viscoplastic
       if (coarser && run.slipping_area)
         row("slipping area", &Summary::slipping_area, Quantity::area);
       for (const auto &[id, force] : run.reactions)
-        print_with("reaction of boundary " + std::to_string(id),
-                   components(force,
-                              coarser ? &coarser->reactions.at(id) : nullptr),
-                   Quantity::force);
+        print_with(
+          (id < first_support_id ? "reaction of boundary " : "reaction at ") +
+            name_in_columns(id),
+          components(force, coarser ? &coarser->reactions.at(id) : nullptr),
+          Quantity::force);
       if (coarser)
         for (unsigned int i = 0; i < run.point_displacements.size(); ++i)
           print_with("displacement of point " + std::to_string(i),
@@ -357,7 +358,7 @@ namespace Viscoplastic
         result.emplace_back("contact_area", *contact_area);
       }
     for (const auto &[id, force] : reactions)
-      add("reaction_" + std::to_string(id), force);
+      add("reaction_" + name_in_columns(id), force);
     if (viscous_dissipation)
       result.emplace_back("viscous_dissipation", *viscous_dissipation);
     result.emplace_back("stored_energy", stored_energy);

@@ -134,7 +134,7 @@ namespace Viscoplastic
           }
       }
     for (const auto &[id, force] : quantities.reactions)
-      row.add_vector("reaction_" + std::to_string(id), force, dim);
+      row.add_vector("reaction_" + name_in_columns(id), force, dim);
     row.add_vector("load", forces.load.resultant, dim);
     row.add("force_balance_defect", balance_defect(quantities));
     if (d.face)
@@ -144,7 +144,9 @@ namespace Viscoplastic
         row.add("slip_misalignment", friction.slip_misalignment);
       }
     row.add("stored_energy", balance.stored_energy());
-    row.add("strain_energy", forces.strain_energy);
+    row.add("strain_energy", forces.strain_energy - quantities.spring_energy);
+    if (d.springs)
+      row.add("spring_energy", quantities.spring_energy);
     if (scene.has_viscosity())
       row.add("viscous_dissipation", balance.viscous_dissipation());
     if (d.face)

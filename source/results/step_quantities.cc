@@ -132,6 +132,13 @@ namespace Viscoplastic
       result.friction_bounds = d.face->missed_bounds(state);
 
     result.reactions = reactions(d.space, forces);
+    if (d.springs)
+      {
+        const auto [of_springs, energy] = d.springs->summarize(state.u);
+        result.spring_energy            = energy;
+        for (const auto &[id, force] : of_springs)
+          result.reactions[id] += force;
+      }
     result.sum_of_forces =
       forces.load.resultant - result.friction_force - result.contact.force;
     result.largest_force = std::max({stable_norm(forces.load.resultant),

@@ -32,6 +32,7 @@ namespace Viscoplastic
                                {"max_stick_slip", Quantity::length},
                                {"stored_energy", Quantity::energy},
                                {"strain_energy", Quantity::energy},
+                               {"spring_energy", Quantity::energy},
                                {"viscous_dissipation", Quantity::energy},
                                {"friction_dissipation", Quantity::energy},
                                {"external_work", Quantity::energy},

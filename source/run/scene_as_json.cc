@@ -35,7 +35,9 @@ namespace Viscoplastic
                                                  "Normal stress",
                                                  "Traction",
                                                  "Displacement",
-                                                 "Pressure"};
+                                                 "Pressure",
+                                                 "Normal stiffness",
+                                                 "Tangential stiffness"};
 
 
 

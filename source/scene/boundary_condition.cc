@@ -186,7 +186,8 @@ namespace Viscoplastic
       const bool is_contact = condition.role == BoundaryRole::contact;
       if (name == "Displacement")
         return condition.role == BoundaryRole::displacement;
-      if (name == "Traction" || name == "Pressure")
+      if (name == "Traction" || name == "Pressure" ||
+          name == "Normal stiffness" || name == "Tangential stiffness")
         return condition.role == BoundaryRole::traction ||
                (condition.role == BoundaryRole::displacement &&
                 !condition.prescribes_all());
@@ -253,7 +254,9 @@ namespace Viscoplastic
     const auto scalar = [&](const std::string &name, const std::string &text) {
       std::optional<Expression<dim>> result;
       AssertThrow(is_given(text) || !uses(*this, name) || name == "Pressure" ||
-                    name == "Gap" || (solution && name == "Normal stress"),
+                    name == "Normal stiffness" ||
+                    name == "Tangential stiffness" || name == "Gap" ||
+                    (solution && name == "Normal stress"),
                   ExcMessage("'" + entry(id, name) + "' is missing; the " +
                              (name == "Normal stress" ?
                                 "contact law given normal stress" :
@@ -288,14 +291,32 @@ namespace Viscoplastic
       }
     AssertThrow(role != BoundaryRole::traction || solution ||
                   is_given(parameters.traction) ||
-                  is_given(parameters.pressure),
+                  is_given(parameters.pressure) ||
+                  is_given(parameters.normal_stiffness) ||
+                  is_given(parameters.tangential_stiffness),
                 ExcMessage("'" + entry(id, "Traction") +
-                           "' is missing, and so is 'Pressure'; a boundary "
-                           "without load has the role free."));
+                           "' is missing, and so are 'Pressure' and "
+                           "stiffnesses of springs; a boundary without load "
+                           "has the role free."));
     traction = vector("Traction", parameters.traction);
     pressure = scalar("Pressure", parameters.pressure);
     if (pressure && pressure->is_zero())
       pressure.reset();
+    const auto stiffness = [&](const std::string &name,
+                               const std::string &text) {
+      auto result = scalar(name, text);
+      AssertThrow(!result || !result->depends_on_time(),
+                  ExcMessage("'" + entry(id, name) +
+                             "' depends on time; springs do not become stiffer "
+                             "or softer, let the traction depend on time."));
+      if (result && result->is_zero())
+        result.reset();
+      return result;
+    };
+    normal_stiffness =
+      stiffness("Normal stiffness", parameters.normal_stiffness);
+    tangential_stiffness =
+      stiffness("Tangential stiffness", parameters.tangential_stiffness);
     friction_bound = scalar("Friction bound", parameters.friction_bound);
     friction_coefficient =
       scalar("Friction coefficient", parameters.friction_coefficient);
@@ -361,6 +382,8 @@ namespace Viscoplastic
     compare("Displacement", parameters.displacement, "");
     compare("Traction", parameters.traction, "");
     compare("Pressure", parameters.pressure, "0");
+    compare("Normal stiffness", parameters.normal_stiffness, "0");
+    compare("Tangential stiffness", parameters.tangential_stiffness, "0");
     compare("Contact law", parameters.contact_law, "bilateral");
     compare("Gap", parameters.gap, "0");
     compare("Foundation normal", parameters.foundation_normal, "");
@@ -488,7 +511,12 @@ namespace Viscoplastic
       return normal_stress->value(x, t) * outward_normal;
     Tensor<1, dim> result;
     if (has_derived_traction())
-      result = solution->traction(x, outward_normal, t);
+      {
+        result = solution->traction(x, outward_normal, t);
+        if (has_springs())
+          result +=
+            spring_stiffness(x, outward_normal) * solution->displacement(x, t);
+      }
     if (traction)
       result = traction->vector(x, t);
     if (pressure)
@@ -497,6 +525,33 @@ namespace Viscoplastic
       if (displacement[d])
         result[d] = 0.;
     return result;
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, dim>
+  BoundaryCondition<dim>::spring_stiffness(
+    const Point<dim>     &x,
+    const Tensor<1, dim> &outward_normal) const
+  {
+    const auto value = [&](const std::optional<Expression<dim>> &datum,
+                           const std::string                    &name) {
+      const double result = datum ? datum->value(x, 0.) : 0.;
+      if (!(result >= 0.))
+        {
+          std::ostringstream message;
+          message << "'" << entry(id, name) << "' is " << result << " at x = ("
+                  << x << "); it must not be negative.";
+          AssertThrow(false, ExcMessage(message.str()));
+        }
+      return result;
+    };
+    const double k_n = value(normal_stiffness, "Normal stiffness"),
+                 k_t = value(tangential_stiffness, "Tangential stiffness");
+    return k_t * unit_symmetric_tensor<dim>() +
+           (k_n - k_t) *
+             symmetrize(outer_product(outward_normal, outward_normal));
   }
 
 
@@ -540,6 +595,8 @@ namespace Viscoplastic
       add(component);
     add(given_gap);
     add(given_compliance);
+    add(normal_stiffness);
+    add(tangential_stiffness);
     add(foundation_displacement);
     add(friction_bound);
     add(friction_coefficient);

@@ -35,7 +35,8 @@ namespace Viscoplastic
     if (opens)
       add(Kind::contact_force, 0, "contact_force");
     for (const auto &[id, condition] : boundary)
-      if (condition.constrains())
+      // The dual problem knows forces of constraints, not of springs.
+      if (condition.constrains() && !condition.has_springs())
         add(Kind::reaction, id, "reaction_" + std::to_string(id));
     for (unsigned int i = 0; i < n_points; ++i)
       add(Kind::displacement, i, "point" + std::to_string(i));

@@ -65,6 +65,7 @@ namespace Viscoplastic
     for (const auto &[id, boundary_parameters] : parameters.boundaries)
       boundary.emplace(
         id, BoundaryCondition<dim>(id, boundary_parameters, source_of_data));
+    supports = read_supports<dim>(parameters.supports);
     if (source_of_data)
       derive_data();
 
@@ -133,6 +134,9 @@ namespace Viscoplastic
     inspect_unused_entries();
     inspect_flatness(triangulation);
     inspect_junctions(triangulation);
+    for (const std::string &warning :
+         place_supports(triangulation, boundary, supports))
+      warnings.push_back(warning);
     for (const std::string &warning :
          warnings_of_data_in_time(*this, triangulation))
       warnings.push_back(warning);
@@ -375,6 +379,30 @@ namespace Viscoplastic
 
 
   template <int dim>
+  const BoundaryCondition<dim> &
+  Scene<dim>::condition(const types::boundary_id id) const
+  {
+    for (const Support<dim> &support : supports)
+      if (support.condition.id == id)
+        return support.condition;
+    return boundary.at(id);
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_springs() const
+  {
+    for (const auto &pair : boundary)
+      if (pair.second.has_springs())
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
   bool
   Scene<dim>::has_friction() const
   {
@@ -558,9 +586,12 @@ namespace Viscoplastic
         boundaries([](const auto &b) { return b.traction.has_value(); }));
     add("surface pressure",
         boundaries([](const auto &b) { return b.pressure.has_value(); }));
+    add("springs", boundaries([](const auto &b) { return b.has_springs(); }));
     add("prescribed displacement", boundaries([](const auto &b) {
           return b.role == BoundaryRole::displacement;
         }));
+    for (const Support<dim> &support : supports)
+      result.push_back("support at " + support.place);
     if (initial_displacement || initial_stress)
       result.push_back("initial displacement or stress");
     const std::string time_unit = parameters.units.suffix(Quantity::time);

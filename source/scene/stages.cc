@@ -36,7 +36,7 @@ namespace Viscoplastic
 
 
 
-    /// Refuse contact of materials that come or go.
+    /// Refuse contact and springs of materials that come or go.
     template <int dim>
     void
     inspect_contact_pieces(
@@ -52,14 +52,18 @@ namespace Viscoplastic
           for (const unsigned int f : cell->face_indices())
             if (cell->at_boundary(f))
               {
-                const types::boundary_id id = cell->face(f)->boundary_id();
-                AssertThrow(scene.boundary.at(id).role != BoundaryRole::contact,
+                const types::boundary_id      id = cell->face(f)->boundary_id();
+                const BoundaryCondition<dim> &condition = scene.boundary.at(id);
+                const bool is_contact = condition.role == BoundaryRole::contact;
+                AssertThrow(!is_contact && !condition.has_springs(),
                             ExcMessage(
-                              "Boundary " + std::to_string(id) +
-                              " has the role contact and a part in '" +
+                              "Boundary " + std::to_string(id) + " has " +
+                              (is_contact ? "the role contact" : "springs") +
+                              " and a part in '" +
                               scene.material(cell->material_id()).section +
-                              "', which is added or removed; the pieces in "
-                              "contact have to stay the same."));
+                              "', which is added or removed; the pieces " +
+                              (is_contact ? "in contact" : "with springs") +
+                              " have to stay the same."));
               }
     }
   } // namespace

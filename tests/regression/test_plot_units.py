@@ -276,6 +276,10 @@ class Supported(TestCase):
             ("Boundary 4", "Friction law"): "coulomb",
             ("Boundary 4", "Gap"): "7 + 2*t*x",
             ("Boundary 4", "Foundation displacement"): "-3*t",
+            ("Boundary 0", "Normal stiffness"): "2*x",
+            ("Boundary 2", "Tangential stiffness"): "1",
+            ("Boundary 3", "Tangential stiffness"): "0",
+            ("Supports", "Points"): "0, 0: x y; 2, 0.5: y",
         }
         results = SimpleNamespace(boundary=lambda: record, data=parameters)
         found = Supports(results, Units(duration=2.0))
@@ -283,6 +287,9 @@ class Supported(TestCase):
         self.assertClose(found.body_force(places, 2.0), [(0, -2)], absolute=1e-12)
         load = found.traction(0, places, normals, 2.0)
         self.assertClose(load, [(2, 6 - 10)], absolute=1e-12)
+        # only where the role uses them
+        self.assertEqual([i for i in range(5) if found.has_springs(i)], [0])
+        self.assertClose(found.points(), [(0, 0), (2, 0.5)])
         for number, expected in ((1, (0, 5)), (2, (4, -3)), (4, (0, 1 - 3))):
             velocity = found.velocity(number, places, normals, 1.0)
             self.assertClose(velocity, [expected], absolute=1e-8)

@@ -186,7 +186,8 @@ def documented_units():
 
 def documented_name(column):
     name = re.sub(r"_[xyz]$", "_x", column)
-    return re.sub(r"^reaction_\d+", "reaction_<id>", re.sub(r"^point\d+", "point<i>", name))
+    name = re.sub(r"^(|reaction_)(point|edge)\d+", r"\1\2<i>", name)
+    return re.sub(r"^reaction_\d+", "reaction_<id>", name)
 
 
 class Labels(TestCase):
@@ -400,6 +401,7 @@ class Scaled:
             "stress": (1, 0, 0),
             "stress times time": (1, 0, 1),
             "force per volume": (1, -1, 0),
+            "stress/length": (1, -1, 0),
             "1/(stress^n time)": (-exponent["n"], 0, -1),
             "stress/length^m": (1, -exponent["m"], 0),
         }[unit]
@@ -477,6 +479,8 @@ SHORT = (
         "coulomb_block_3d",
         {"Solver/Linear solver": "multigrid", "Boundary 4/Slip rate factor": "1/(1 + v)"},
     ),
+    ("springs_block_2d", {"Boundary 2/Tangential stiffness": "0.1 + 0.2*x"}),
+    ("supports_block_3d", {}),
     ("rubbing_2d", {}),
     ("junction_2d", {}),
     ("excavated_column", {}),

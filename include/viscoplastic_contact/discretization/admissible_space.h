@@ -67,6 +67,14 @@ namespace Viscoplastic
       return !free_motions.empty();
     }
 
+    /// Whether there is a rigid motion that springs have to prevent. The same
+    /// on all ranks.
+    bool
+    is_held_by_springs() const
+    {
+      return needs_springs;
+    }
+
     /// Degrees of freedom on the mesh that this one is refined from; 0 where it
     /// is not refined. The same on all ranks.
     types::global_dof_index
@@ -207,7 +215,8 @@ namespace Viscoplastic
     /// The rigid motions that only contact can prevent, by translations and
     /// rotations times `radius`, the largest distance from the center.
     std::vector<std::array<double, 6>> free_motions;
-    double                             radius = 0.;
+    double                             radius        = 0.;
+    bool                               needs_springs = false;
     AffineConstraints<double>          hanging_cartesian, hanging_in_frames;
     /// Whether any rank has hanging nodes.
     bool any_hanging;

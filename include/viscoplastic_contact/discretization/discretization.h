@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/loads.h>
+#include <viscoplastic_contact/discretization/springs.h>
 #include <viscoplastic_contact/discretization/stress_space.h>
 #include <viscoplastic_contact/linear_solvers/solver_choice.h>
 
@@ -27,7 +28,7 @@ namespace Viscoplastic
     /// the scene does not fit the mesh.
     Discretization(const DoFHandler<dim> &dof_handler, const Scene<dim> &scene);
 
-    /// Make the matrix of a(.,.). Collective.
+    /// Make the matrix. Collective.
     void
     assemble_matrix();
 
@@ -64,13 +65,15 @@ namespace Viscoplastic
     StressSpace<dim> stress_space;
     FlowLaws<dim>    laws;
     Loads<dim>       loads;
+    /// Between the body and the ground; null if there are none.
+    std::unique_ptr<Springs<dim>> springs;
     /// Where bilateral contact pulls; null without bilateral contact.
     std::unique_ptr<ContactTension<dim>> tension;
     /// The contact points; null without friction and unilateral contact.
     std::unique_ptr<ContactFace<dim>> face;
     /// How many steps there will be on this mesh at least.
     unsigned int n_steps;
-    /// The matrix of a(.,.) in nodal frames.
+    /// The matrix of a(.,.) with that of springs, in nodal frames.
     DistributedMatrix matrix;
 
   private:

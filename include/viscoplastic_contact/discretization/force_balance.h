@@ -50,9 +50,9 @@ namespace Viscoplastic
 
   /**
    * The forces on the body at prescribed components, summed for each boundary
-   * id. The force at a node that several conditions hold has a part along the
-   * direction of each condition, which counts for its id, so that the sum over
-   * the ids is the total. Collective.
+   * and support, by id. The force at a node that several conditions hold has a
+   * part along the direction of each condition, which counts for its id, so
+   * that the sum over the ids is the total. Collective.
    */
   template <int dim>
   std::map<types::boundary_id, Tensor<1, dim>>

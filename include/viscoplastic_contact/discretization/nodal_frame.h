@@ -79,8 +79,8 @@ namespace Viscoplastic
   /**
    * The frame of a node where @p conditions meet (in the order of their ids).
    * Where conditions compete, those that fix more come first: clamped, given
-   * components, glued, symmetry, bilateral contact; a condition whose direction
-   * depends on the others is dropped.
+   * components, glued, symmetry, bilateral contact, supports; a condition whose
+   * direction depends on the others is dropped.
    */
   template <int dim>
   NodalFrame<dim>

@@ -137,6 +137,15 @@ namespace Viscoplastic
       std::array<double, n_face_points>         bounds;
       /// g of contact that opens, if it does not depend on time, and c.
       std::array<double, n_face_points> gaps, compliances;
+
+      /// K of springs, and the root of (I + h_e K/(2 mu))^-1 by which residuals
+      /// count beside them: they cannot do more than to the springs alone.
+      struct Spring
+      {
+        SymmetricTensor<2, dim> stiffness, weight;
+      };
+      /// None without springs.
+      std::vector<Spring> springs;
     };
 
     /// What makes the stress at points of one cell.

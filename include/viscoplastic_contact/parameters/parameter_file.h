@@ -59,6 +59,7 @@ namespace Viscoplastic
     StressParameters   stress;
     /// By material id of the cells.
     std::map<unsigned int, MaterialParameters> materials;
+    SupportParameters                          supports;
     LoadParameters                             loads;
     InitialStateParameters                     initial_state;
     ExactSolutionParameters                    exact_solution;

@@ -71,6 +71,14 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
+  struct SupportParameters
+  {
+    std::string points, edges;
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
   struct LoadParameters
   {
     std::string body_force;
@@ -105,6 +113,7 @@ namespace Viscoplastic
   {
     std::string role = "not given";
     std::string displacement, traction, pressure;
+    std::string normal_stiffness, tangential_stiffness;
     std::string contact_law = "not given";
     std::string gap;
     std::string foundation_normal;

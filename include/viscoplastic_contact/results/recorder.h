@@ -210,6 +210,8 @@ namespace Viscoplastic
     bool balance_is_doubtful = false;
     /// Whether an error of the solver above its tolerance has been told.
     bool solver_error_is_told = false;
+    /// Whether the user has been told of a support that carries a force.
+    bool support_carries = false;
 
     std::unique_ptr<Statistics> statistics;
     Progress                    progress;

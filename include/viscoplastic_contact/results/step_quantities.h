@@ -15,8 +15,8 @@ namespace Viscoplastic
   struct StepQuantities
   {
     StressSummary<dim> stress;
-    /// The energy stored at the end of the step.
-    double stored_energy = 0.;
+    /// The energy stored at the end of the step, and what of it is in springs.
+    double stored_energy = 0., spring_energy = 0.;
     /// The work of loads, prescribed displacements and moving foundations in
     /// the step.
     double external_work = 0.;
@@ -26,7 +26,8 @@ namespace Viscoplastic
     Tensor<1, dim>     friction_force;
     /// What contact that opens and closes does; zero without.
     NormalContact<dim> contact;
-    /// The reaction on each boundary with prescribed displacements.
+    /// The reaction on each boundary and support with prescribed
+    /// displacements, and of springs.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;
     /// Loads, reactions, friction and contact on the body, which add up to
     /// zero, and the largest of them.

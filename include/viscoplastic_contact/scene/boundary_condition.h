@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
@@ -73,6 +74,9 @@ namespace Viscoplastic
     /// where identically zero.
     std::optional<VectorExpression<dim>> traction;
     std::optional<Expression<dim>>       pressure;
+    /// k_n and k_t of springs, which take what traction and pressure are given
+    /// for; absent where identically zero.
+    std::optional<Expression<dim>> normal_stiffness, tangential_stiffness;
     /// g of contact that opens; absent where identically zero.
     std::optional<Expression<dim>> given_gap;
     /// c and m of normal compliance.
@@ -172,6 +176,21 @@ namespace Viscoplastic
 
     bool
     load_depends_on_time() const;
+
+    bool
+    has_springs() const
+    {
+      return normal_stiffness || tangential_stiffness;
+    }
+
+    /**
+     * K = k_n nu nu + k_t (I - nu nu), of which springs add -K u to the force
+     * per area, at a point with this outward normal of the face. Throws
+     * ExcMessage where a stiffness is negative.
+     */
+    SymmetricTensor<2, dim>
+    spring_stiffness(const Point<dim>     &x,
+                     const Tensor<1, dim> &outward_normal) const;
 
     /// The force per area that is given at a point with this outward normal of
     /// the face: F - p nu, or S nu; zero in the directions in which u is

@@ -11,6 +11,7 @@
 #include <viscoplastic_contact/scene/material.h>
 #include <viscoplastic_contact/scene/output_places.h>
 #include <viscoplastic_contact/scene/quantity_of_interest.h>
+#include <viscoplastic_contact/scene/support.h>
 
 #include <map>
 #include <memory>
@@ -151,6 +152,13 @@ namespace Viscoplastic
     }
 
     bool
+    has_springs() const;
+
+    /// What the boundary or support with this id prescribes.
+    const BoundaryCondition<dim> &
+    condition(const types::boundary_id id) const;
+
+    bool
     has_friction() const;
 
     bool
@@ -214,6 +222,7 @@ namespace Viscoplastic
     /// The exact solution; null if none is known.
     std::unique_ptr<ExactSolution<dim>>                  exact_solution;
     std::map<types::boundary_id, BoundaryCondition<dim>> boundary;
+    std::vector<Support<dim>>                            supports;
     /// The materials that some cell has in some stage.
     std::vector<std::unique_ptr<const Material<dim>>> materials;
     /// b, u0, sigma0; absent where identically zero.

@@ -268,6 +268,11 @@ class Variants:
             loads.append("Displacement")
         if role in ("traction", "displacement"):
             loads.append("Pressure")
+            for name in ("Normal stiffness", "Tangential stiffness"):
+                if not is_zero(data(name)):
+                    what = f"{in_a_sentence(name)} of springs{on}"
+                    self.add(what, "none", f"{section}/{name}=0")
+                    others.append(name)
 
         def add_mean(over, name):
             # There is none of what is zero.

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/distributed/tria.h>
+
+#include <viscoplastic_contact/base/ids.h>
+#include <viscoplastic_contact/scene/boundary_condition.h>
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// Supports have ids beyond those of boundaries, so that nodes, conditions
+  /// and reactions know them as they know boundaries.
+  constexpr types::boundary_id first_support_id = largest_id + 1,
+                               first_edge_id    = 2 * first_support_id;
+
+  /// What a boundary or a support is called in columns: `3', `point0', `edge1'.
+  std::string
+  name_in_columns(const types::boundary_id id);
+
+
+  /**
+   * Nodes of which some components of u are zero: one at a vertex of the coarse
+   * mesh, which every mesh has, or those where boundaries meet.
+   */
+  template <int dim>
+  struct Support
+  {
+    /// In words.
+    std::string place;
+    /// That of a point; once the mesh is known, that of its vertex.
+    std::optional<Point<dim>> position;
+    /// Of an edge.
+    std::set<types::boundary_id> boundaries;
+    /// The role displacement with the components that are held.
+    BoundaryCondition<dim> condition;
+  };
+
+
+  /// Those of the section `Supports'. Throws ExcMessage.
+  template <int dim>
+  std::vector<Support<dim>>
+  read_supports(const SupportParameters &parameters);
+
+
+  /**
+   * Find the vertices of points and see whether boundaries meet. Returns what
+   * is allowed but should be known, a sentence each. Throws ExcMessage.
+   */
+  template <int dim>
+  std::vector<std::string>
+  place_supports(
+    const parallel::distributed::Triangulation<dim>            &triangulation,
+    const std::map<types::boundary_id, BoundaryCondition<dim>> &boundary,
+    std::vector<Support<dim>>                                  &supports);
+} // namespace Viscoplastic

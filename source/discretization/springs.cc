@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/discretization/springs.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  Springs<dim>::Springs(const AdmissibleSpace<dim> &space)
+    : space(space)
+  {
+    FEFaceValues<dim> face_values(space.dof_handler.get_fe(),
+                                  QGauss<dim - 1>(2),
+                                  update_values | update_JxW_values |
+                                    update_quadrature_points |
+                                    update_normal_vectors);
+    for (const auto &cell : space.cells)
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          {
+            const auto &condition =
+              space.scene.boundary.at(cell->face(f)->boundary_id());
+            if (!condition.has_springs())
+              continue;
+            face_values.reinit(cell, f);
+            Face face{cell, f, {}};
+            for (const unsigned int q : face_values.quadrature_point_indices())
+              {
+                const auto K =
+                  condition.spring_stiffness(face_values.quadrature_point(q),
+                                             face_values.normal_vector(q));
+                face.stiffness[q] = K * face_values.JxW(q);
+                for (unsigned int v = 0; v < n_nodes; ++v)
+                  shape_values[f][q][v] = face_values.shape_value(v * dim, q);
+              }
+            faces.push_back(face);
+          }
+  }
+
+
+
+  template <int dim>
+  template <typename Visitor>
+  void
+  Springs<dim>::for_each_point(const Visitor &visit) const
+  {
+    for (const Face &face : faces)
+      for (unsigned int q = 0; q < n_points; ++q)
+        visit(face, shape_values[face.number][q], face.stiffness[q]);
+  }
+
+
+
+  template <int dim>
+  double
+  Springs<dim>::total_stiffness() const
+  {
+    double sum = 0.;
+    for_each_point(
+      [&sum](const Face &, const auto &, const auto &K) { sum += trace(K); });
+    return Utilities::MPI::sum(sum, space.communicator);
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  Springs<dim>::displacement(const DistributedVector           &ghosted_u,
+                             const Face                        &face,
+                             const std::array<double, n_nodes> &shapes) const
+  {
+    Tensor<1, dim> result;
+    for (unsigned int v = 0; v < n_nodes; ++v)
+      {
+        const auto node =
+          space.relevant.index_within_set(face.cell->vertex_dof_index(v, 0));
+        for (unsigned int d = 0; d < dim; ++d)
+          result[d] += shapes[v] * ghosted_u.begin()[node + d];
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  Springs<dim>::add_to(DistributedMatrix &matrix, const double factor) const
+  {
+    constexpr unsigned int               n = n_nodes * dim;
+    FullMatrix<double>                   cell_matrix(n, n);
+    std::vector<types::global_dof_index> dofs(n);
+    for (const Face &face : faces)
+      {
+        cell_matrix = 0.;
+        for (unsigned int q = 0; q < n_points; ++q)
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int j = 0; j < n; ++j)
+              cell_matrix(i, j) += factor *
+                                   shape_values[face.number][q][i / dim] *
+                                   shape_values[face.number][q][j / dim] *
+                                   face.stiffness[q][i % dim][j % dim];
+        face.cell->get_dof_indices(dofs);
+        space.rotate(dofs, cell_matrix);
+        space.hanging_nodes().distribute_local_to_global(cell_matrix,
+                                                         dofs,
+                                                         matrix);
+      }
+    matrix.compress(VectorOperation::add);
+  }
+
+
+
+  template <int dim>
+  void
+  Springs<dim>::add_force(const DistributedVector &ghosted_u,
+                          DistributedVector       &load,
+                          const double             factor) const
+  {
+    std::vector<double> cartesian(space.relevant.n_elements());
+    for_each_point([&](const Face &face, const auto &shapes, const auto &K) {
+      const Tensor<1, dim> force =
+        -factor * (K * displacement(ghosted_u, face, shapes));
+      for (unsigned int v = 0; v < n_nodes; ++v)
+        for (unsigned int d = 0; d < dim; ++d)
+          cartesian[space.relevant.index_within_set(
+                      face.cell->vertex_dof_index(v, 0)) +
+                    d] += shapes[v] * force[d];
+    });
+    space.add_cartesian_load(cartesian, load);
+  }
+
+
+
+  template <int dim>
+  typename Springs<dim>::Summary
+  Springs<dim>::summarize(const DistributedVector &ghosted_u) const
+  {
+    Summary result;
+    for (const auto &[id, condition] : space.scene.boundary)
+      if (condition.has_springs())
+        result.forces[id]; // the same entries on all ranks
+    for_each_point([&](const Face &face, const auto &shapes, const auto &K) {
+      const Tensor<1, dim> u     = displacement(ghosted_u, face, shapes),
+                           force = K * u;
+      result.forces[face.cell->face(face.number)->boundary_id()] -= force;
+      result.energy += 0.5 * (force * u);
+    });
+    for (auto &pair : result.forces)
+      pair.second = Utilities::MPI::sum(pair.second, space.communicator);
+    result.energy = Utilities::MPI::sum(result.energy, space.communicator);
+    return result;
+  }
+
+
+
+  template class Springs<2>;
+  template class Springs<3>;
+} // namespace Viscoplastic

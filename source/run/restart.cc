@@ -99,7 +99,8 @@ namespace Viscoplastic
   {
     // What record() and estimate() make anew in each step is not here.
     State<dim> &state = accepted.state;
-    archive &state.n &state.t &state.k &accepted.is_solution;
+    archive &state.n &state.t &state.k &accepted.is_solution &accepted
+      .has_slip_rate;
     archive &accepted.space_estimate.total &accepted.space_estimate.rate_defect;
     ContactReport                          &report = accepted.report;
     archive &report.duality_gap &report.relative_error &report.error &report

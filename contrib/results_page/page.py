@@ -127,6 +127,13 @@ With `Error control/Tolerance` the run chooses meshes and steps by itself
 error in the energy norm of all steps, estimated and true, over the largest norm.
 
 {known_to_tolerance}
+Bodies that creep for 1 / 10 / 100 / 1000 relaxation times, with steps of backward
+Euler; each cell has the values at these times, errors in per cent of the largest norm
+or value. The reference has a quarter of the mesh width (half in three dimensions) and
+four times the steps: where an error is not well above that of the reference, it
+counts for both.
+
+{long_creep}
 The scenes of the pictures above and others, from their coarsest meshes, with
 Heun's scheme. Errors are differences to a run to half of the smallest tolerance
 at the ends of phases; cells are means over the steps, and the rate is the power
@@ -203,6 +210,7 @@ def render(parts):
             "low_regularity",
             "prices",
             "known_to_tolerance",
+            "long_creep",
             "to_tolerance",
             "tolerance",
             "references",

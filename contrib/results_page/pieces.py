@@ -21,6 +21,7 @@ ABOUT = {
     **{name: title for name, (title, _) in plan.DIAGRAMS.items()},
     "prices": "what errors of some per cent cost on these scenes",
     "known_to_tolerance": "true errors of runs to a tolerance",
+    "long_creep": "estimated over true errors after long creep",
     "to_tolerance": "what runs to a tolerance cost, beside uniform meshes",
     "tolerance": "what coupling the solver's tolerance to the error saves",
     "references": "reference cases beside independent values",
@@ -40,6 +41,8 @@ def make(name, runner, images):
         return tolerance(runner)
     if name == "known_to_tolerance":
         return known_to_tolerance(runner)
+    if name == "long_creep":
+        return long_creep(runner)
     if name == "to_tolerance":
         return to_tolerance(runner)
     if name == "prices":
@@ -253,6 +256,48 @@ def known_to_tolerance(runner):
                 )
             )
     return tables.table(tables.KNOWN_TO_TOLERANCE_HEADER, rows) + stamp(runner)
+
+
+def long_creep(runner):
+    rows = []
+    for name, (scene, quantity, tolerances, halved, entries) in plan.LONG_CREEP.items():
+        files = [SCENES.parent / f"{scene}.prm"]
+        entries = {**plan.COUPLED, **entries}
+        folder = f"long_creep/{name.replace(', ', '_').replace(' ', '_')}"
+        level = int(entries.get("Geometry/Global refinements", 0))
+        reference = f"{folder}/reference"
+        finest = runner.run(
+            reference,
+            files,
+            {
+                **entries,
+                "Geometry/Global refinements": level + halved,
+                "Time/Phases": plan.more_steps(entries["Time/Phases"]),
+                "Output/Reference fields": "true",
+            },
+        )
+        entries["Exact solution/Reference directory"] = runner.directory / reference
+        level_limit = {"Mesh refinement/Maximal level": level + 1}
+        of_quantity = {"Error control/Quantity": quantity}
+        norm, value = tolerances
+        for way, overrides in {
+            "uniform": of_quantity,
+            "adaptive": {**plan.ADAPTIVE_CREEP, **level_limit, **of_quantity},
+            f"to {tables.percent(norm)}": {"Error control/Tolerance": norm},
+            f"quantity to {tables.percent(value)}": {
+                "Error control/Tolerance": value,
+                **of_quantity,
+            },
+        }.items():
+            columns = runner.run(
+                f"{folder}/{way.replace(' ', '_').replace('%', 'percent')}",
+                files,
+                {**entries, **overrides},
+            )
+            rows.append(
+                tables.long_creep_row(name, way, quantity, columns, finest)
+            )
+    return tables.table(tables.LONG_CREEP_HEADER, rows) + stamp(runner)
 
 
 def to_tolerance(runner):

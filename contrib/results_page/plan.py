@@ -185,6 +185,134 @@ TO_TOLERANCE = {
 }
 CELL_BUDGET = "2000000"
 
+# How true the error bar is in long creep: at 1, 10, 100 and 1000 relaxation
+# times, {name: (scene, quantity, tolerances of energy norm and quantity, how
+# often the reference halves the mesh, overrides)}.
+ADAPTIVE_CREEP = {
+    "Mesh refinement/Strategy": "residual",
+    "Mesh refinement/Every n steps": "2",
+}
+
+
+def more_steps(phases):
+    """Those of the reference: four times as many."""
+    pairs = (phase.split(":") for phase in phases.split(","))
+    return ", ".join(f"{end.strip()}: {4 * int(steps)}" for end, steps in pairs)
+
+
+def _creep(tau, steps=6, before=""):
+    """Phases to 1, 10, 100 and 1000 times tau, after others."""
+    phases = ", ".join(f"{tau * n:g}: {steps}" for n in (1, 10, 100, 1000))
+    return {
+        "Time/Scheme": "backward Euler",
+        "Time/Phases": before + phases,
+    }
+
+
+_CYLINDER = {"Geometry/Global refinements": "2", "Solver/Contact tolerance": "0"}
+_MAXWELL = {"Material/Law": "maxwell", "Material/maxwell/Viscosity": "0.5"}
+_CANTILEVER = {"Geometry/Global refinements": "0"}
+LONG_CREEP = {
+    "thick cylinder, norton": (
+        "verification/hard/norton_cylinder",
+        "point0_x",
+        (0.05, 0.02),
+        2,
+        {**_CYLINDER, **_creep(0.001), "Material/norton/Exponent": "5"},
+    ),
+    "thick cylinder, maxwell": (
+        "verification/hard/norton_cylinder",
+        "point0_x",
+        (0.05, 0.02),
+        2,
+        {**_CYLINDER, **_creep(0.001), **_MAXWELL},
+    ),
+    "hollow sphere, norton": (
+        "verification/hard/norton_cylinder",
+        "point0_x",
+        (0.2, 0.05),
+        1,
+        {
+            **_CYLINDER,
+            **_creep(0.001, 4),
+            "Dimension": "3",
+            "Geometry/Arguments": "0, 0, 0 : 1 : 2 : 3 : true",
+            "Geometry/Global refinements": "1",
+            "Material/norton/Exponent": "5",
+            "Boundary 0/Traction": "x/sqrt(x*x + y*y + z*z); "
+            "y/sqrt(x*x + y*y + z*z); z/sqrt(x*x + y*y + z*z)",
+            "Boundary 4/Role": "symmetry",
+            "Output/Points": "1, 0, 0",
+        },
+    ),
+    "cavity, norton": (
+        "verification/hard/norton_cylinder",
+        "point0_x",
+        (0.05, 0.02),
+        2,
+        {
+            **_CYLINDER,
+            **_creep(0.001),
+            "Geometry/Arguments": "0, 0 : 1 : 10 : 6 : true",
+            "Material/norton/Exponent": "3",
+        },
+    ),
+    "cantilever, maxwell": (
+        "verification/cantilever_creep",
+        "point0_y",
+        (0.2, 0.02),
+        2,
+        {**_CANTILEVER, **_creep(1.3)},
+    ),
+    "cantilever, norton": (
+        "verification/cantilever_creep",
+        "point0_y",
+        (0.2, 0.02),
+        2,
+        {
+            **_CANTILEVER,
+            **_creep(1),
+            "Material/Law": "norton",
+            "Material/norton/Rate factor": "1e4",
+            "Material/norton/Exponent": "3",
+            "Material/norton/Stress cap": "0.1",
+        },
+    ),
+    "Lee-Radok, zener": (
+        "verification/indentation_3d",
+        "contact_force_z",
+        (0.2, 0.1),
+        1,
+        {
+            **_creep(1, 3, "0.1: 2, "),
+            "Geometry/Arguments": "4, 4, 4 : 0, 0, 0 : 8, 8, 8 : true",
+            "Geometry/Boundary refinements": "6: 1",
+            "Geometry/Global refinements": "1",
+            "Boundary 6/Foundation displacement": "-0.02*min(10*t, 1)",
+            "Solver/Contact tolerance": "0",
+        },
+    ),
+    "salt pillar, norton": (
+        "demos/salt_pillar_2d",
+        "reaction_2_y",
+        (0.1, 0.02),
+        2,
+        {**_creep(4e6), "Geometry/Arguments": "12, 6 : 0, 0 : 6, 3 : true"},
+    ),
+    "salt joint, norton": (
+        "demos/salt_joint_2d",
+        "point1_y",
+        (0.1, 0.02),
+        2,
+        {
+            **_creep(140, 6, "20: 2, 40: 4, "),
+            "Geometry/Arguments": "8, 16 : -1, 0 : 1, 4 : true",
+            "Boundary 3/Pressure": "8*(1 + 0.9*x*min(max(t - 20, 0), 20)/20)",
+            "Step control/Tolerance": "0",
+        },
+    ),
+}
+
 # Where the fixed tolerance is compared with the coupled one: the ladder of h
 # and k of the diagrams again.
 FIXED_TOLERANCE = "1e-10"

@@ -329,6 +329,52 @@ def known_to_tolerance_row(scene, law, tolerance, columns):
     ]
 
 
+LONG_CREEP_HEADER = (
+    "scene",
+    "way",
+    "cells",
+    "steps",
+    "true error",
+    "estimated over true",
+    "quantity",
+    "its true error",
+    "estimated over true",
+)
+
+
+def at_times(values):
+    """The values at the ends of the phases."""
+    return " / ".join(values)
+
+
+def long_creep_row(scene, way, quantity, columns, reference):
+    """A run whose reference knows the ends of the last four phases: errors in per
+    cent of the solution, and how much larger the estimates are."""
+    known = np.flatnonzero(~np.isnan(columns["error_energy"]))[-4:]
+    size = np.nanmax(columns["energy_norm"])
+    error = columns["error_energy"][known]
+    true = [
+        reference[quantity][np.argmin(abs(reference["t"] - t))]
+        for t in columns["t"][known]
+    ]
+    of_quantity = abs(columns[quantity][known] - true)
+    estimate = columns.get("quantity_total", np.full(columns["t"].size, np.nan))[known]
+    quotient = lambda a, b: number(a / b if b > 0 else np.nan, 2)
+    quotients = lambda a, b: at_times(map(quotient, a, b))
+    largest = np.max(abs(reference[quantity]))
+    return [
+        scene,
+        way,
+        number(columns["cells"].max(), 9),
+        number(columns["step"].max(), 9),
+        at_times(number(100 * e, 2) for e in error / size),
+        quotients(columns["estimate_total"][known], error),
+        f"`{quantity}`",
+        at_times(number(100 * e, 2) for e in of_quantity / largest),
+        quotients(estimate, of_quantity),
+    ]
+
+
 TO_TOLERANCE_HEADER = (
     "scene",
     "tolerance",

@@ -54,8 +54,8 @@ namespace Viscoplastic
 
 
 
-  double
-  turning_work(const ContactLayout             &face,
+  SlipDefects
+  slip_defects(const ContactLayout             &face,
                const ContactState              &old_state,
                const ContactState              &state,
                const std::vector<Tensor<1, 2>> &slips,
@@ -63,7 +63,9 @@ namespace Viscoplastic
                const double                     old_k)
   {
     AssertDimension(slips.size(), state.n_points());
-    double work = 0.;
+    SlipDefects defects{0.,
+                        std::vector<Tensor<1, 2>>(slips.size()),
+                        std::vector<Tensor<1, 2>>(slips.size())};
     for (unsigned int p = 0; p < state.n_points(); ++p)
       {
         const Tensor<1, 2> &old = old_state.multiplier[p],
@@ -72,19 +74,28 @@ namespace Viscoplastic
         if (face.points[p].is_obstacle || old_state.sticks[p] ||
             state.sticks[p] || force == 0. || stable_norm(old) == 0.)
           continue;
-        const double cosine = (old / stable_norm(old)) * (now / force);
-        const double slip   = stable_norm(slips[p]);
+        const Tensor<1, 2> direction = now / force,
+                           turn      = direction - old / stable_norm(old);
+        const double slip            = stable_norm(slips[p]);
         // In the plane it turns back only, through rest.
         if (face.points[p].n_tangents > 1)
-          work += force * slip * std::clamp(1. - cosine, 0., 1.);
+          {
+            defects.work += force * slip * std::min(0.5 * turn * turn, 1.);
+            defects.turning[p] = 0.5 * slip * turn;
+          }
         const double rate     = slip / k,
                      old_rate = stable_norm(old_state.slip[p]) / old_k,
                      slope    = 2. * (rate - old_rate) * k / (k + old_k),
                      last     = rate + slope;
         // What is at rest from the beginning may slip by rounding.
         if (last < 0. && rate > 1e-6 * old_rate)
-          work += force * k * last * last / (-4. * slope);
+          {
+            const double missed = k * last * last / (-4. * slope);
+            defects.work += force * missed;
+            defects.resting[p] = missed * direction;
+          }
       }
-    return face.sum(work);
+    defects.work = face.sum(defects.work);
+    return defects;
   }
 } // namespace Viscoplastic

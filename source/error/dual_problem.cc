@@ -237,7 +237,8 @@ namespace Viscoplastic
         // The load of a point does not hold w, that of friction does.
         DistributedVector force = point_load;
         force -= elastic;
-        dual.density = density(d.face->restriction().gather(force));
+        dual.force   = d.face->restriction().gather(force);
+        dual.density = density(dual.force);
       }
     return dual;
   }

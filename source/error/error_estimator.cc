@@ -51,6 +51,8 @@ namespace Viscoplastic
     if (!scene.parameters.error_control.error_estimator ||
         !scene.has_viscosity())
       return 1;
+    if (scene.quantity && scene.quantity->is_force())
+      return 4;
     return time_defect(scene.parameters.time.scheme).second != 0. ? 3 : 2;
   }
 
@@ -69,6 +71,8 @@ namespace Viscoplastic
       state.time_error.assign(state.z.size(), SymmetricTensor<2, 3>());
     if (n_sample_fields(scene) > 2)
       state.rate_slope.assign(state.z.size(), SymmetricTensor<2, 3>());
+    if (n_sample_fields(scene) > 3)
+      state.remembered_error.assign(state.z.size(), SymmetricTensor<2, 3>());
     return squared_by_cell;
   }
 
@@ -135,20 +139,25 @@ namespace Viscoplastic
                                   const FlowRate         &accepted_rate,
                                   EvaluatedState<dim>    &end) const
   {
-    State<dim>    &state       = end.state;
-    ErrorEstimate &estimate    = end.errors;
-    const bool     is_second   = n_sample_fields(scene) > 2;
-    const bool     is_measured = scene.parameters.step_control.is_on() ||
+    State<dim>    &state     = end.state;
+    ErrorEstimate &estimate  = end.errors;
+    const bool     is_second = n_sample_fields(scene) > 2,
+               relaxes       = n_sample_fields(scene) > 3;
+    const bool is_measured   = scene.parameters.step_control.is_on() ||
                              scene.parameters.error_control.has_tolerance() ||
                              scene.quantity;
     const double k   = state.k;
     state.time_error = accepted.time_error;
     if (is_second)
       state.rate_slope.resize(accepted.rate_slope.size());
-    std::vector<double> sums(4, 0.);
-    std::size_t         i = 0;
+    state.remembered_error = accepted.remembered_error;
+    std::vector<double>                sums(5, 0.);
+    std::vector<SymmetricTensor<2, 3>> strains(stress_space.n_samples);
+    std::size_t                        i = 0;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
+        if (relaxes)
+          stress_space.strains(c, state.u.begin(), strains.data());
         const Stiffness &stiffness = stress_space.moduli(c);
         for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
           {
@@ -168,6 +177,22 @@ namespace Viscoplastic
             // Steps are chosen with the slope as the change of slope there.
             if (!has_slope)
               step += defect.second * k * change;
+            if (relaxes)
+              {
+                const double square = stiffness.complementary_square(deviator(
+                               stiffness.stress(strains[s]) + state.z[i])),
+                             decay =
+                               square > 0. ?
+                                 1. +
+                                   k * std::sqrt(stiffness.complementary_square(
+                                                   end.rate->rate[i]) /
+                                                 square) :
+                                 1.;
+                state.remembered_error[i] += step;
+                state.remembered_error[i] /= decay;
+                sums[4] +=
+                  weight * stiffness.complementary_square(step / decay);
+              }
             sums[0] += weight * stiffness.complementary_square(step);
             sums[1] +=
               weight * stiffness.complementary_square(state.time_error[i]);
@@ -184,6 +209,8 @@ namespace Viscoplastic
     estimate.time                = std::sqrt(sums[1]);
     estimate.irreversible_norm   = std::sqrt(sums[2]);
     estimate.irreversible_change = std::sqrt(sums[3]);
+    estimate.remembered_indicator =
+      relaxes ? std::sqrt(sums[4]) : estimate.time_indicator;
   }
 
 

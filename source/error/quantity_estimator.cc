@@ -9,6 +9,42 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// How much faster errors of the stress relax than the stress itself: the
+    /// exponent of a power law, 1 of a linear one. Collective.
+    template <int dim>
+    double
+    nonlinearity(const StressSpace<dim> &stress_space,
+                 const State<dim>       &state,
+                 const FlowRate         &rate)
+    {
+      std::vector<SymmetricTensor<2, 3>> strains(stress_space.n_samples);
+      double                             largest = 0.; // squared |G|/|sigma|
+      std::size_t                        i       = 0;
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        {
+          const Stiffness &stiffness = stress_space.moduli(c);
+          stress_space.strains(c, state.u.begin(), strains.data());
+          for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
+            {
+              const double stress = stiffness.complementary_square(
+                deviator(stiffness.stress(strains[s]) + state.z[i]));
+              if (stress > 0.)
+                largest =
+                  std::max(largest,
+                           stiffness.complementary_square(rate.rate[i]) /
+                             stress);
+            }
+        }
+      return rate.relaxation_rate /
+             std::sqrt(
+               Utilities::MPI::max(largest, stress_space.space.communicator));
+    }
+  } // namespace
+
+
+
   template <int dim>
   QuantityEstimator<dim>::QuantityEstimator(
     const Discretization<dim> &discretization,
@@ -60,7 +96,38 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  QuantityEstimator<dim>::add_slip_defects(BulkSolver              &solver,
+                                           const SlipDefects       &defects,
+                                           const ContactState      &contact,
+                                           const DualSolution<dim> &dual,
+                                           QuantityEstimate &estimate) const
+  {
+    const ContactLayout &face    = discretization.face->layout();
+    ContactState         held    = contact;
+    bool                 is_held = false;
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
+      if (defects.resting[p].norm_square() > 0.)
+        is_held = held.sticks[p] = true;
+    const Vector<double> force =
+      face.any(is_held) ? dual_problem.solve(solver, held).force : dual.force;
+    double turning = 0., resting = 0.;
+    for (unsigned int p = 0; p < contact.n_points(); ++p)
+      {
+        const ContactLayout::Point &point = face.points[p];
+        const Tensor<1, 3>          f     = face.node_values(force, point.node);
+        turning += f * motion_with_slip(point, defects.turning[p]);
+        resting += std::abs(f * motion_with_slip(point, defects.resting[p]));
+      }
+    estimate.turning += std::abs(face.sum(turning));
+    estimate.resting += face.sum(resting);
+  }
+
+
+
+  template <int dim>
+  void
   QuantityEstimator<dim>::assess(BulkSolver                &solver,
+                                 const SlipDefects         *slip_defects,
                                  const EvaluatedState<dim> &accepted,
                                  EvaluatedState<dim>       &end) const
   {
@@ -86,18 +153,23 @@ namespace Viscoplastic
     double                  mesh = 0., time = 0.;
     if (dual.norm > 0.)
       {
-        const auto          products = space_estimator.multiply(state, dual);
+        const double memory   = quantity.is_force() && end.rate ?
+                                  nonlinearity(d.stress_space, state, *end.rate) :
+                                  0.;
+        const auto   products = space_estimator.multiply(state, dual, memory);
         std::vector<double> sums(4, 0.);
         Vector<double>      indicators(products.of_both);
         // Rates that are wrong for long have moved the point, which residuals
-        // of the present stress do not know; forces forget them.
+        // of the present stress do not know. Forces forget them, but nothing is
+        // known of the signs.
         const double creep =
-          quantity.kind == QuantityOfInterest::Kind::displacement &&
-              errors.energy_norm > 0. ?
+          errors.energy_norm > 0. ?
             std::min(1., errors.creep_path / errors.energy_norm) :
             0.;
+        const bool moves =
+          creep > 0. && quantity.kind == QuantityOfInterest::Kind::displacement;
         Vector<double> of_creep(indicators.size());
-        if (creep > 0.)
+        if (moves)
           of_creep = space_estimator.multiply_recovered(state, dual);
         for (unsigned int c = 0; c < indicators.size(); ++c)
           {
@@ -109,15 +181,19 @@ namespace Viscoplastic
                                      creep * std::abs(of_creep[c]));
           }
         Utilities::MPI::sum(sums, d.space.communicator, sums);
-        mesh                    = dual_problem.sign() * sums[0];
-        estimate.dual_norm      = dual.norm;
-        estimate.dual_error     = std::sqrt(sums[1]);
-        estimate.space_of_creep = sums[3];
+        mesh                = dual_problem.sign() * sums[0];
+        estimate.dual_norm  = dual.norm;
+        estimate.dual_error = std::sqrt(sums[1]);
+        estimate.space_of_creep =
+          quantity.is_force() ? creep * safety * sums[2] : sums[3];
         estimate.unsigned_space = std::max(safety * sums[2], sums[3]);
         if (d.scene().has_viscosity()) // collective
           {
             DistributedVector load = d.space.owned_vector();
-            add_irreversible_load(d.stress_space, state.time_error, load);
+            add_irreversible_load(d.stress_space,
+                                  quantity.is_force() ? state.remembered_error :
+                                                        state.time_error,
+                                  load);
             time = dual_problem.sign() * (load * dual.w);
           }
         if (end.space_estimate.squared_indicators.size() > 0)
@@ -128,16 +204,25 @@ namespace Viscoplastic
     estimate.space = std::max(safety * std::abs(estimate.space_correction),
                               estimate.space_of_creep);
     estimate.time  = std::abs(estimate.time_correction);
-    if (quantity.kind == QuantityOfInterest::Kind::friction_force &&
-        errors.friction > accepted.errors.friction)
+    // What the step has added to slip that turns, or comes to rest.
+    const double bound = errors.friction * estimate.dual_norm,
+                 added = (errors.friction - accepted.errors.friction) *
+                         estimate.dual_norm;
+    estimate.friction           = bound;
+    estimate.friction_indicator = added;
+    if (!is_sum && !d.scene().has_bounds_of_step_before())
       {
-        // The force of what slips is known, unless some of it is at rest.
-        ContactState held = state.contact;
-        held.sticks.assign(held.n_points(), true);
-        estimate.dual_norm =
-          std::max(estimate.dual_norm, dual_problem.solve(solver, held).norm);
+        estimate.turning = before.turning;
+        estimate.resting = before.resting;
+        if (slip_defects != nullptr && slip_defects->work > 0.)
+          add_slip_defects(
+            solver, *slip_defects, state.contact, dual, estimate);
+        estimate.friction =
+          std::min(estimate.turning, bound) + estimate.resting;
+        estimate.friction_indicator =
+          std::min(estimate.turning - before.turning, added) +
+          estimate.resting - before.resting;
       }
-    estimate.friction = errors.friction * estimate.dual_norm;
     // Of refined cells it would be a product of errors that is not known.
     if (!d.scene().keeps_history_at_points())
       estimate.history = errors.history * estimate.dual_error;

@@ -78,11 +78,11 @@ namespace Viscoplastic
   typename ResidualEstimator<dim>::StressTerms
   ResidualEstimator<dim>::stress_terms(
     const std::size_t            cell,
-    const double                *u,
+    const Fields                &fields,
     const SymmetricTensor<2, 3> *mean_z) const
   {
     StressTerms terms;
-    terms.u          = local.displacements(cells[cell], u);
+    terms.u          = local.displacements(cells[cell], fields.u.begin());
     terms.stiffness  = &cells[cell].stiffness;
     terms.dilatation = 0.;
     if (stress_space.mean_dilatation)
@@ -90,9 +90,29 @@ namespace Viscoplastic
         terms.dilatation +=
           terms.u[v] * shapes[cells[cell].shape].mean_gradients[v];
     if (mean_z != nullptr)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          terms.z[i][j] = mean_z[cell][i][j];
+      {
+        SymmetricTensor<2, 3> z = mean_z[cell];
+        if (fields.memory > 0.)
+          {
+            const SymmetricTensor<2, 3> elastic = terms.stiffness->stress(
+              strain(local.gradient(terms.u,
+                                    shapes[cells[cell].shape].mean_gradients)));
+            const double of_strain = deviator(elastic).norm(),
+                         of_stress =
+                           fields.memory * deviator(elastic + z).norm();
+            if (of_stress < of_strain)
+              {
+                const double share = of_stress / of_strain;
+                for (Tensor<1, dim> &u : terms.u)
+                  u *= share;
+                terms.dilatation *= share;
+                z += (1. - share) * elastic;
+              }
+          }
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            terms.z[i][j] = z[i][j];
+      }
     return terms;
   }
 
@@ -294,7 +314,6 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim>  &space   = stress_space.space;
     const std::size_t            n_owned = stress_space.n_cells();
-    const double                *u       = fields.u.begin();
     IrreversibleStress           means;
     const SymmetricTensor<2, 3> *mean_z =
       local.mean_irreversible_stress(fields.z, means);
@@ -311,7 +330,7 @@ namespace Viscoplastic
       uniform_force = b->vector(Point<dim>(), *fields.t);
     for (std::size_t c = 0; c < cells.size(); ++c)
       {
-        const StressTerms terms = stress_terms(c, u, mean_z);
+        const StressTerms terms = stress_terms(c, fields, mean_z);
         const Shape      &shape = shapes[cells[c].shape];
         for (unsigned int f = 0; f < n_faces; ++f)
           add_tractions(shape.faces[f],
@@ -347,7 +366,7 @@ namespace Viscoplastic
       }
     for (std::size_t s = 0; s < subface_sides.size(); ++s)
       add_tractions(subface_shapes[subface_sides[s].table],
-                    stress_terms(subface_sides[s].cell, u, mean_z),
+                    stress_terms(subface_sides[s].cell, fields, mean_z),
                     &tractions[(cells.size() * n_faces + s) * n_face_points]);
 
     if (has_initial)

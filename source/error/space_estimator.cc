@@ -85,7 +85,8 @@ namespace Viscoplastic
   template <int dim>
   typename ResidualEstimator<dim>::Products
   SpaceEstimator<dim>::multiply(const State<dim>        &state,
-                                const DualSolution<dim> &dual) const
+                                const DualSolution<dim> &dual,
+                                const double             memory) const
   {
     const ContactFace<dim> *face = discretization.face.get();
     DistributedVector       density;
@@ -93,7 +94,7 @@ namespace Viscoplastic
       density = face->density(state.contact);
     const IrreversibleStress none;
     return residual_estimator->multiply(
-      {state.u, state.z, state.t, face != nullptr ? &density : nullptr},
+      {state.u, state.z, state.t, face != nullptr ? &density : nullptr, memory},
       {dual.cartesian, none, {}, face != nullptr ? &dual.density : nullptr});
   }
 

@@ -317,17 +317,21 @@ namespace Viscoplastic
           return evaluate_flow(discretization.laws, state.u, state.z, state.t);
         });
       }
-    TimerOutput::Scope phase(timer, "estimate");
-    double             turning = 0., missed_work = 0.;
+    TimerOutput::Scope         phase(timer, "estimate");
+    std::optional<SlipDefects> slip_defects;
+    double                     missed_work = 0.;
     if (discretization.face && scene.has_bounds_of_step_before())
       missed_work = discretization.face->missed_bounds(state).work;
-    // What slip turns by on a new mesh, it does in any step.
+    // What slip turns by on a new mesh, it does in any step, and what it has
+    // been in the first one says nothing of the second.
+    end.has_slip_rate = accepted.is_solution || accepted.state.k == 0.;
     if (discretization.slipping_face() != nullptr && accepted.state.k > 0. &&
-        accepted.is_solution && !control.has_kink_at(step.time_step.t_old))
+        accepted.is_solution && accepted.has_slip_rate &&
+        !control.has_kink_at(step.time_step.t_old))
       {
         DistributedVector change = end.forces.u;
         change -= accepted.forces.u;
-        turning = turning_work(
+        slip_defects = Viscoplastic::slip_defects(
           discretization.face->layout(),
           accepted.state.contact,
           state.contact,
@@ -340,14 +344,17 @@ namespace Viscoplastic
                                           TimeScheme::backward_euler :
                                           scene.parameters.time.scheme),
                             step.report,
-                            turning,
+                            slip_defects ? slip_defects->work : 0.,
                             missed_work,
                             control.has_kink_at(step.time_step.t_old),
                             accepted,
                             old_rate,
                             end);
     if (quantity_estimator)
-      quantity_estimator->assess(solver_of_elasticity().bulk(), accepted, end);
+      quantity_estimator->assess(solver_of_elasticity().bulk(),
+                                 slip_defects ? &*slip_defects : nullptr,
+                                 accepted,
+                                 end);
     const ErrorEstimate &estimate = end.errors;
     StepErrors           errors;
     errors.change =
@@ -356,20 +363,27 @@ namespace Viscoplastic
     // What the iterations leave of both states changes G by up to r times as
     // much, and is all that there is of a smaller change: no shorter step has
     // less of it.
-    const double left = step.report.error + accepted.report.error;
-    if (errors.change > left)
+    const double left  = step.report.error + accepted.report.error;
+    const bool   moves = errors.change > left;
+    const bool   is_of_quantity =
+      scene.quantity && scene.parameters.error_control.has_tolerance();
+    if (moves)
       errors.indicator =
-        std::max(0., estimate.time_indicator - 0.5 * step.stiffness() * left) +
-        estimate.friction - accepted.errors.friction;
+        std::max(0.,
+                 (is_of_quantity ? estimate.remembered_indicator :
+                                   estimate.time_indicator) -
+                   0.5 * step.stiffness() * left);
     errors.size   = scene.parameters.error_control.has_tolerance() ?
                       estimate.energy_norm :
                       std::max(estimate.energy_norm, estimate.irreversible_norm);
     errors.before = accepted.errors.time + accepted.errors.friction;
-    if (scene.quantity && scene.parameters.error_control.has_tolerance())
+    if (is_of_quantity)
       {
         const QuantityEstimate &quantity = estimate.quantity,
                                &before   = accepted.errors.quantity;
         errors.indicator *= quantity.dual_norm;
+        if (moves)
+          errors.indicator += quantity.friction_indicator;
         // The body may move on while the quantity hardly changes, as after a
         // change of the mesh.
         const double share =
@@ -379,6 +393,8 @@ namespace Viscoplastic
                                  share * errors.size);
         errors.before = before.time + before.friction;
       }
+    else if (moves)
+      errors.indicator += estimate.friction - accepted.errors.friction;
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
       throw StepFailure(state.n, state.t, "the solution is not finite.");
     return errors;

@@ -226,6 +226,38 @@ class Kept(TestCase):
         self.assertClose(result["friction_force_x"][-1], fine[-1], 0.02)
         self.assertIn("has been kept", result.stdout)
 
+    def test_slip_that_turns_on_new_meshes(self):
+        """Neither what the body does on a new mesh to come into equilibrium nor the
+        energy norm of turns times that of a singular dual solution asks for steps."""
+        result = run(
+            "turning",
+            of(
+                "point0_x",
+                0.08,
+                **{
+                    "Dimension": 3,
+                    "Geometry/Arguments": "4, 4, 4 : 0, 0, 0 : 1, 1, 1 : true",
+                    "Material/Law": "maxwell",
+                    "Material/maxwell/Viscosity": 0.5,
+                    "Boundary 0/Role": "traction",
+                    "Boundary 0/Traction": "0.06*sin(3*t)*y; 0.04*t; 0",
+                    **{f"Boundary {id}/Role": "free" for id in (1, 2, 3)},
+                    "Boundary 4/Role": "contact",
+                    "Boundary 4/Friction law": "tresca",
+                    "Boundary 4/Friction bound": "0.01*(1 + x)",
+                    "Boundary 5/Role": "clamped",
+                    "Time/Phases": "0.5: 4, 1: 4",
+                    "Output/Points": "0, 0, 0",
+                    "Output/Fields every": 0,
+                },
+            ),
+            text="",
+        )
+        self.assertIn("has been kept", result.stdout)
+        # measured: 49; without a new mesh's slip being left out and with norms
+        # alone, hundreds
+        self.assertLess(len(result["t"]), 70)
+
     def test_refines_where_the_quantity_feels_it(self):
         point = run("slab", of("point0_x", 0.005, **COARSE_SLAB))
         force = run("slab", of("friction_force_x", 0.005, **COARSE_SLAB))
@@ -258,6 +290,56 @@ class Kept(TestCase):
                     self.assertEqual(
                         without_wall_times(result.directory / "statistics.csv"), rows
                     )
+
+
+class LongCreep(TestCase):
+    """The friction force of a strip that is pressed unevenly on a rough foundation and
+    creeps for 800 relaxation times: it forgets what has relaxed, of strain and of
+    steps."""
+
+    COLUMN = "friction_force_x"
+    SCENE = {
+        "Geometry/Arguments": "16, 4 : 0, 0 : 4, 1 : true",
+        "Material/Young's modulus": 100,
+        "Material/Law": "maxwell",
+        "Material/maxwell/Viscosity": 1.5,
+        "Boundary 0/Role": "symmetry",
+        "Boundary 1/Role": "free",
+        "Boundary 2/Role": "contact",
+        "Boundary 2/Contact law": "unilateral",
+        "Boundary 2/Friction law": "coulomb",
+        "Boundary 2/Friction coefficient": 0.3,
+        "Boundary 3/Role": "traction",
+        "Boundary 3/Pressure": "min(20*t, 1)*(1 + 0.3*x)",
+        "Time/Scheme": "backward Euler",
+        "Time/Phases": "0.05: 6, 0.3: 6, 3: 6, 30: 6",
+        "Output/Fields every": 0,
+    }
+
+    @classmethod
+    def strip(cls, **overrides):
+        return run("strip", {**cls.SCENE, **overrides}, text="")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.fine = cls.strip(**{"Geometry/Global refinements": 2})[cls.COLUMN]
+
+    def test_estimate(self):
+        result = self.strip(**of(self.COLUMN))
+        error = np.abs(result[self.COLUMN] - self.fine)
+        ends = [6, 12, 18, 24]
+        quotient = result["quantity_space"][ends] / error[ends]
+        # measured: 1.1 to 2; with all of the strain, up to 800
+        self.assertGreater(quotient.min(), 0.7)
+        self.assertLess(quotient.max(), 3)
+        self.assertLess(result["quantity_time"][-1], 0.1 * error[-1])
+
+    def test_to_a_tolerance(self):
+        result = self.strip(**of(self.COLUMN, 0.05))
+        self.assertIn("has been kept", result.stdout)
+        self.assertClose(result[self.COLUMN][-1], self.fine[-1], 0.05)
+        # before, thousands of steps, none of which was the last
+        self.assertLess(len(result["t"]), 200)
 
 
 class Refused(TestCase):

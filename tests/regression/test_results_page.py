@@ -174,6 +174,35 @@ class Tables(Folder):
         )
         self.assertEqual(len(row), len(tables.KNOWN_TO_TOLERANCE_HEADER))
 
+    def test_long_creep(self):
+        """Errors at the ends of the last four phases, of norm and quantity."""
+        known = np.array([np.nan, 0.1, 0.01, np.nan, 0.02, 0.03, 0.05])
+        columns = {
+            "t": np.arange(7.0),
+            "step": np.arange(7.0),
+            "cells": np.full(7, 16.0),
+            "energy_norm": np.arange(7.0) / 6,
+            "error_energy": known,
+            "estimate_total": 1.5 * known,
+            "point0_x": np.arange(7.0) + 0.4,
+            "quantity_total": np.full(7, 0.2),
+        }
+        reference = {"t": np.arange(0, 6.1, 0.5), "point0_x": np.arange(0, 6.1, 0.5)}
+        row = tables.long_creep_row("x", "uniform", "point0_x", columns, reference)
+        self.assertEqual(
+            row,
+            [
+                *("x", "uniform", "16", "6", "1 / 2 / 3 / 5"),
+                *("1.5 / 1.5 / 1.5 / 1.5", "`point0_x`"),
+                *("6.7 / 6.7 / 6.7 / 6.7", "0.5 / 0.5 / 0.5 / 0.5"),
+            ],
+        )
+        self.assertEqual(len(row), len(tables.LONG_CREEP_HEADER))
+        del columns["quantity_total"]
+        row = tables.long_creep_row("x", "to 5 %", "point0_x", columns, reference)
+        self.assertEqual(row[-1], " / ".join([tables.UNKNOWN] * 4))
+        self.assertEqual(plan.more_steps("1: 2, 10: 3"), "1: 8, 10: 12")
+
     def test_runs_to_a_tolerance_beside_uniform_meshes(self):
         variants = (("tolerance", *UNIFORM[1:]), UNIFORM)
         offered = {

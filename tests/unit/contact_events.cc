@@ -128,7 +128,7 @@ namespace
       std::vector<Tensor<1, 2>> slips(to.multiplier);
       for (Tensor<1, 2> &slip : slips)
         slip *= 1.5;
-      return turning_work(face, from, to, slips, 1., 1.);
+      return slip_defects(face, from, to, slips, 1., 1.).work;
     };
     const double n_ranks = face.sum(1.);
     EXPECT_NEAR(work(state({0., 1.}), state({0., 1.})), 0., 1e-14);
@@ -160,7 +160,7 @@ namespace
       from.slip[0][0]                             = -k * old_rate;
       std::vector<Tensor<1, 2>> slips(1);
       slips[0][0] = -k * rate;
-      return turning_work(face, from, to, slips, k, k);
+      return slip_defects(face, from, to, slips, k, k).work;
     };
     const double n_ranks = face.sum(1.);
     EXPECT_NEAR(work(1., 3.), 2. * n_ranks * 0.1 / 8., 1e-14);

@@ -24,21 +24,30 @@ namespace Viscoplastic
                     const ContactState  &state,
                     const bool           from_kink);
 
-  /**
-   * sum of |lambda| |s| (1 - cos theta) over the points that slip in a step and
-   * in the one before, with theta the angle between their multipliers, or pi/2
-   * if it is larger: how much more work slip in the old direction would have
-   * asked for. And |lambda| times the slip that is missed by points that slow
-   * down so fast that they come to rest before the end, where the step sees
-   * them slip: k v_1^2 / (2 (v_0 - v_1)) with the rates v_0 > 0 > v_1 of a line
-   * through the mean rate of the step, twice as steep as the one through the
-   * mean rates of both steps, since slip may slow down faster towards its end.
-   *
-   * @p slips: of the step; @p k and @p old_k: its length and that of the one
-   * before. Collective.
-   */
-  double
-  turning_work(const ContactLayout             &face,
+  /// What a step has wrong of the slip of points that slip in it and in the one
+  /// before.
+  struct SlipDefects
+  {
+    /// sum of |lambda| |s| (1 - cos theta), with theta the angle between the
+    /// multipliers of both steps, or pi/2 if it is larger: how much more work
+    /// slip in the old direction would have asked for. And sum of |lambda|
+    /// times the slip that `resting' points miss.
+    double work = 0.;
+    /// Point by point: slip has the direction of the end of the step all along,
+    /// where the mean of both ends would be right.
+    std::vector<Tensor<1, 2>> turning;
+    /// Points slow down so fast that they come to rest before the end, where
+    /// the step sees them slip. With the rates v_0 > 0 > v_1 of a line through
+    /// the mean rate of the step, twice as steep as the one through the mean
+    /// rates of both steps, since slip may slow down faster towards its end,
+    /// they miss k v_1^2 / (2 (v_0 - v_1)).
+    std::vector<Tensor<1, 2>> resting;
+  };
+
+  /// @p slips: of the step; @p k and @p old_k: its length and that of the one
+  /// before. Collective.
+  SlipDefects
+  slip_defects(const ContactLayout             &face,
                const ContactState              &old_state,
                const ContactState              &state,
                const std::vector<Tensor<1, 2>> &slips,

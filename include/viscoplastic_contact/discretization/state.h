@@ -30,6 +30,9 @@ namespace Viscoplastic
     /// time scheme has left out of z so far, to leading order, and what its
     /// second order needs (see ErrorEstimator).
     IrreversibleStress time_error, rate_slope;
+    /// Of a force as quantity of interest: the time error as far as it has not
+    /// relaxed.
+    IrreversibleStress remembered_error;
 
     /// What contact has done in the step that led here; no points without
     /// friction and contact that opens.
@@ -51,8 +54,10 @@ namespace Viscoplastic
   auto
   sample_fields(StateType &state)
   {
-    return std::array<decltype(&state.z), 3>{
-      {&state.z, &state.time_error, &state.rate_slope}};
+    return std::array<decltype(&state.z), 4>{{&state.z,
+                                              &state.time_error,
+                                              &state.rate_slope,
+                                              &state.remembered_error}};
   }
 
 

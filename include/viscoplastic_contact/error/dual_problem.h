@@ -17,8 +17,9 @@ namespace Viscoplastic
   {
     /// In frames, and Cartesian with ghosts.
     DistributedVector w, cartesian;
-    /// The nodal density of what holds w on Gamma_3, Cartesian with ghosts;
-    /// empty without contact points.
+    /// What holds w on Gamma_3: nodal forces on the face and their density,
+    /// Cartesian with ghosts; empty without contact points.
+    Vector<double>    force;
     DistributedVector density;
     /// a(w, w)^{1/2}.
     double norm = 0.;

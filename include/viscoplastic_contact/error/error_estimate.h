@@ -62,9 +62,13 @@ namespace Viscoplastic
     /// The sum of what the cells contribute to the error of the mesh, without
     /// signs.
     double unsigned_space = 0.;
-    /// Of a displacement: what creep has made of the error of the mesh, without
-    /// signs.
+    /// What creep has made of the error of the mesh, without signs; not of a
+    /// sum over the steps.
     double space_of_creep = 0.;
+    /// Of slip that turns and that comes to rest within steps, summed.
+    double turning = 0., resting = 0.;
+    /// What the step has added to `friction'.
+    double friction_indicator = 0.;
     /// a(w, w)^{1/2} of the dual solution w, and its own estimated error.
     double dual_norm = 0., dual_error = 0.;
 
@@ -75,7 +79,8 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       archive &value &space_correction &time_correction &settled_space
-        &settled_time &unsigned_space &space_of_creep &dual_norm &dual_error;
+        &settled_time &unsigned_space &space_of_creep &turning &resting
+          &dual_norm &dual_error;
     }
   };
 
@@ -91,6 +96,8 @@ namespace Viscoplastic
 
     /// What this step alone has added to D, in the norm of `time'.
     double time_indicator = 0.;
+    /// What of it a force as quantity of interest will remember.
+    double remembered_indicator = 0.;
     /// (sum_j (k_j/3) |du_j - du_{j-1}|^2)^{1/2}, the computable part of
     /// I^k(u')^{1/2}, (5.19); energy^{1/2} time^{-1/2}.
     double velocity_variation = 0.;
@@ -104,8 +111,8 @@ namespace Viscoplastic
     /// The sum of these changes up to now.
     double creep_path = 0.;
 
-    /// Write to, or read from, an archive; but for the norms of step control,
-    /// which each step makes anew.
+    /// Write to, or read from, an archive; but for what is of step control
+    /// alone, which each step makes anew.
     template <typename Archive>
     void
     exchange(Archive &archive)

@@ -30,6 +30,9 @@ namespace Viscoplastic
     /// Whether u solves the step of this state on the present mesh: neither
     /// initial data do nor what has been carried over from another mesh.
     bool is_solution = false;
+    /// Whether the slip of its step goes on in the next one: not that of the
+    /// first step on a new mesh, which brings the body into equilibrium there.
+    bool has_slip_rate = true;
     /// Of the solve that has given u, which may be that of an earlier step.
     ContactReport report;
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/contact/contact_event.h>
 #include <viscoplastic_contact/error/dual_problem.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
 
@@ -21,7 +22,12 @@ namespace Viscoplastic
    *   sizes are the indicators by which meshes are refined.
    * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
    *   steps (see ErrorEstimator).
-   * - everything else is known by its norm: slip that turns and the iterations
+   * - slip that turns or comes to rest within a step is wrong by defects d_c
+   *   (SlipDefects), and the quantity by sum_c f_c . d_c with the force f_c
+   *   that holds w at the point. Steps add up without signs, and so do points
+   *   that come to rest. Of turns, which full slip forgets, no more counts than
+   *   their energy norm times a(w, w)^{1/2}.
+   * - everything else is known by its norm: bounds that lag and the iterations
    *   by a(w, w)^{1/2}; initial data, changes of the mesh and the history,
    *   which are orthogonal to what is constant in cells, by the error of w.
    *
@@ -47,13 +53,24 @@ namespace Viscoplastic
 
     /// Add the quantity, its errors and the indicators to the state at the end
     /// of a step, whose estimate in the energy norm is complete. @p solver: for
-    /// the matrix of a(.,.). Collective. Throws ExcMessage.
+    /// the matrix of a(.,.). @p slip_defects: of the step, if there are any.
+    /// Collective. Throws ExcMessage.
     void
     assess(BulkSolver                &solver,
+           const SlipDefects         *slip_defects,
            const EvaluatedState<dim> &accepted,
            EvaluatedState<dim>       &end) const;
 
   private:
+    /// Add what a step has wrong of slip to the sums of the estimate. Points
+    /// that come to rest in it are held in the dual problem. Collective.
+    void
+    add_slip_defects(BulkSolver              &solver,
+                     const SlipDefects       &defects,
+                     const ContactState      &contact,
+                     const DualSolution<dim> &dual,
+                     QuantityEstimate        &estimate) const;
+
     /// Settle what later steps will not change in the error of a sum.
     void
     settle(const EvaluatedState<dim> &accepted,

@@ -63,6 +63,10 @@ namespace Viscoplastic
       /// The nodal field lambda_h on Gamma_3, Cartesian with ghosts; null
       /// without contact points.
       const DistributedVector *multiplier_density;
+      /// Of a strain whose stress has relaxed only this times |sigma|/|E eps|
+      /// of the deviatoric means counts of what it varies by within a cell, if
+      /// that is less than 1; 0: all of it.
+      double memory = 0.;
     };
 
     /// eta_K^2 for each active cell, zero on cells of other ranks. Collective.
@@ -173,7 +177,7 @@ namespace Viscoplastic
 
     StressTerms
     stress_terms(const std::size_t            cell,
-                 const double                *u,
+                 const Fields                &fields,
                  const SymmetricTensor<2, 3> *mean_z) const;
 
     /// sigma_h nu at the points of a face.

@@ -64,9 +64,12 @@ namespace Viscoplastic
     history_if_cells_are_refined(const State<dim> &state) const;
 
     /// How the residuals of a state and of a dual solution go together; there
-    /// has to be a residual estimator. Collective.
+    /// has to be a residual estimator. @p memory: of the state, see
+    /// ResidualEstimator::Fields. Collective.
     typename ResidualEstimator<dim>::Products
-    multiply(const State<dim> &state, const DualSolution<dim> &dual) const;
+    multiply(const State<dim>        &state,
+             const DualSolution<dim> &dual,
+             const double             memory) const;
 
     /// The same by RecoveryEstimator, which sees what creep has made of errors
     /// of the rates. Collective.

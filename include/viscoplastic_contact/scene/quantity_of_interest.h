@@ -35,6 +35,13 @@ namespace Viscoplastic
     {
       return kind == Kind::friction_dissipation;
     }
+
+    bool
+    is_force() const
+    {
+      return kind == Kind::friction_force || kind == Kind::contact_force ||
+             kind == Kind::reaction;
+    }
   };
 
   /// The quantity that @p column names. Throws ExcMessage if there is none in

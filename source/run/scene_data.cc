@@ -9,8 +9,8 @@
 #include <viscoplastic_contact/discretization/volumetric_integration.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
-#include <viscoplastic_contact/scene/scene.h>
 #include <viscoplastic_contact/run/scene_data.h>
+#include <viscoplastic_contact/scene/scene.h>
 
 #include <algorithm>
 #include <cmath>

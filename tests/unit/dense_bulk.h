@@ -140,11 +140,18 @@ namespace Viscoplastic::Testing
             Vector<double>       &face_part) override
     {
       Vector<double> r = unbalanced(force);
+      tilt(r);
       project(r);
       w         = 0.;
       face_part = 0.;
       if (r.l2_norm() == 0.)
         return 0;
+      if (!truncation.tilt.empty())
+        {
+          w         = solve_dense(tilted_matrix(), r);
+          face_part = problem.on_face(w);
+          return 1;
+        }
       struct Truncated
       {
         const DenseBulk &bulk;
@@ -220,6 +227,14 @@ namespace Viscoplastic::Testing
     }
 
     void
+    face_response(Vector<double> &response) override
+    {
+      Vector<double> Aw(problem.size());
+      problem.A.vmult(Aw, w);
+      response = problem.on_face(Aw);
+    }
+
+    void
     take_step(const double step) override
     {
       u.add(step, w);
@@ -251,6 +266,45 @@ namespace Viscoplastic::Testing
       truncation.project(problem.face, c);
       for (unsigned int i = 0; i < c.size(); ++i)
         v[problem.first() + i] = c[i];
+    }
+
+    void
+    tilt(Vector<double> &v) const
+    {
+      Vector<double> c = problem.on_face(v);
+      truncation.apply_tilt(problem.face, c);
+      for (unsigned int i = 0; i < c.size(); ++i)
+        v[problem.first() + i] = c[i];
+    }
+
+    /// P (tilt A + springs) P, and the identity where nothing is free.
+    FullMatrix<double>
+    tilted_matrix() const
+    {
+      const unsigned int n = problem.size();
+      FullMatrix<double> result(n, n);
+      Vector<double>     e(n), column(n);
+      const auto        &face = problem.face;
+      for (unsigned int j = 0; j < n; ++j)
+        {
+          e    = 0.;
+          e[j] = 1.;
+          project(e);
+          problem.A.vmult(column, e);
+          tilt(column);
+          const Vector<double> on_face = problem.on_face(e);
+          for (unsigned int node = 0; node < face.n_nodes(); ++node)
+            {
+              const Tensor<1, 3> f =
+                truncation.spring[node] * face.node_values(on_face, node);
+              for (unsigned int i = 0; i < face.n_node_dofs(node); ++i)
+                column[problem.first() + face.first_dof[node] + i] += f[i];
+            }
+          project(column);
+          for (unsigned int i = 0; i < n; ++i)
+            result(i, j) = column[i] + (i == j) - e[i];
+        }
+      return result;
     }
 
     /// Solve for the unknowns off the face.

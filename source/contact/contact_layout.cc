@@ -185,4 +185,13 @@ namespace Viscoplastic
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
       face.set_node_values(projector[n] * face.node_values(x, n), n, x);
   }
+
+
+
+  void
+  FaceTruncation::apply_tilt(const ContactLayout &face, Vector<double> &x) const
+  {
+    for (unsigned int n = 0; n < tilt.size(); ++n)
+      face.set_node_values(tilt[n] * face.node_values(x, n), n, x);
+  }
 } // namespace Viscoplastic

@@ -4,6 +4,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/contact/coulomb_bounds.h>
 #include <viscoplastic_contact/contact/kink_search.h>
 
 #include <algorithm>
@@ -187,7 +188,8 @@ namespace Viscoplastic
               const ContactLayout &face,
               const double         tolerance,
               Vector<double>      &x,
-              ContactState        &state);
+              ContactState        &state,
+              const CoulombLaw    *law);
 
     ContactReport
     solve(const unsigned int max_iterations);
@@ -244,9 +246,13 @@ namespace Viscoplastic
     /// The increment of the face, and what contact does there.
     Vector<double> &x;
     ContactState   &state;
+    /// Coulomb's law of the step's own pressure; null where bounds are given.
+    const CoulombLaw *const law;
 
     const FaceMatrix         &matrix;
     std::vector<Tensor<2, 3>> diagonal, inverse_diagonal; // node by node
+    /// With a law.
+    std::optional<CoulombBounds> bounds;
 
     /// l - A u, the forces of the multipliers that fit it, and a correction, on
     /// the face.
@@ -280,12 +286,14 @@ namespace Viscoplastic
                                       const ContactLayout &face,
                                       const double         tolerance,
                                       Vector<double>      &x,
-                                      ContactState        &state)
+                                      ContactState        &state,
+                                      const CoulombLaw    *law)
     : bulk(bulk)
     , face(face)
     , tolerance(tolerance)
     , x(x)
     , state(state)
+    , law(law)
     , matrix(bulk.face_matrix())
     , diagonal(face.n_nodes())
     , inverse_diagonal(face.n_nodes())
@@ -299,6 +307,8 @@ namespace Viscoplastic
         diagonal[node]         = matrix.diagonal_block(node);
         inverse_diagonal[node] = invert(diagonal[node]);
       }
+    if (law != nullptr)
+      bounds.emplace(*law, face, inverse_diagonal);
     report.tolerance = tolerance;
   }
 
@@ -314,6 +324,8 @@ namespace Viscoplastic
           break;
         if (iteration == max_iterations)
           give_up();
+        if (bounds && bounds->damp(error, report.iterations, state))
+          continue;
         correct();
         const double energy_change = search();
         ++report.iterations;
@@ -325,6 +337,8 @@ namespace Viscoplastic
       }
     const Timer timer;
     report.linear_iterations += bulk.finish();
+    if (bounds)
+      report.bound_iterations = bounds->n_moves();
     report.plain_seconds = plain_seconds(timer.wall_time());
     return report;
   }
@@ -387,8 +401,11 @@ namespace Viscoplastic
   {
     const Tensor<1, 3> old = face.node_values(x, node);
     const Tensor<1, 3> r   = face.node_values(residual, node);
-    const Tensor<1, 3> now = Viscoplastic::relax_node(
-      face, node, inverse_diagonal[node], r + diagonal[node] * old, state);
+    const Tensor<1, 3> f   = r + diagonal[node] * old;
+    const Tensor<1, 3> now =
+      bounds && bounds->nodes_obey_law() ?
+        law->relax_node(face, node, inverse_diagonal[node], f, state) :
+        Viscoplastic::relax_node(face, node, inverse_diagonal[node], f, state);
     const Tensor<1, 3> step = now - old;
     if (step.norm() == 0.)
       return;
@@ -405,9 +422,11 @@ namespace Viscoplastic
   {
     report.duality_gap =
       0.5 * Utilities::fixed_power<2>(dual_norm) + certificate.defect;
-    const double result =
+    double result =
       0.5 * (dual_norm + std::sqrt(Utilities::fixed_power<2>(dual_norm) +
                                    4. * certificate.defect));
+    if (bounds)
+      result = bounds->error_with_bounds(result);
     report.relative_error = size > 0. ? result / size : 0.;
     return result;
   }
@@ -418,8 +437,12 @@ namespace Viscoplastic
   ContactSolver::Iteration::is_solved()
   {
     fit_multipliers(face, residual, state, force);
+    if (bounds)
+      bounds->update(residual, state, force);
     FaceTruncation last = std::move(truncation);
     truncation          = make_truncation(face, state, inverse_diagonal);
+    if (bounds && bounds->follow())
+      law->tilt(face, state, truncation);
     // A face that sticks or slips altogether, and whose slip does not turn,
     // makes a linear problem: unless the first sweep has found otherwise, it
     // takes no more than a plain solve.
@@ -515,6 +538,8 @@ namespace Viscoplastic
             << report.iterations << " iterations: the relative error bound is "
             << best_error << " at best, and the tolerance is " << tolerance
             << " ('Solver/Contact tolerance'); ";
+    if (bounds)
+      AssertThrow(false, ExcMessage(message.str() + bounds->failure()));
     // Rounding of displacements makes forces of all sizes of it.
     constexpr double beyond_rounding = 1e13;
     double           stiffest        = 0.;
@@ -562,6 +587,10 @@ namespace Viscoplastic
     report.linear_iterations += bulk.correct(force, reduction, w);
     correction_seconds += timer.wall_time();
     decades -= std::log10(reduction);
+    if (bounds && bounds->follow())
+      report.contraction =
+        std::max(report.contraction,
+                 bounds->predict(bulk, truncation, residual, w, state));
   }
 
 
@@ -627,10 +656,12 @@ namespace Viscoplastic
                        const ContactLayout &face,
                        const double         tolerance,
                        Vector<double>      &x,
-                       ContactState        &state) const
+                       ContactState        &state,
+                       const CoulombLaw    *law) const
   {
     AssertDimension(x.size(), face.n_dofs());
     AssertDimension(state.n_points(), face.points.size());
-    return Iteration(bulk, face, tolerance, x, state).solve(max_iterations);
+    return Iteration(bulk, face, tolerance, x, state, law)
+      .solve(max_iterations);
   }
 } // namespace Viscoplastic

@@ -527,6 +527,41 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::vector<std::vector<double>>
+  ContactFace<dim>::bounds_of_pressure(
+    const double               t,
+    const std::vector<double> &slip_rates) const
+  {
+    // Bounds are linear in the pressures: those of one obstacle a node, which
+    // presses by a unit, in turn.
+    const ContactLayout             &face = layout();
+    std::vector<std::vector<double>> result(face.points.size());
+    unsigned int                     n_obstacles = 0;
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      n_obstacles =
+        std::max(n_obstacles,
+                 face.first_point[node + 1] - face.first_obstacle(node));
+    n_obstacles = Utilities::MPI::max(n_obstacles, face.communicator);
+    for (unsigned int k = 0; k < n_obstacles; ++k)
+      {
+        ContactState state(std::vector<double>(result.size()));
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          if (const unsigned int o = face.first_obstacle(node) + k;
+              o < face.first_point[node + 1])
+            state.multiplier[o][0] = 1.;
+        std::vector<double> of_pressure(result.size());
+        add_computed_bounds(t, state, of_pressure, slip_rates);
+        for (unsigned int p = 0; p < result.size(); ++p)
+          if (const unsigned int node = face.points[p].node;
+              face.first_obstacle(node) + k < face.first_point[node + 1])
+            result[p].push_back(of_pressure[p]);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
   std::vector<Tensor<1, 2>>
   ContactFace<dim>::foundation_step(const double t_old, const double t) const
   {

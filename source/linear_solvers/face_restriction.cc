@@ -79,6 +79,19 @@ namespace Viscoplastic
 
 
   void
+  FaceRestriction::apply_tilt(const FaceTruncation &truncation,
+                              DistributedVector    &v) const
+  {
+    if (truncation.tilt.empty())
+      return;
+    Vector<double> on_face = gather(v);
+    truncation.apply_tilt(contact_layout, on_face);
+    set(on_face, v);
+  }
+
+
+
+  void
   FaceRestriction::add_springs(const FaceTruncation    &truncation,
                                const DistributedVector &x,
                                DistributedVector       &y) const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/solver_gmres.h>
 
 #include <viscoplastic_contact/contact/sparse_face_matrix.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
@@ -37,6 +38,8 @@ namespace Viscoplastic
       // The residuals that decide are those of the matrix itself.
       if (!solver.preconditioner->vmult_matrix(y, x))
         solver.matrix.vmult(y, x);
+      if (is_truncated)
+        solver.restriction.apply_tilt(solver.truncation, y);
       if (is_truncated && solver.has_springs)
         solver.restriction.add_springs(solver.truncation, x, y);
       solver.restrict_to_unknowns(y);
@@ -365,6 +368,7 @@ namespace Viscoplastic
   {
     product = residual;
     restriction.add(-1., force, product);
+    restriction.apply_tilt(truncation, product);
     restriction.project(truncation, product);
     w                 = 0.;
     const double size = product.l2_norm();
@@ -372,14 +376,22 @@ namespace Viscoplastic
     if (size == 0.)
       return 0;
 
-    ReductionControl            control(max_cg_iterations, 0., tolerance);
-    SolverCG<DistributedVector> cg(control);
+    ReductionControl              control(max_cg_iterations, 0., tolerance);
+    const TruncatedOperator       system{*this, true};
+    const TruncatedPreconditioner inverse{*this, true};
     try
       {
-        cg.solve(TruncatedOperator{*this, true},
-                 w,
-                 product,
-                 TruncatedPreconditioner{*this, true});
+        if (face.any(!truncation.tilt.empty()))
+          SolverGMRES<DistributedVector>(
+            control,
+            SolverGMRES<DistributedVector>::AdditionalData(
+              /* max_n_tmp_vectors = */ 50, /* right_preconditioning = */ true))
+            .solve(system, w, product, inverse);
+        else
+          SolverCG<DistributedVector>(control).solve(system,
+                                                     w,
+                                                     product,
+                                                     inverse);
       }
     catch (const SolverControl::NoConvergence &failure)
       {
@@ -408,6 +420,14 @@ namespace Viscoplastic
     restriction.set(face_part, w);
     matrix.vmult(product, w);
     return {residual * w, product * w};
+  }
+
+
+
+  void
+  KrylovSolver::face_response(Vector<double> &response)
+  {
+    response = restriction.gather(product);
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/solver_gmres.h>
 
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/linear_solvers/residual_rounding.h>
@@ -26,6 +27,7 @@ namespace Viscoplastic
       {
         // x lies in the truncated space, where CG keeps it.
         S.vmult(y, x);
+        truncation.apply_tilt(face, y);
         for (unsigned int n = 0; n < face.n_nodes(); ++n)
           face.set_node_values(truncation.projector[n] *
                                  (face.node_values(y, n) +
@@ -468,6 +470,7 @@ namespace Viscoplastic
   {
     face_residual(product);
     product -= force;
+    truncation.apply_tilt(face, product);
     truncation.project(face, product);
     w                 = 0.;
     const double size = product.l2_norm();
@@ -493,13 +496,18 @@ namespace Viscoplastic
     const double reduction =
       face.n_dofs() <= 600 ? 1e-13 : std::max(1e-13, 0.01 * tolerance);
     SolverControl control(std::max(100u, 4 * face.n_dofs()), reduction * size);
-    SolverCG<Vector<double>> cg(control);
+    const TruncatedFace system{schur_complement->matrix(), face, truncation};
     try
       {
-        cg.solve(TruncatedFace{schur_complement->matrix(), face, truncation},
-                 w,
-                 product,
-                 blocks);
+        if (truncation.tilt.empty())
+          SolverCG<Vector<double>>(control).solve(system, w, product, blocks);
+        else
+          SolverGMRES<Vector<double>>(
+            control,
+            SolverGMRES<Vector<double>>::AdditionalData(
+              /* max_n_tmp_vectors = */ 200,
+              /* right_preconditioning = */ true))
+            .solve(system, w, product, blocks);
       }
     catch (const SolverControl::NoConvergence &)
       {
@@ -519,6 +527,14 @@ namespace Viscoplastic
     face_residual(r);
     schur_complement->matrix().vmult(product, correction);
     return {r * correction, product * correction};
+  }
+
+
+
+  void
+  SchurSolver::face_response(Vector<double> &response)
+  {
+    response = product;
   }
 
 

@@ -119,8 +119,8 @@ namespace Viscoplastic
             if (d.face->gives_way())
               row.add("max_penetration", contact.max_penetration);
             if (d.face->has_computed_pressure() &&
-                scene.parameters.solver.coulomb_pressure ==
-                  CoulombPressure::fixed_point)
+                scene.parameters.solver.coulomb_pressure !=
+                  CoulombPressure::lagged)
               {
                 row.add("bound_iterations", step.report.bound_iterations);
                 row.add("contraction", step.report.contraction);

@@ -187,35 +187,11 @@ namespace Viscoplastic
                                 const std::vector<double> &bounds,
                                 const bool                 with_pressure) const
   {
-    const ContactFace<dim>          &face   = *discretization.face;
-    const ContactLayout             &layout = face.layout();
     std::vector<std::vector<double>> bounds_of_pressure;
     if (with_pressure)
-      {
-        // Bounds are linear in the pressures of their node.
-        unsigned int n_obstacles = 0;
-        for (unsigned int node = 0; node < layout.n_nodes(); ++node)
-          n_obstacles = std::max(n_obstacles,
-                                 layout.first_point[node + 1] -
-                                   layout.first_obstacle(node));
-        n_obstacles = Utilities::MPI::max(n_obstacles, layout.communicator);
-        bounds_of_pressure.resize(bounds.size());
-        for (unsigned int k = 0; k < n_obstacles; ++k)
-          {
-            ContactState state(std::vector<double>(bounds.size()));
-            for (unsigned int node = 0; node < layout.n_nodes(); ++node)
-              if (const unsigned int o = layout.first_obstacle(node) + k;
-                  o < layout.first_point[node + 1])
-                state.multiplier[o][0] = 1.;
-            std::vector<double> of_pressure(bounds.size());
-            face.add_computed_bounds(problem.time_step.t,
-                                     state,
-                                     of_pressure,
-                                     problem.slip_rates);
-            for (unsigned int p = 0; p < bounds.size(); ++p)
-              bounds_of_pressure[p].push_back(of_pressure[p]);
-          }
-      }
+      bounds_of_pressure =
+        discretization.face->bounds_of_pressure(problem.time_step.t,
+                                                problem.slip_rates);
     return balance(held_body(problem), bounds, bounds_of_pressure);
   }
 

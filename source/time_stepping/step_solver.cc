@@ -207,8 +207,24 @@ namespace Viscoplastic
       discretization.scene().parameters.solver;
     if (springs)
       contact.bound = springs->bounds_that_hold(problem, contact.bound);
+    if (problem.bounds_follow_pressure &&
+        parameters.coulomb_pressure == CoulombPressure::newton &&
+        discretization.slipping_face())
+      {
+        const ContactFace<dim> &face = *discretization.face;
+        const CoulombLaw        law{problem.given_bounds,
+                             face.bounds_of_pressure(problem.time_step.t,
+                                                     problem.slip_rates),
+                             [&face](const unsigned int node) {
+                               std::ostringstream place;
+                               place << '(' << face.position(node) << ')';
+                               return place.str();
+                             }};
+        return solve_with_bounds(
+          problem, right_side, tolerance, u, contact, &law);
+      }
     ContactReport report =
-      solve_with_given_bounds(problem, right_side, tolerance, u, contact);
+      solve_with_bounds(problem, right_side, tolerance, u, contact);
     if (!problem.bounds_follow_pressure || !discretization.slipping_face())
       return report;
 
@@ -292,7 +308,7 @@ namespace Viscoplastic
         contact.bound =
           springs ? springs->bounds_that_hold(problem, bounds) : bounds;
         ContactReport again =
-          solve_with_given_bounds(problem, right_side, tolerance, u, contact);
+          solve_with_bounds(problem, right_side, tolerance, u, contact);
         ++again.bound_iterations;
         again.add_earlier(report);
         report = again;
@@ -303,21 +319,22 @@ namespace Viscoplastic
 
   template <int dim>
   ContactReport
-  StepSolver<dim>::solve_with_given_bounds(const StepProblem<dim>  &problem,
-                                           const DistributedVector &right_side,
-                                           const double             tolerance,
-                                           DistributedVector       &u,
-                                           ContactState            &contact)
+  StepSolver<dim>::solve_with_bounds(const StepProblem<dim>  &problem,
+                                     const DistributedVector &right_side,
+                                     const double             tolerance,
+                                     DistributedVector       &u,
+                                     ContactState            &contact,
+                                     const CoulombLaw        *law)
   {
     if (!springs)
-      return solve_regular(problem, right_side, tolerance, u, contact);
+      return solve_regular(problem, right_side, tolerance, u, contact, law);
     return springs->solve(
       problem,
       right_side,
       tolerance,
       *bulk_solver,
       [&](const DistributedVector &right, const double inner_tolerance) {
-        return solve_regular(problem, right, inner_tolerance, u, contact);
+        return solve_regular(problem, right, inner_tolerance, u, contact, law);
       },
       u,
       contact);
@@ -331,7 +348,8 @@ namespace Viscoplastic
                                  const DistributedVector &right_side,
                                  const double             tolerance,
                                  DistributedVector       &u,
-                                 ContactState            &contact)
+                                 ContactState            &contact,
+                                 const CoulombLaw        *law)
   {
     // All of it in proportion gives the solution in proportion: where squares
     // would leave the range of numbers, another unit does. In a ramp that
@@ -359,7 +377,7 @@ namespace Viscoplastic
           return pair.second.gives_way() &&
                  pair.second.compliance_exponent != 1.;
         }))
-      return solve_in_unit(data, tolerance, u, contact);
+      return solve_in_unit(data, tolerance, u, contact, law);
 
     const double unit    = std::ldexp(1., std::max(std::ilogb(size), -1000));
     const auto   in_unit = [unit](const auto &vector) {
@@ -384,10 +402,22 @@ namespace Viscoplastic
     if (foundation_step.size() > 0)
       foundation_step /= unit;
     scale(1. / unit);
-    ContactReport report = solve_in_unit(
-      {old_u, load, other_right_side, foundation_step}, tolerance, u, contact);
+    CoulombLaw law_in_unit;
+    if (law != nullptr)
+      {
+        law_in_unit = *law;
+        for (double &bound : law_in_unit.given)
+          bound /= unit;
+      }
+    ContactReport report =
+      solve_in_unit({old_u, load, other_right_side, foundation_step},
+                    tolerance,
+                    u,
+                    contact,
+                    law != nullptr ? &law_in_unit : nullptr);
     scale(unit);
-    contact.bound = bounds;
+    if (law == nullptr)
+      contact.bound = bounds;
     if (problem.foundation_step.size() > 0)
       contact.foundation_step = problem.foundation_step;
     report.duality_gap *= unit * unit;
@@ -403,7 +433,8 @@ namespace Viscoplastic
   StepSolver<dim>::solve_in_unit(const Data        &data,
                                  const double       tolerance,
                                  DistributedVector &u,
-                                 ContactState      &contact)
+                                 ContactState      &contact,
+                                 const CoulombLaw  *law)
   {
     const Discretization<dim> &d = discretization;
     const Timer                timer;
@@ -418,7 +449,7 @@ namespace Viscoplastic
         bulk_solver->begin(data.right_side, u);
         const double seconds_to_begin = timer.wall_time();
         report                        = contact_solver.solve(
-          *bulk_solver, d.face->layout(), tolerance, increment, contact);
+          *bulk_solver, d.face->layout(), tolerance, increment, contact, law);
         report.seconds = timer.wall_time();
         report.plain_seconds =
           std::min(report.seconds, seconds_to_begin + report.plain_seconds);

@@ -214,8 +214,7 @@ namespace Viscoplastic
         problem.bounds =
           d.face->step_bounds(time_step.t, u, problem.slip_rates);
         if (d.face->has_computed_pressure() &&
-            scene.parameters.solver.coulomb_pressure ==
-              CoulombPressure::fixed_point)
+            scene.parameters.solver.coulomb_pressure != CoulombPressure::lagged)
           {
             problem.bounds_follow_pressure = true;
             problem.given_bounds           = problem.bounds;

@@ -162,6 +162,7 @@ namespace Viscoplastic::Testing
             Vector<double>       &face_part) override
     {
       Vector<double> r = unbalanced(force);
+      tilt(r);
       project(r);
       w         = 0.;
       face_part = 0.;
@@ -169,7 +170,16 @@ namespace Viscoplastic::Testing
         return 0;
       const FullMatrix<double> matrix     = truncated_matrix();
       unsigned int             iterations = 0;
-      if (condensed)
+      if (!truncation.tilt.empty())
+        {
+          // Not symmetric.
+          LAPACKFullMatrix<double> factor(problem.size());
+          factor = matrix;
+          factor.compute_lu_factorization();
+          factor.solve(r);
+          w = r;
+        }
+      else if (condensed)
         w = solve_dense(matrix, r);
       else
         {
@@ -210,6 +220,14 @@ namespace Viscoplastic::Testing
     }
 
     void
+    face_response(Vector<double> &response) override
+    {
+      Vector<double> Aw(problem.size());
+      problem.A.vmult(Aw, w);
+      response = problem.on_face(Aw);
+    }
+
+    void
     take_step(const double step) override
     {
       u.add(step, w);
@@ -243,12 +261,31 @@ namespace Viscoplastic::Testing
         v[problem.first() + i] = c[i];
     }
 
-    /// P (A + springs) P + (I - P), the latter of the size of the former.
+    void
+    tilt(Vector<double> &v) const
+    {
+      Vector<double> c = problem.on_face(v);
+      truncation.apply_tilt(problem.face, c);
+      for (unsigned int i = 0; i < c.size(); ++i)
+        v[problem.first() + i] = c[i];
+    }
+
+    /// P (tilt A + springs) P + (I - P), the latter of the size of the former.
     FullMatrix<double>
     truncated_matrix() const
     {
       const ContactLayout &face = problem.face;
       FullMatrix<double>   result(problem.A);
+      Vector<double>       row(problem.size());
+      if (!truncation.tilt.empty())
+        for (unsigned int j = 0; j < problem.size(); ++j)
+          {
+            for (unsigned int i = 0; i < problem.size(); ++i)
+              row[i] = result(i, j);
+            tilt(row);
+            for (unsigned int i = 0; i < problem.size(); ++i)
+              result(i, j) = row[i];
+          }
       for (unsigned int n = 0; n < face.n_nodes(); ++n)
         {
           const unsigned int at = problem.first() + face.first_dof[n];
@@ -256,7 +293,6 @@ namespace Viscoplastic::Testing
             for (unsigned int j = 0; j < face.n_node_dofs(n); ++j)
               result(at + i, at + j) += truncation.spring[n][i][j];
         }
-      Vector<double> row(problem.size());
       for (const bool columns : {true, false})
         for (unsigned int i = 0; i < problem.size(); ++i)
           {

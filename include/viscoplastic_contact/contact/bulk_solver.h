@@ -158,9 +158,9 @@ namespace Viscoplastic
     }
 
     /**
-     * Solve (A + springs) w = l - A u - force on the truncated space to the
-     * relative accuracy @p tolerance; returns the face part in @p w and the
-     * number of linear iterations.
+     * Solve (tilt A + springs) w = tilt (l - A u - force) on the truncated
+     * space to the relative accuracy @p tolerance; returns the face part in @p
+     * w and the number of linear iterations.
      */
     virtual unsigned int
     correct(const Vector<double> &force,
@@ -176,6 +176,10 @@ namespace Viscoplastic
     /// Replace the face part of the correction by @p w and prepare its use.
     virtual SearchTerms
     search_terms(const Vector<double> &w) = 0;
+
+    /// A w on the face, with w as search_terms() has prepared it.
+    virtual void
+    face_response(Vector<double> &response) = 0;
 
     /// u := u + step w.
     virtual void

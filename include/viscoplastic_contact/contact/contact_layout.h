@@ -230,6 +230,10 @@ namespace Viscoplastic
   struct FaceTruncation
   {
     std::vector<Tensor<2, 3>> projector, spring;
+    /// What each node's equations are multiplied by before they are projected,
+    /// where friction follows the pressure of the same system (CoulombLaw);
+    /// empty where none does. The system is not symmetric then.
+    std::vector<Tensor<2, 3>> tilt;
 
     /// Whether another one blocks the same. Collective, as the next.
     bool
@@ -248,5 +252,9 @@ namespace Viscoplastic
     /// x := projector x, node by node.
     void
     project(const ContactLayout &face, Vector<double> &x) const;
+
+    /// x := tilt x, likewise.
+    void
+    apply_tilt(const ContactLayout &face, Vector<double> &x) const;
   };
 } // namespace Viscoplastic

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/contact_points.h>
+#include <viscoplastic_contact/contact/coulomb_law.h>
 
 #include <algorithm>
 
@@ -16,7 +17,9 @@ namespace Viscoplastic
     /// Linear iterations of all of them.
     unsigned int linear_iterations = 0;
     /// Solves for a fixed point of the friction bounds, and the largest factor
-    /// by which one has reduced their change.
+    /// by which one has reduced their change; where bounds are solved for with
+    /// the step, the largest part of its stiffness that slip has lost to the
+    /// change of its own bounds.
     unsigned int bound_iterations = 0;
     double       contraction      = 0.;
     /// Primal minus dual energy, a bound on half the squared energy error.
@@ -72,6 +75,15 @@ namespace Viscoplastic
    * the dual energy norm and |error| <= (|R| + sqrt(|R|^2 + 4 eps))/2. The
    * multipliers satisfy the laws of contact exactly (eps = 0), except at points
    * that have hardly begun to slip.
+   *
+   * With Coulomb's law of the step's own pressure there is no J. Each of the
+   * phases is that of given bounds all the same: (1) nodes obey the law itself,
+   * (2) the linear system knows that bounds change with pressures (CoulombLaw),
+   * and (3) J is that of the bounds which (2) has predicted, for which its
+   * correction is a Newton step. So the iteration converges as fast as with
+   * given bounds, but nothing says that it must: where its error does not fall,
+   * bounds rest for a while and follow at a distance (CoulombBounds). What
+   * stops it is in error_with_bounds().
    */
   class ContactSolver
   {
@@ -90,6 +102,8 @@ namespace Viscoplastic
      * of an iterative one the seconds a decade of its corrections, times the
      * decades from the first error to the tolerance. Nothing is solved for it.
      *
+     * With a @p law, bounds are those of the pressures that come out.
+     *
      * Collective. Throws ExcMessage when the iteration is exhausted or a value
      * is not finite: there is no unconverged result.
      */
@@ -98,7 +112,8 @@ namespace Viscoplastic
           const ContactLayout &face,
           const double         tolerance,
           Vector<double>      &increment,
-          ContactState        &state) const;
+          ContactState        &state,
+          const CoulombLaw    *law = nullptr) const;
 
   private:
     class Iteration;

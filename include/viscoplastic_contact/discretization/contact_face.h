@@ -85,6 +85,12 @@ namespace Viscoplastic
                         std::vector<double>       &bounds,
                         const std::vector<double> &slip_rates = {}) const;
 
+    /// Of each point of friction, what a unit of force of each obstacle of its
+    /// node adds to the bound: of_pressure of CoulombLaw. Collective.
+    std::vector<std::vector<double>>
+    bounds_of_pressure(const double               t,
+                       const std::vector<double> &slip_rates = {}) const;
+
     /// How far the friction bounds of a step, of the pressure and the slip rate
     /// of the step before, are from those of the step itself.
     struct MissedBounds

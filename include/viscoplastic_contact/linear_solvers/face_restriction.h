@@ -90,6 +90,10 @@ namespace Viscoplastic
     void
     project(const FaceTruncation &truncation, DistributedVector &v) const;
 
+    /// Multiply the equations of the face's nodes by the tilts of a truncation.
+    void
+    apply_tilt(const FaceTruncation &truncation, DistributedVector &v) const;
+
     /// y := y + R^T springs R x.
     void
     add_springs(const FaceTruncation    &truncation,

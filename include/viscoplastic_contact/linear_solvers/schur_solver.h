@@ -91,6 +91,9 @@ namespace Viscoplastic
     search_terms(const Vector<double> &w) override;
 
     void
+    face_response(Vector<double> &response) override;
+
+    void
     take_step(const double step) override;
 
     unsigned int

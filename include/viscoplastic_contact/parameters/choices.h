@@ -109,13 +109,14 @@ namespace Viscoplastic
   enum class CoulombPressure
   {
     lagged,
-    fixed_point
+    fixed_point,
+    newton
   };
 
   inline const char *
   choices(CoulombPressure)
   {
-    return "lagged|fixed point";
+    return "lagged|fixed point|Newton";
   }
 
   enum class LinearSolver

@@ -67,8 +67,9 @@ namespace Viscoplastic
      * Solve from @p u and @p contact, which take the solution up.
      * @p right_side is the load of the problem less what does not depend on u;
      * @p tolerance is relative. Where Coulomb's law takes the pressure of the
-     * step itself, the fixed point p of p -> p(rho = mu p) is found by solving
-     * again. Throws ExcMessage. Collective.
+     * step itself, it is solved with the step (CoulombLaw), or the fixed point
+     * p of p -> p(rho = mu p) is found by solving again, as the scene says.
+     * Throws ExcMessage. Collective.
      */
     ContactReport
     solve(const StepProblem<dim>  &problem,
@@ -103,13 +104,14 @@ namespace Viscoplastic
       const Vector<double>    &foundation_step; // on the face
     };
 
-    /// solve() with the bounds of @p contact.
+    /// solve() with the bounds of @p contact, or with a law that gives them.
     ContactReport
-    solve_with_given_bounds(const StepProblem<dim>  &problem,
-                            const DistributedVector &right_side,
-                            const double             tolerance,
-                            DistributedVector       &u,
-                            ContactState            &contact);
+    solve_with_bounds(const StepProblem<dim>  &problem,
+                      const DistributedVector &right_side,
+                      const double             tolerance,
+                      DistributedVector       &u,
+                      ContactState            &contact,
+                      const CoulombLaw        *law = nullptr);
 
     /// The same with the matrix of the linear solver.
     ContactReport
@@ -117,7 +119,8 @@ namespace Viscoplastic
                   const DistributedVector &right_side,
                   const double             tolerance,
                   DistributedVector       &u,
-                  ContactState            &contact);
+                  ContactState            &contact,
+                  const CoulombLaw        *law);
 
     /// solve() in a unit of forces and displacements in which squares of them
     /// are ordinary numbers.
@@ -125,7 +128,8 @@ namespace Viscoplastic
     solve_in_unit(const Data        &data,
                   const double       tolerance,
                   DistributedVector &u,
-                  ContactState      &contact);
+                  ContactState      &contact,
+                  const CoulombLaw  *law);
 
     /// The largest of what the data contribute to the energy norm, without
     /// squares. Collective.

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/contact/coulomb_law.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * The bounds of Coulomb's law in the iterations of a contact solver. As a
+   * rule they follow the pressures at once: nodes are solved with the law
+   * itself, and the linear system knows that bounds change with pressures. That
+   * is a Newton method, which need not converge. Where the error does not fall,
+   * bounds rest until the step is solved for them, and are moved towards those
+   * of the pressures by the share that two such moves tell (Aitken), until they
+   * are near enough to follow again. All calls are collective.
+   */
+  class CoulombBounds
+  {
+  public:
+    /// All arguments stay in use. @p inverse_diagonal: of the face matrix.
+    CoulombBounds(const CoulombLaw                &law,
+                  const ContactLayout             &face,
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal);
+
+    /// Whether bounds follow the pressures at present.
+    bool
+    follow() const
+    {
+      return !rest;
+    }
+
+    /// Whether the sweeps solve nodes with the law itself. Not after Newton's
+    /// method has stalled: of several solutions at a node, sweeps may choose
+    /// the one that is none of the step.
+    bool
+    nodes_obey_law() const
+    {
+      return n_stalls == 0;
+    }
+
+    /// Let bounds and multipliers be those of the pressures that fit @p
+    /// residual, if they follow, and find out what they miss otherwise.
+    void
+    update(const Vector<double> &residual,
+           ContactState         &state,
+           Vector<double>       &force);
+
+    /// Let bounds be those to which the correction @p w of the face leads.
+    /// Returns the part of the stiffness against it that slip loses to the
+    /// change of its own bounds. From 1 on the step may have several solutions.
+    double
+    predict(BulkSolver           &bulk,
+            const FaceTruncation &truncation,
+            const Vector<double> &residual,
+            const Vector<double> &w,
+            ContactState         &state) const;
+
+    /**
+     * The error of a step whose error for the present bounds is at most @p
+     * error. The forces of the solution for these differ from those here by at
+     * most twice as much in the dual norm; bounds follow with the coefficient
+     * of friction, and what bounds at rest miss comes on top. (That forces
+     * along and across the foundation weigh alike in this norm, and that bounds
+     * do not follow further, is true up to a factor for a small coefficient.)
+     */
+    double
+    error_with_bounds(const double error) const
+    {
+      return (1. + 2. * largest_coefficient) * error + missed;
+    }
+
+    /// Decide whether bounds go on to follow or to rest, and move them if they
+    /// are due, from the error with bounds after @p n_corrections. Returns
+    /// whether something has changed.
+    bool
+    damp(const double       error,
+         const unsigned int n_corrections,
+         ContactState      &state);
+
+    /// Moves of resting bounds so far.
+    unsigned int
+    n_moves() const
+    {
+      return moves;
+    }
+
+    /// Why there may be no solution, and where it is missed most.
+    std::string
+    failure() const;
+
+  private:
+    const CoulombLaw                &law;
+    const ContactLayout             &face;
+    const std::vector<Tensor<2, 3>> &inverse_diagonal;
+    const double                     largest_coefficient;
+
+    /// What bounds miss, point by point and as an error.
+    std::vector<double> missing;
+    double              missed = 0.;
+
+    bool         rest     = false;
+    unsigned int n_stalls = 0, moves = 0;
+    /// The error that counts as progress, and the corrections then.
+    double       least_error   = std::numeric_limits<double>::max();
+    unsigned int last_progress = 0;
+    /// Whether they have moved since, what has been missed at the first move
+    /// and at the last one, and the share of it that the last one has made up
+    /// for.
+    bool                has_moved    = false;
+    double              first_missed = 0.;
+    std::vector<double> last_missing;
+    double              share = 0.5;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/contact/contact_layout.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * Coulomb's law with the pressure of the step itself: the bound of a point of
+   * friction is
+   *
+   *     rho_c = g_c + sum_k mu_ck p_k
+   *
+   * with the forces p_k >= 0 of the obstacles of its node. What is here makes a
+   * solver of given bounds one of this law: a Gauss-Seidel step at a node, and
+   * how the linear system of a Newton step knows that bounds change with the
+   * pressure.
+   *
+   * Where pieces meet at a node, the bounds there follow the pressures from one
+   * iteration to the next; everywhere else they are solved for with them.
+   */
+  struct CoulombLaw
+  {
+    /// g_c, point by point; of no meaning for obstacles.
+    std::vector<double> given;
+    /// mu_ck, in the order of the obstacles of the node.
+    std::vector<std::vector<double>> of_pressure;
+    /// Where a node is, for messages.
+    std::function<std::string(unsigned int)> place;
+
+    /// The bound of a point of friction at the pressures of @p state.
+    double
+    bound(const ContactLayout &face,
+          const ContactState  &state,
+          const unsigned int   point) const;
+
+    /// Let all bounds be those of the pressures of @p state. Returns whether
+    /// any has changed.
+    bool
+    set_bounds(const ContactLayout &face, ContactState &state) const;
+
+    /// relax_node() with the bounds of the pressures that come out, which are
+    /// set.
+    Tensor<1, 3>
+    relax_node(const ContactLayout &face,
+               const unsigned int   node,
+               const Tensor<2, 3>  &inverse_diagonal,
+               const Tensor<1, 3>  &force, // residual + D x
+               ContactState        &state) const;
+
+    /**
+     * A slipping point has lambda = mu p d, d = s/|s|, with the pressure of the
+     * same equation: of the residual r of its node, what r_tau - mu (n . r) d
+     * leaves is zero. Adds the matrices I - mu d n^T of such nodes to @p
+     * truncation.
+     */
+    void
+    tilt(const ContactLayout &face,
+         const ContactState  &state,
+         FaceTruncation      &truncation) const;
+
+    /// Let bounds be those of the pressures in the nodes' forces @p residual,
+    /// wherever pieces do not meet.
+    void
+    predict_bounds(const ContactLayout  &face,
+                   const Vector<double> &residual,
+                   ContactState         &state) const;
+
+    /// The largest sum of coefficients at a point. Collective.
+    double
+    largest_coefficient(const ContactLayout &face) const;
+
+  private:
+    /// Whether the friction of a node follows from its only obstacle.
+    bool
+    is_plain(const ContactLayout &face, const unsigned int node) const;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/contact/contact_points.h>
+#include <viscoplastic_contact/contact/coulomb_bounds.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Bounds that follow are given so many corrections to halve the error.
+    constexpr unsigned int patience = 8;
+    /// Bounds at rest are moved when the step is solved for them to this part
+    /// of what they miss, and until that has become less by this factor for
+    /// each time that Newton's method has stalled.
+    constexpr double part_of_missed = 0.1, near_enough = 0.3;
+  } // namespace
+
+
+
+  CoulombBounds::CoulombBounds(
+    const CoulombLaw                &law,
+    const ContactLayout             &face,
+    const std::vector<Tensor<2, 3>> &inverse_diagonal)
+    : law(law)
+    , face(face)
+    , inverse_diagonal(inverse_diagonal)
+    , largest_coefficient(law.largest_coefficient(face))
+  {}
+
+
+
+  void
+  CoulombBounds::update(const Vector<double> &residual,
+                        ContactState         &state,
+                        Vector<double>       &force)
+  {
+    if (!rest && law.set_bounds(face, state))
+      fit_multipliers(face, residual, state, force);
+    // Where pieces meet, pressures may have changed with the bounds again.
+    double sum = 0.;
+    missing.assign(face.points.size(), 0.);
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      if (const ContactLayout::Point &point = face.points[p];
+          !point.is_obstacle)
+        {
+          missing[p] = law.bound(face, state, p) - state.bound[p];
+          sum += missing[p] * missing[p] * inverse_diagonal[point.node].norm();
+        }
+    missed = std::sqrt(face.sum(sum));
+  }
+
+
+
+  double
+  CoulombBounds::predict(BulkSolver           &bulk,
+                         const FaceTruncation &truncation,
+                         const Vector<double> &residual,
+                         const Vector<double> &w,
+                         ContactState         &state) const
+  {
+    double         stiffness = bulk.search_terms(w).curvature;
+    Vector<double> response(w.size()), after(residual);
+    bulk.face_response(response);
+    face.add(-1., response, after);
+    law.predict_bounds(face, after, state);
+
+    double springs = 0.;
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        const Tensor<1, 3> here = face.node_values(w, node);
+        springs += here * (truncation.spring[node] * here);
+      }
+    stiffness += face.sum(springs);
+    Vector<double> tilted(response);
+    truncation.apply_tilt(face, tilted);
+    const double lost = face.dot(w, response) - face.dot(w, tilted);
+    return stiffness > 0. ? lost / stiffness : 0.;
+  }
+
+
+
+  bool
+  CoulombBounds::damp(const double       error,
+                      const unsigned int n_corrections,
+                      ContactState      &state)
+  {
+    if (!rest)
+      {
+        if (error < 0.5 * least_error)
+          {
+            least_error   = error;
+            last_progress = n_corrections;
+          }
+        if (n_corrections < last_progress + patience)
+          return false;
+        rest = true;
+        ++n_stalls;
+        first_missed = 0.;
+        share        = 0.5;
+        has_moved    = false;
+        return true;
+      }
+    // Until the solution for the present bounds tells what they miss.
+    if (error - missed > part_of_missed * missed)
+      return false;
+    if (first_missed == 0.)
+      first_missed = missed;
+    if (missed < std::pow(near_enough, n_stalls) * first_missed)
+      {
+        rest          = false;
+        least_error   = error;
+        last_progress = n_corrections;
+        return true;
+      }
+    if (has_moved)
+      {
+        double product = 0., square = 0.;
+        for (unsigned int p = 0; p < missing.size(); ++p)
+          {
+            const double difference = missing[p] - last_missing[p];
+            product += last_missing[p] * difference;
+            square += difference * difference;
+          }
+        product = face.sum(product);
+        square  = face.sum(square);
+        if (square > 0.)
+          {
+            // Away from a solution that repels.
+            const double aitken = -share * product / square;
+            share = aitken > 0. ? std::clamp(aitken, 0.05, 1.) : 1.;
+          }
+      }
+    for (unsigned int p = 0; p < missing.size(); ++p)
+      state.bound[p] += share * missing[p];
+    last_missing = missing;
+    has_moved    = true;
+    ++moves;
+    return true;
+  }
+
+
+
+  std::string
+  CoulombBounds::failure() const
+  {
+    unsigned int worst = 0;
+    for (unsigned int p = 1; p < missing.size(); ++p)
+      if (std::abs(missing[p]) > std::abs(missing[worst]))
+        worst = p;
+    const auto of_ranks = Utilities::MPI::all_gather(
+      face.communicator, missing.empty() ? -1. : std::abs(missing[worst]));
+    std::string place;
+    if (law.place && !missing.empty())
+      place = law.place(face.points[worst].node);
+    place = Utilities::MPI::broadcast(face.communicator,
+                                      place,
+                                      std::max_element(of_ranks.begin(),
+                                                       of_ranks.end()) -
+                                        of_ranks.begin());
+    std::ostringstream message;
+    message << "Coulomb's law with the pressure of the step itself may have no "
+               "solution near the last step, or several, where the friction "
+               "coefficient is large (here up to "
+            << largest_coefficient << "); friction and pressure fit worst at "
+            << place
+            << ". Smaller steps may follow a solution; 'Solver/Coulomb "
+               "pressure' = lagged takes the pressure of the step before.";
+    return message.str();
+  }
+} // namespace Viscoplastic

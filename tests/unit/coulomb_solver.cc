@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// The contact solver with Coulomb's law of the step's own pressure, on small
+// dense problems, against a damped fixed point of given bounds.
+
+#include "dense_bulk.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace Viscoplastic;
+using namespace Viscoplastic::Testing;
+
+namespace
+{
+  struct CoulombProblem
+  {
+    Problem    problem;
+    CoulombLaw law;
+  };
+
+
+
+  /// Nodes on rigid foundations, mu at most @p largest. Half of the problems
+  /// are ties: no load, no distance, a start in equilibrium, mu that vanishes
+  /// or varies along the face.
+  CoulombProblem
+  random_coulomb_problem(const unsigned int seed,
+                         const unsigned int n_tangents,
+                         const double       largest,
+                         const bool         oblique = false)
+  {
+    Random             random(seed);
+    CoulombProblem     result;
+    Problem           &problem = result.problem;
+    const unsigned int n_dofs  = n_tangents + 1;
+    const unsigned int n_nodes = random.integer(3, 8);
+    for (unsigned int n = 0; n < n_nodes; ++n)
+      {
+        std::vector<Tensor<1, 3>> rows = random_rows(random, n_dofs, n_dofs);
+        if (!oblique) // some component of the node for each row
+          for (unsigned int i = 0; i < n_dofs; ++i)
+            {
+              rows[i]                   = Tensor<1, 3>();
+              rows[i][(i + n) % n_dofs] = random.integer(0, 1) ? 1. : -1.;
+            }
+        const Tensor<1, 3> normal = rows.back();
+        rows.pop_back();
+        problem.add_node(n_dofs, {rows}, {normal});
+      }
+    fill_at_random(problem, random, random.integer(2, 6), 0., 1.);
+    const unsigned int tie = seed % 2 == 1 ? random.integer(0, 4) : 9;
+    if (tie == 0)
+      problem.load = 0.;
+    if (tie == 1)
+      problem.A.vmult(problem.load, problem.u_prev);
+    const double mu = random.uniform(0., largest);
+    for (unsigned int p = 0; p < problem.bounds.size(); ++p)
+      {
+        const bool is_obstacle = problem.face.points[p].is_obstacle;
+        problem.bounds[p] =
+          is_obstacle && tie != 1 && tie != 2 ?
+            std::max(0., problem.bounds[p] - 0.5) * random.integer(0, 1) :
+            0.;
+        result.law.given.push_back(0.);
+        result.law.of_pressure.emplace_back();
+        if (!is_obstacle)
+          result.law.of_pressure.back().push_back(
+            tie == 3 ? mu * random.integer(0, 1) :
+            tie == 4 ? random.uniform(0., mu) :
+                       mu);
+      }
+    return result;
+  }
+
+
+
+  Result
+  solve(const CoulombProblem &coulomb,
+        const bool            condensed,
+        const double          tolerance)
+  {
+    const Problem &problem = coulomb.problem;
+    DenseBulk      bulk(problem, condensed);
+    bulk.start_at(problem.u_prev);
+    bulk.set_rounding_error(1e-13);
+    Vector<double>      increment(problem.face.n_dofs());
+    ContactState        state(problem.bounds);
+    const ContactReport report = ContactSolver(200).solve(
+      bulk, problem.face, tolerance, increment, state, &coulomb.law);
+    return {bulk.u, state, report};
+  }
+
+
+
+  /// The laws of contact and equilibrium, by their own.
+  void
+  expect_laws(const CoulombProblem &coulomb,
+              const Result         &result,
+              const double          tolerance)
+  {
+    const Problem      &problem = coulomb.problem;
+    const ContactState &state   = result.state;
+    Vector<double>      missing = problem.residual(result.u);
+    missing -= problem.force(state.multiplier);
+    EXPECT_LT(missing.linfty_norm(), tolerance);
+    const auto slips = problem.slips(result.u);
+    for (unsigned int p = 0; p < slips.size(); ++p)
+      if (problem.face.points[p].is_obstacle)
+        {
+          const double left  = problem.bounds[p] - slips[p][0],
+                       force = state.multiplier[p][0];
+          EXPECT_GE(left, -1e-12);
+          EXPECT_GE(force, 0.);
+          EXPECT_LE(force * left, tolerance);
+        }
+      else
+        {
+          const double bound = coulomb.law.bound(problem.face, state, p);
+          EXPECT_LE(state.multiplier[p].norm(), bound + tolerance);
+          EXPECT_LE(bound * slips[p].norm() - state.multiplier[p] * slips[p],
+                    tolerance);
+        }
+  }
+
+
+
+  /// Bounds that follow the pressure by a share, each time to the end.
+  bool
+  find_fixed_point(const CoulombProblem &coulomb,
+                   const double          share,
+                   Solution             &solution)
+  {
+    Problem problem(coulomb.problem);
+    for (unsigned int iteration = 0; iteration < 60; ++iteration)
+      {
+        solution      = reference_solution(problem);
+        double change = 0., sum = 0.;
+        for (unsigned int p = 0; p < problem.bounds.size(); ++p)
+          if (!problem.face.points[p].is_obstacle)
+            {
+              const double bound =
+                coulomb.law.of_pressure[p][0] * solution.multipliers[p + 1][0];
+              change += std::abs(bound - problem.bounds[p]);
+              sum += bound;
+              problem.bounds[p] += share * (bound - problem.bounds[p]);
+            }
+        if (change <= 1e-12 * (sum + 1e-3))
+          return true;
+      }
+    return false;
+  }
+} // namespace
+
+
+
+TEST(CoulombSolver, SolvesAllRandomProblems)
+{
+  // With mu up to 2, where there may be several solutions, or none that a fixed
+  // point of bounds finds.
+  unsigned int n_corrections = 0, n_of_given_bounds = 0;
+  for (unsigned int seed = 0; seed < 1000; ++seed)
+    {
+      const CoulombProblem coulomb =
+        random_coulomb_problem(seed, 1 + seed / 2 % 2, 2., seed % 5 == 4);
+      const bool condensed = seed / 4 % 2 == 0;
+      SCOPED_TRACE("seed " + std::to_string(seed));
+      const Result result = solve(coulomb, condensed, 1e-9);
+      expect_laws(coulomb, result, 1e-7);
+      if (seed % 5 == 4)
+        continue;
+      // The price: corrections with the bounds that have come out.
+      n_corrections += result.report.iterations;
+      DenseBulk bulk(coulomb.problem, condensed);
+      bulk.start_at(coulomb.problem.u_prev);
+      bulk.set_rounding_error(1e-13);
+      Vector<double> increment(coulomb.problem.face.n_dofs());
+      ContactState   state(result.state.bound);
+      n_of_given_bounds +=
+        ContactSolver(200)
+          .solve(bulk, coulomb.problem.face, 1e-9, increment, state)
+          .iterations;
+    }
+  EXPECT_LT(n_corrections, 1.2 * n_of_given_bounds);
+}
+
+
+
+TEST(CoulombSolver, FindsTheFixedPointOfBounds)
+{
+  // Where mu is small there is but one solution.
+  for (unsigned int seed = 0; seed < 24; ++seed)
+    {
+      const CoulombProblem coulomb =
+        random_coulomb_problem(seed, 1 + seed / 2 % 2, 0.4, seed % 5 == 4);
+      SCOPED_TRACE("seed " + std::to_string(seed));
+      Solution reference;
+      ASSERT_TRUE(find_fixed_point(coulomb, 1., reference));
+      Vector<double> error = solve(coulomb, true, 1e-10).u;
+      error -= reference.u;
+      EXPECT_LT(coulomb.problem.energy_norm(error), 1e-8);
+    }
+}
+
+
+
+TEST(CoulombSolver, BoundsItsError)
+{
+  // What stops the iteration, against what a solve to rounding changes.
+  for (unsigned int seed = 0; seed < 400; ++seed)
+    {
+      const CoulombProblem coulomb =
+        random_coulomb_problem(seed, 1 + seed / 2 % 2, 1.);
+      const Result exact = solve(coulomb, false, 1e-11);
+      for (const double tolerance : {1e-1, 1e-2, 1e-3})
+        {
+          const Result   result = solve(coulomb, false, tolerance);
+          Vector<double> error(exact.u);
+          error -= result.u;
+          EXPECT_LE(coulomb.problem.energy_norm(error),
+                    result.report.error + 1e-9)
+            << "seed " << seed << ", tolerance " << tolerance;
+        }
+    }
+}

@@ -245,18 +245,6 @@ LONG_CREEP = {
             "Output/Points": "1, 0, 0",
         },
     ),
-    "cavity, norton": (
-        "verification/hard/norton_cylinder",
-        "point0_x",
-        (0.05, 0.02),
-        2,
-        {
-            **_CYLINDER,
-            **_creep(0.001),
-            "Geometry/Arguments": "0, 0 : 1 : 10 : 6 : true",
-            "Material/norton/Exponent": "3",
-        },
-    ),
     "cantilever, maxwell": (
         "verification/cantilever_creep",
         "point0_y",

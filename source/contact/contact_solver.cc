@@ -31,7 +31,7 @@ namespace Viscoplastic
     /// After so many iterations that have not halved the error, it may be what
     /// rounding leaves of the residual, or some times as much, since rounding
     /// of each term counts. More than this part of the solution is refused.
-    constexpr unsigned int patience        = 15;
+    constexpr unsigned int stalled_after   = 15;
     constexpr double       rounding_margin = 10., largest_rounding = 1e-3;
 
 
@@ -270,7 +270,7 @@ namespace Viscoplastic
     double best_error = std::numeric_limits<double>::max();
     /// The iteration that has halved that last, and that before which rounding
     /// is not to be asked for again.
-    unsigned int last_gain = 0, next_question = patience;
+    unsigned int last_gain = 0, next_question = stalled_after;
     /// The error of the start over the tolerance.
     double first_ratio = 0.;
     /// Wall time of the corrections, and by how many powers of ten they were to
@@ -470,7 +470,7 @@ namespace Viscoplastic
     if (report.relative_error < 0.5 * best_error)
       {
         last_gain     = report.iterations;
-        next_question = last_gain + patience;
+        next_question = last_gain + stalled_after;
       }
     best_error = std::min(best_error, report.relative_error);
     if (report.iterations == 0 && size > 0.)
@@ -512,7 +512,7 @@ namespace Viscoplastic
   {
     if (report.iterations < next_question)
       return false;
-    next_question += patience;
+    next_question += stalled_after;
     const double rounding = bulk.rounding_of_residual();
     error                 = bound(bulk.confirmed_dual_norm(certificate.force,
                                            report.linear_iterations),
@@ -555,7 +555,7 @@ namespace Viscoplastic
               << " times as stiff as the body, which no number resolves: give "
                  "a smaller 'Compliance', or 'Contact law' = unilateral, its "
                  "limit.";
-    else if (report.iterations >= last_gain + patience)
+    else if (report.iterations >= last_gain + stalled_after)
       {
         const double rounding = bulk.rounding_of_residual() / size;
         message << "it has come to rest there, and rounding alone makes "

@@ -422,13 +422,13 @@ namespace Viscoplastic
   {
     report.duality_gap =
       0.5 * Utilities::fixed_power<2>(dual_norm) + certificate.defect;
-    double result =
+    const double result =
       0.5 * (dual_norm + std::sqrt(Utilities::fixed_power<2>(dual_norm) +
                                    4. * certificate.defect));
-    if (bounds)
-      result = bounds->error_with_bounds(result);
-    report.relative_error = size > 0. ? result / size : 0.;
-    return result;
+    const double with_bounds =
+      bounds ? bounds->error_with_bounds(result) : result;
+    report.relative_error = size > 0. ? with_bounds / size : 0.;
+    return with_bounds;
   }
 
 

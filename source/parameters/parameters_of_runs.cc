@@ -96,11 +96,12 @@ namespace Viscoplastic
       coulomb_pressure,
       "In unilateral contact and normal compliance, the pressure p of the "
       "friction bound mu p. "
-      "`fixed point': that of the step itself; the step is solved again with "
-      "the pressure that has come out until the bounds stay, and the run ends "
-      "with a sentence where they do not, as for large mu. "
-      "`Newton': that of the step itself, too, found together with the "
-      "displacement, at the price of given bounds. "
+      "`Newton': that of the step itself, found together with the "
+      "displacement at the price of given bounds. "
+      "`fixed point': that of the step itself, too; the step is solved again "
+      "with the pressure that has come out until the bounds stay, and the run "
+      "ends with a sentence where they do not, as for large mu. For "
+      "comparison. "
       "`lagged': that of the end of the step before, so that each step has one "
       "solution and is solved once; the error is of first order in the step, "
       "and large where steps are.");

@@ -341,6 +341,11 @@ class PartialSlip(Contact):
         result = self.check({}, beyond=1e-5)
         self.assertLess(result["contraction"].max(), 0.1)
         self.check_identities(result, 1e-8)
+        newton = self.check({"Solver/Coulomb pressure": "Newton"}, beyond=1e-7)
+        self.check_identities(newton, 1e-8)
+        self.assertLess(
+            newton["contact_iterations"].sum(), 0.6 * result["contact_iterations"].sum()
+        )
 
     def test_pressure_of_the_step_before(self):
         """The bound is mu times the pressure of the step before, which

@@ -178,6 +178,49 @@ class Closed(Contact):
         self.check(SPACE, plate, {})
 
 
+class Greco(Contact):
+    """The plate of the GRECO benchmark, mu = 1: pressed from the left and from
+    above, symmetric on the right."""
+
+    PLATE = {
+        "Dimension": 2,
+        "Geometry/Generator": "subdivided_hyper_rectangle",
+        "Geometry/Arguments": "64, 64 : 0, 0 : 0.04, 0.04 : true",
+        "Material/Young's modulus": 1.3e11,
+        "Material/Poisson's ratio": 0.2,
+        "Boundary 0/Role": "traction",
+        "Boundary 0/Pressure": "15e7*min(t, 1)",
+        "Boundary 1/Role": "symmetry",
+        "Boundary 2/Role": "contact",
+        "Boundary 2/Contact law": "unilateral",
+        "Boundary 2/Friction law": "coulomb",
+        "Boundary 2/Friction coefficient": 1,
+        "Boundary 3/Role": "traction",
+        "Boundary 3/Pressure": "5e7*min(t, 1)",
+        "Output/Points": "0, 0; 0.00125, 0; 0.005, 0; 0.0075, 0; 0.01125, 0",
+        "Solver/Coulomb pressure": "Newton",
+    }
+
+    def test_displacements(self):
+        for steps, ranks in ((1, 1), (5, 1), (1, 2)):
+            with self.subTest(steps=steps, ranks=ranks):
+                more = {"Time/Phases": f"1: {steps}"}
+                result = run("greco", {**self.PLATE, **more}, ranks, text="")
+                moved = [result[f"point{i}_x"][-1] for i in range(5)]
+                # the limit, and what the literature says
+                for i, (limit, other) in enumerate(
+                    zip(
+                        (2.8603e-5, 2.7226e-5, 2.2868e-5, 1.9807e-5, 1.5414e-5),
+                        (2.86e-5, 2.72e-5, 2.28e-5, 1.98e-5, 1.54e-5),
+                    )
+                ):
+                    self.assertLess(abs(moved[i] / limit - 1), 3e-4)
+                    self.assertLess(abs(moved[i] / other - 1), 5e-3)
+                # 41 with a fixed point; then the load grows in proportion
+                self.assertLess(result["contact_iterations"][1], 14)
+                self.assertEqual(result["contact_iterations"][2:].sum(), 0)
+
+
 class HardCases(Contact):
     def check_both(self, check, contact, plate, more=None, ranks=(1, 1)):
         """check(place, normal, result) of the plane and of space; plate: the path

@@ -109,6 +109,22 @@ class Reference(TestCase):
         self.assertLess(max(result["contraction"]), 0.6)
         self.assertGreater(max(result["contraction"]), 0.05)
 
+    NEWTON = {"Solver/Coulomb pressure": "Newton", "Solver/Coulomb tolerance": 1}
+
+    def test_newton(self):
+        """The same answers without a fixed point, at the price of given bounds."""
+        for name, ranks in (("coupled", 1), ("soft rough", 1), ("coupled", 2)):
+            with self.subTest(name, ranks=ranks):
+                result = self.check(name, ranks, **self.NEWTON)
+                self.assertEqual(max(result["bound_iterations"]), 0)
+                self.assertLess(max(result["contraction"]), 0.6)
+                self.assertLess(np.mean(result["contact_iterations"][1:]), 6)
+
+    def test_newton_in_space(self):
+        self.check("turning coulomb", **self.NEWTON)
+        self.check("turning coulomb", ranks=3, **self.NEWTON)
+        self.check("soft turning", **self.NEWTON)
+
     def test_compliance(self):
         self.check("soft")
         self.check("soft rough")

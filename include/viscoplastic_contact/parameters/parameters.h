@@ -168,7 +168,7 @@ namespace Viscoplastic
     /// 0: coupled to the estimated discretization error.
     double          contact_tolerance  = 0.;
     unsigned int    maximal_iterations = 200;
-    CoulombPressure coulomb_pressure   = CoulombPressure::fixed_point;
+    CoulombPressure coulomb_pressure   = CoulombPressure::newton;
     double          coulomb_tolerance  = 1e-6;
     bool            reuse_unchanged    = true;
 

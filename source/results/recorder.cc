@@ -487,7 +487,7 @@ namespace Viscoplastic
                 "step before, miss those of the pressure of their step by "
              << 100. * run.missed_bounds / run.computed_bounds
              << " % on average; smaller steps or 'Solver/Coulomb pressure' = "
-                "fixed point mend this.";
+                "Newton mend this.";
         result.push_back(text.str());
       }
 

@@ -226,7 +226,7 @@ namespace Viscoplastic
              with_pressure().is_balanced ?
            " With the pressure of the step before, Coulomb's law has no "
            "friction in the step in which contact begins; 'Solver/Coulomb "
-           "pressure' = fixed point has." :
+           "pressure' = Newton has." :
            "")));
     // Those of pressures that could be.
     ContactState        state(bounds);

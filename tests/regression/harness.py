@@ -49,6 +49,7 @@ COUPLED = 1e-5
 EFFORT = {
     "contact_iterations",
     "linear_iterations",
+    "newton_iterations",
     "duality_gap",
     "algebraic_error",
     "bound_iterations",

@@ -405,7 +405,7 @@ class Held(TestCase):
                     "Boundary 0/Traction": "0.001*t; 0",
                     "Solver/Coulomb pressure": "lagged",
                 },
-                "= fixed point has",
+                "= Newton has",
             ),
             # which no pressure of its own could give
             (
@@ -432,11 +432,11 @@ class Held(TestCase):
             with self.subTest(message=message):
                 stderr = self.run_block(changes, check=False).stderr
                 self.assertRegex(" ".join(stderr.split()), message)
-        # which the fixed point has
+        # which the law in its own step has
         found = self.run_block(
             {
                 "Boundary 0/Traction": "0.001*t; 0",
-                "Solver/Coulomb pressure": "fixed point",
+                "Solver/Coulomb pressure": "Newton",
             }
         )
         self.assertClose(found["friction_force_x"][-1], 0.001, relative=1e-5)

@@ -69,7 +69,7 @@ namespace Viscoplastic
                                        const RunSummary<dim> &run) const
   {
     std::vector<std::string> result;
-    if (run.viscous_dissipation && *run.viscous_dissipation == 0.)
+    if (run.has_viscosity && !run.has_flowed)
       {
         std::string text = "viscoplastic flow has never acted: no material has "
                            "flowed, and 'Law' = elastic gives the same for "

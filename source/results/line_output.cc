@@ -174,13 +174,14 @@ namespace Viscoplastic
           const std::vector<std::string> &columns = probes[i]->names();
           if (state.n == 0)
             {
-              const UnitLabels<dim> labels(scene);
-              const std::string     length = labels.of_field("displacement");
-              file << "step,t" << labels.of_column("t") << ",s" << length;
+              const Units      &units  = scene.parameters.units;
+              const std::string length = units.label(Quantity::length, dim);
+              file << "step,t" << units.label(Quantity::time, dim) << ",s"
+                   << length;
               for (unsigned int d = 0; d < dim; ++d)
                 file << ',' << "xyz"[d] << length;
               for (const std::string &column : columns)
-                file << ',' << column << labels.of_field(column);
+                file << ',' << column << label_of_field(scene, column);
               file << '\n';
             }
           file << std::setprecision(12);

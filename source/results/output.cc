@@ -323,7 +323,7 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space = laws.stress_space;
     const DoFHandler<dim>  &dof_handler  = stress_space.space.dof_handler;
     const auto             &tria         = dof_handler.get_triangulation();
-    BodyOutput<dim>         data_out{UnitLabels<dim>(scene)};
+    BodyOutput<dim>         data_out(scene);
     data_out.attach_dof_handler(dof_handler);
     const std::vector<DataComponentInterpretation::DataComponentInterpretation>
       is_vector(dim, DataComponentInterpretation::component_is_part_of_vector);
@@ -407,14 +407,13 @@ namespace Viscoplastic
     const AdmissibleSpace<dim>   &space  = stress_space.space;
     const std::set<RecordedField> fields = fields_of_contact(scene, face);
     const BoundaryFields<dim>     boundary(stress_space, state, face, fields);
-    const UnitLabels<dim>         labels(scene);
     FaceOutput<dim>               output;
     output.set_flags(vtk_flags());
     const auto add_scalar = [&](const std::string &name) {
-      output.names.push_back(name + labels.of_field(name));
+      output.names.push_back(name + label_of_field(scene, name));
     };
     const auto add_vector = [&](const std::string &field) {
-      const std::string name = field + labels.of_field(field);
+      const std::string name = field + label_of_field(scene, field);
       output.vectors.emplace_back(
         output.names.size(),
         output.names.size() + dim - 1,

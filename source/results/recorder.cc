@@ -117,8 +117,13 @@ namespace Viscoplastic
     judge(step, quantities);
     sum_up(step, quantities, errors);
     check_sizes(/* at_end = */ false);
+    const StatisticsRow recorded = row(step, quantities, errors);
+    run.at_end.clear();
+    for (const StatisticsRow::Entry &entry : recorded.entries)
+      if (entry.at_end != StatisticsRow::AtEnd::absent)
+        run.at_end.push_back(entry);
     if (statistics)
-      write_row(step, quantities, errors);
+      statistics->write(recorded);
     report_progress(step, quantities);
   }
 
@@ -222,12 +227,6 @@ namespace Viscoplastic
     const FrictionIdentities &friction = quantities.friction;
     run.n_steps                        = step.time_step.n;
     run.t                              = t;
-    run.reactions                      = quantities.reactions;
-    run.stored_energy                  = balance.stored_energy();
-    run.external_work                  = balance.external_work();
-    run.energy_balance_defect          = balance.defect();
-    run.max_displacement               = quantities.max_displacement;
-    run.point_displacements            = quantities.point_displacements;
     if (discretization->tension)
       run.tension_share.update(quantities.tension_area /
                                  discretization->tension->area(),
@@ -242,18 +241,11 @@ namespace Viscoplastic
     run.capped_volume.update(step.capped_volume, step.time_of_rate());
     run.largest_error.update(errors.error);
     run.largest_exact.update(errors.exact);
-    if (scene.has_viscosity())
-      run.viscous_dissipation = balance.viscous_dissipation();
-    if (scene.has_unilateral_contact())
+    run.has_viscosity = scene.has_viscosity();
+    run.has_flowed    = balance.viscous_dissipation() != 0.;
+    run.has_friction  = scene.has_friction();
+    if (run.has_friction)
       {
-        run.contact_force = quantities.contact.force;
-        run.contact_area  = quantities.contact.contact_area;
-      }
-    if (scene.has_friction())
-      {
-        run.friction_force       = quantities.friction_force;
-        run.friction_dissipation = balance.friction_dissipation();
-        run.slipping_area        = friction.slip_area;
         // New meshes may have more friction points, or fewer.
         if (friction.slip_area > run.slip_area.value ||
             run.slip_area.value == 0.)
@@ -261,14 +253,8 @@ namespace Viscoplastic
         run.slip_area.update(friction.slip_area, t);
         run.utilization.update(friction.max_utilization, t);
       }
-    if (scene.is_adaptive())
-      {
-        run.adaptation_energy = balance.adaptation_energy();
-        if (!has_error_estimate)
-          run.error_estimate = quantities.refinement_estimate;
-      }
-    if (scene.has_stages())
-      run.construction_energy = balance.construction_energy();
+    if (scene.is_adaptive() && !has_error_estimate)
+      run.error_estimate = quantities.refinement_estimate;
     // Initial data that have not been brought into equilibrium have no
     // estimate.
     if (run.errors && (step.time_step.n > 0 || step.end.is_solution))

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <regex>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -19,35 +20,6 @@ namespace Viscoplastic
       std::ostringstream text;
       text << std::setprecision(5) << value;
       return text.str();
-    }
-
-
-
-    std::string
-    with_uncertainty(const double value, const double *coarser)
-    {
-      std::string text = number(value);
-      if (coarser != nullptr)
-        {
-          std::ostringstream difference;
-          difference << std::setprecision(2) << std::abs(value - *coarser);
-          text += " +- " + difference.str();
-        }
-      return text;
-    }
-
-
-
-    template <int dim>
-    std::string
-    components(const Tensor<1, dim> &vector,
-               const Tensor<1, dim> *coarser = nullptr)
-    {
-      std::string text;
-      for (unsigned int d = 0; d < dim; ++d)
-        text += (d > 0 ? "; " : "") +
-                with_uncertainty(vector[d], coarser ? &(*coarser)[d] : nullptr);
-      return text;
     }
 
 
@@ -84,6 +56,25 @@ namespace Viscoplastic
 
 
 
+    /// The words for a quantity of statistics.csv.
+    std::string
+    in_words(const std::string &column)
+    {
+      static const std::vector<std::pair<std::regex, std::string>> patterns{
+        {std::regex("reaction_(\\d+)"), "reaction of boundary $1"},
+        {std::regex("reaction_(.*)"), "reaction at $1"},
+        {std::regex("point(\\d+)"), "displacement of point $1"},
+        {std::regex("slip_area"), "slipping area"},
+        {std::regex("max_"), "largest "},
+        {std::regex("_"), " "}};
+      std::string text = column;
+      for (const auto &[pattern, words] : patterns)
+        text = std::regex_replace(text, pattern, words);
+      return text;
+    }
+
+
+
     /// The quantities at the end of the run.
     template <int dim>
     void
@@ -92,77 +83,29 @@ namespace Viscoplastic
               const RunSummary<dim> &run,
               const RunSummary<dim> *coarser)
     {
-      using Summary         = RunSummary<dim>;
-      const auto print_with = [&](const std::string &name,
-                                  const std::string &value,
-                                  const Quantity     quantity) {
-        print_row(out, name, value + units.suffix(quantity, dim));
-      };
-      const auto row = [&](const std::string &name,
-                           const auto         member,
-                           const Quantity     quantity) {
-        const auto &value = run.*member;
-        if (value)
-          print_with(name,
-                     with_uncertainty(*value,
-                                      coarser ? &*(coarser->*member) : nullptr),
-                     quantity);
-      };
       out << "At t = " << WithUnits<dim>{units}.time(run.t)
           << (!coarser      ? ":\n" :
               run.tolerance ? " (+- what twice the tolerance changes):\n" :
                               " (+- what twice the mesh width and the time "
                               "steps change):\n");
-      if (run.friction_force)
-        print_with("friction force",
-                   components(*run.friction_force,
-                              coarser ? &*coarser->friction_force : nullptr),
-                   Quantity::force);
-      if (run.contact_force)
-        print_with("contact force",
-                   components(*run.contact_force,
-                              coarser ? &*coarser->contact_force : nullptr),
-                   Quantity::force);
-      row("contact area", &Summary::contact_area, Quantity::area);
-      if (coarser && run.slipping_area)
-        row("slipping area", &Summary::slipping_area, Quantity::area);
-      for (const auto &[id, force] : run.reactions)
-        print_with(
-          (id < first_support_id ? "reaction of boundary " : "reaction at ") +
-            name_in_columns(id),
-          components(force, coarser ? &coarser->reactions.at(id) : nullptr),
-          Quantity::force);
-      if (coarser)
-        for (unsigned int i = 0; i < run.point_displacements.size(); ++i)
-          print_with("displacement of point " + std::to_string(i),
-                     components(run.point_displacements[i],
-                                &coarser->point_displacements[i]),
-                     Quantity::length);
-      print_with("external work",
-                 with_uncertainty(run.external_work,
-                                  coarser ? &coarser->external_work : nullptr),
-                 Quantity::energy);
-      print_with("stored energy",
-                 with_uncertainty(run.stored_energy,
-                                  coarser ? &coarser->stored_energy : nullptr),
-                 Quantity::energy);
-      row("viscous dissipation",
-          &Summary::viscous_dissipation,
-          Quantity::energy);
-      row("friction dissipation",
-          &Summary::friction_dissipation,
-          Quantity::energy);
-      if (run.adaptation_energy)
-        print_with("energy from new meshes",
-                   number(*run.adaptation_energy),
-                   Quantity::energy);
-      if (run.construction_energy)
-        print_with("energy of materials",
-                   number(*run.construction_energy),
-                   Quantity::energy);
-      print_with("energy balance defect",
-                 number(run.energy_balance_defect),
-                 Quantity::energy);
+      for (std::size_t e = 0; e < run.at_end.size(); ++e)
+        {
+          const StatisticsRow::Entry &entry = run.at_end[e];
+          if (!coarser && entry.at_end == StatisticsRow::AtEnd::compared)
+            continue;
+          std::ostringstream text;
+          for (std::size_t i = 0; i < entry.values.size(); ++i)
+            {
+              text << (i > 0 ? "; " : "") << number(entry.values[i]);
+              if (coarser)
+                text << " +- " << std::setprecision(2)
+                     << std::abs(entry.values[i] -
+                                 coarser->at_end[e].values[i]);
+            }
+          print_row(out,
+                    in_words(entry.name),
+                    text.str() + units.suffix(entry.quantity, dim));
+        }
       if (run.error_estimate)
         print_row(out, "error estimate", number(*run.error_estimate));
     }
@@ -196,7 +139,7 @@ namespace Viscoplastic
                 with_place(run.von_mises,
                            Quantity::stress,
                            run.von_mises_position));
-      if (run.friction_force)
+      if (run.has_friction)
         print_row(out,
                   "slipping area",
                   number(run.slip_area.value) + " of " +
@@ -267,7 +210,7 @@ namespace Viscoplastic
       part("mesh", largest.space);
       if (largest.history > 0.)
         part("mesh, in the history", largest.history);
-      if (run.viscous_dissipation)
+      if (run.has_viscosity)
         part("time steps", largest.time);
       if (largest.friction > 0.)
         part("friction bounds and turns", largest.friction);
@@ -338,54 +281,24 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::vector<std::pair<std::string, double>>
-  RunSummary<dim>::quantities() const
-  {
-    std::vector<std::pair<std::string, double>> result;
-    const auto add = [&](const std::string &name, const Tensor<1, dim> &value) {
-      for (unsigned int d = 0; d < dim; ++d)
-        result.emplace_back(name + "_" + "xyz"[d], value[d]);
-    };
-    if (friction_force)
-      {
-        add("friction_force", *friction_force);
-        result.emplace_back("slip_area", *slipping_area);
-        result.emplace_back("friction_dissipation", *friction_dissipation);
-      }
-    if (contact_force)
-      {
-        add("contact_force", *contact_force);
-        result.emplace_back("contact_area", *contact_area);
-      }
-    for (const auto &[id, force] : reactions)
-      add("reaction_" + name_in_columns(id), force);
-    if (viscous_dissipation)
-      result.emplace_back("viscous_dissipation", *viscous_dissipation);
-    result.emplace_back("stored_energy", stored_energy);
-    result.emplace_back("external_work", external_work);
-    result.emplace_back("max_displacement", max_displacement);
-    for (unsigned int i = 0; i < point_displacements.size(); ++i)
-      add("point" + std::to_string(i), point_displacements[i]);
-    return result;
-  }
-
-
-
-  template <int dim>
   void
-  write_uncertainties(
-    const std::string                                     &file,
-    const RunSummary<dim>                                 &summary,
-    const RunSummary<dim>                                 &coarser,
-    const std::function<std::string(const std::string &)> &label)
+  write_uncertainties(const std::string     &file,
+                      const Units           &units,
+                      const RunSummary<dim> &summary,
+                      const RunSummary<dim> &coarser)
   {
     std::ostringstream out;
     out << std::setprecision(12) << "quantity,value,uncertainty\n";
-    const auto fine = summary.quantities(), coarse = coarser.quantities();
-    AssertDimension(fine.size(), coarse.size());
-    for (unsigned int i = 0; i < fine.size(); ++i)
-      out << fine[i].first << label(fine[i].first) << ',' << fine[i].second
-          << ',' << std::abs(fine[i].second - coarse[i].second) << '\n';
+    AssertDimension(summary.at_end.size(), coarser.at_end.size());
+    for (std::size_t e = 0; e < summary.at_end.size(); ++e)
+      {
+        const StatisticsRow::Entry &entry = summary.at_end[e];
+        for (std::size_t i = 0; i < entry.values.size(); ++i)
+          out << entry.column(i) << units.label(entry.quantity, dim) << ','
+              << entry.values[i] << ','
+              << std::abs(entry.values[i] - coarser.at_end[e].values[i])
+              << '\n';
+      }
     replace_file(file, out.str());
   }
 
@@ -453,15 +366,13 @@ namespace Viscoplastic
   template struct RunSummary<2>;
   template struct RunSummary<3>;
   template void
-  write_uncertainties<2>(
-    const std::string &,
-    const RunSummary<2> &,
-    const RunSummary<2> &,
-    const std::function<std::string(const std::string &)> &);
+  write_uncertainties(const std::string &,
+                      const Units &,
+                      const RunSummary<2> &,
+                      const RunSummary<2> &);
   template void
-  write_uncertainties<3>(
-    const std::string &,
-    const RunSummary<3> &,
-    const RunSummary<3> &,
-    const std::function<std::string(const std::string &)> &);
+  write_uncertainties(const std::string &,
+                      const Units &,
+                      const RunSummary<3> &,
+                      const RunSummary<3> &);
 } // namespace Viscoplastic

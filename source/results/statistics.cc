@@ -14,9 +14,12 @@ namespace Viscoplastic
 {
   using namespace dealii;
 
-  Statistics::Statistics(const std::string &file_name, const Label &label)
+  Statistics::Statistics(const std::string &file_name,
+                         const Units       &units,
+                         const unsigned int dim)
     : name(file_name)
-    , label(label)
+    , units(units)
+    , dim(dim)
   {
     require_writable_file(name);
     file.open(name);
@@ -66,38 +69,35 @@ namespace Viscoplastic
 
 
   void
-  Statistics::add(const std::string &column, const double value)
+  Statistics::write(const StatisticsRow &row)
   {
-    row.emplace_back(column, value);
-  }
-
-
-
-  void
-  Statistics::end_row()
-  {
+    std::vector<std::string> names;
+    std::vector<double>      values;
+    std::string              header;
+    for (const StatisticsRow::Entry &entry : row.entries)
+      for (std::size_t i = 0; i < entry.values.size(); ++i)
+        {
+          names.push_back(entry.column(i));
+          values.push_back(entry.values[i]);
+          header += (header.empty() ? "" : ",") + names.back() +
+                    units.label(entry.quantity, dim);
+        }
     if (columns.empty())
       {
-        for (const auto &entry : row)
-          {
-            file << (columns.empty() ? "" : ",") << entry.first
-                 << label(entry.first);
-            columns.push_back(entry.first);
-          }
-        file << '\n';
+        columns = names;
+        file << header << '\n';
       }
-    bool same = columns.size() == row.size();
-    for (unsigned int i = 0; same && i < row.size(); ++i)
-      same = columns[i] == row[i].first;
-    AssertThrow(same,
+    AssertThrow(columns == names,
                 ExcMessage("The columns of '" + name +
                            "' are not those of this run, which cannot go on "
                            "with it."));
     // A result that is none must not pass for one. No limit is imposed where
     // nothing flows.
-    for (const auto &[column, value] : row)
+    for (std::size_t i = 0; i < values.size(); ++i)
       {
-        const bool is_limit = column == "step_limit" && value > 0.;
+        const std::string &column   = columns[i];
+        const double       value    = values[i];
+        const bool         is_limit = column == "step_limit" && value > 0.;
         // Not known between the times of a reference.
         const bool is_unknown =
           column.rfind("error_", 0) == 0 || column.rfind("exact_", 0) == 0 ||
@@ -107,7 +107,7 @@ namespace Viscoplastic
         if (std::isfinite(value) || is_limit || is_unknown)
           continue;
         std::ostringstream message;
-        message << "In step " << row[0].second << ", '" << column << "' is "
+        message << "In step " << values[0] << ", '" << column << "' is "
                 << value
                 << "; it must be finite: the numbers of this scene leave the "
                    "range of floating-point numbers, choose other units or "
@@ -115,13 +115,12 @@ namespace Viscoplastic
         AssertThrow(false, ExcMessage(message.str()));
       }
     file << std::setprecision(12);
-    for (unsigned int i = 0; i < row.size(); ++i)
-      file << (i == 0 ? "" : ",") << row[i].second;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      file << (i == 0 ? "" : ",") << values[i];
     file << std::endl;
     AssertThrow(file,
                 ExcMessage("Writing to '" + name +
                            "' failed; is the disk full?"));
-    row.clear();
   }
 
 
@@ -129,7 +128,7 @@ namespace Viscoplastic
   void
   Statistics::synchronize()
   {
-    // The stream has no buffer left: end_row() flushes.
+    // The stream has no buffer left: write() flushes.
     Viscoplastic::synchronize(name);
   }
 } // namespace Viscoplastic

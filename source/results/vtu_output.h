@@ -67,8 +67,8 @@ namespace Viscoplastic
   class BodyOutput : public DataOut<dim>
   {
   public:
-    explicit BodyOutput(const UnitLabels<dim> &labels)
-      : labels(labels)
+    explicit BodyOutput(const Scene<dim> &scene)
+      : scene(scene)
     {}
 
     /// Bring the patches, one for each owned cell in the order of active
@@ -116,7 +116,7 @@ namespace Viscoplastic
     {
       std::vector<std::string> names = DataOut<dim>::get_dataset_names();
       for (std::string &name : names)
-        name += labels.of_field(name);
+        name += label_of_field(scene, name);
       return names;
     }
 
@@ -125,12 +125,12 @@ namespace Viscoplastic
     {
       auto ranges = DataOut<dim>::get_nonscalar_data_ranges();
       for (VectorRange &range : ranges)
-        std::get<2>(range) += labels.of_field(std::get<2>(range));
+        std::get<2>(range) += label_of_field(scene, std::get<2>(range));
       return ranges;
     }
 
   private:
-    const UnitLabels<dim> labels;
+    const Scene<dim> &scene;
   };
 
 

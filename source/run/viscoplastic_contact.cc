@@ -6,7 +6,6 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/results/step_quantities.h>
-#include <viscoplastic_contact/results/unit_labels.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/state_carrier.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
@@ -182,10 +181,7 @@ namespace Viscoplastic
     directories.begin_checkpoints();
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       recorder.write_to(std::make_unique<Statistics>(
-        output->directory() + "statistics.csv",
-        [labels = UnitLabels<dim>(scene)](const std::string &column) {
-          return labels.of_column(column);
-        }));
+        output->directory() + "statistics.csv", scene.parameters.units, dim));
     // First: the seconds that steps are expected to take begin with the record.
     write_results(/* fields_are_due = */ true);
     record_initial_state();
@@ -532,13 +528,10 @@ namespace Viscoplastic
     recorder.print(out, coarser);
     if (coarser != nullptr &&
         Utilities::MPI::this_mpi_process(communicator) == 0)
-      write_uncertainties<dim>(output->directory() + "uncertainty.csv",
-                               recorder.summary(),
-                               *coarser,
-                               [&](const std::string &quantity) {
-                                 return UnitLabels<dim>(scene).of_column(
-                                   quantity);
-                               });
+      write_uncertainties(output->directory() + "uncertainty.csv",
+                          scene.parameters.units,
+                          recorder.summary(),
+                          *coarser);
     output->record_end(recorder.summary(),
                        {recorder.seconds(),
                         first_memory,

@@ -233,6 +233,16 @@ class Approximations(unittest.TestCase):
                     self.assertRegex(error, "none|not counted|data|counted, and")
 
 
+class Columns(unittest.TestCase):
+    def test_each_is_in_the_table_of_results(self):
+        rows = (SOURCE / "source/results/statistics_row.cc").read_text()
+        table = (SOURCE / "doc/results.md").read_text().split("## statistics.csv")[1]
+        known = set(re.findall(r"`_?(\w+?)(?:_x)?`", table.split("\n## ")[0]))
+        names = re.findall(r'row\.add(?:_vector)?\(\s*"(\w+)",', rows)
+        self.assertGreater(len(names), 50)
+        self.assertEqual(set(names) - known, set())
+
+
 class Registration(unittest.TestCase):
     def test_every_class_with_tests_is_an_entry_of_ctest(self):
         folder = SOURCE / "tests" / "regression"

@@ -150,18 +150,21 @@ namespace Viscoplastic
            const StepQuantities<dim> &quantities,
            const SolutionErrors      &errors);
 
-    void
-    write_row(const AcceptedStep<dim>   &step,
-              const StepQuantities<dim> &quantities,
-              const SolutionErrors      &errors);
+    /// All that is recorded of a step: the only place that knows the names of
+    /// quantities, their units, and when a scene has them.
+    StatisticsRow
+    row(const AcceptedStep<dim>   &step,
+        const StepQuantities<dim> &quantities,
+        const SolutionErrors      &errors);
 
-    /// What the scene asks for at points and as integrals.
+    /// Add what the scene asks for at points and as integrals.
     void
-    write_asked_for(const StepQuantities<dim> &quantities);
+    add_asked_for(const StepQuantities<dim> &quantities,
+                  StatisticsRow             &row) const;
 
-    /// Seconds of this step by phase.
+    /// Add the seconds of this step by phase.
     void
-    write_seconds();
+    add_seconds(StatisticsRow &row);
 
     void
     report_progress(const AcceptedStep<dim>   &step,

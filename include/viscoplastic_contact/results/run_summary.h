@@ -8,14 +8,13 @@
 #include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/error/error_estimate.h>
 #include <viscoplastic_contact/error/solution_norms.h>
+#include <viscoplastic_contact/results/statistics.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace Viscoplastic
@@ -48,16 +47,10 @@ namespace Viscoplastic
   template <int dim>
   struct RunSummary
   {
-    // Of the last step.
-    double                                       t = 0.;
-    std::optional<Tensor<1, dim>>                friction_force, contact_force;
-    std::map<types::boundary_id, Tensor<1, dim>> reactions;
-    double stored_energy = 0., external_work = 0., energy_balance_defect = 0.;
-    std::optional<double> viscous_dissipation, friction_dissipation,
-      adaptation_energy, construction_energy;
-    std::optional<double>       slipping_area, contact_area;
-    std::vector<Tensor<1, dim>> point_displacements;
-    double                      max_displacement = 0.;
+    /// The end of the last step, and what the closing words have of it.
+    double                            t = 0.;
+    std::vector<StatisticsRow::Entry> at_end;
+    bool has_viscosity = false, has_flowed = false, has_friction = false;
     /// The estimate by which an adaptive scene without error estimate refines.
     std::optional<double> error_estimate;
     /// The errors of a scene with error estimate.
@@ -107,24 +100,18 @@ namespace Viscoplastic
     print(std::ostream     &out,
           const Units      &units,
           const RunSummary *coarser = nullptr) const;
-
-    /// The quantities at the end, by the names that statistics.csv has.
-    std::vector<std::pair<std::string, double>>
-    quantities() const;
   };
 
 
 
-  /// A table `quantity,value,uncertainty'; @p label is what stands behind the
-  /// name of a quantity, as Statistics::Label. Throws ExcMessage if it cannot
-  /// be written.
+  /// A table `quantity,value,uncertainty' of the end of a run. Throws
+  /// ExcMessage if it cannot be written.
   template <int dim>
   void
-  write_uncertainties(
-    const std::string                                     &file,
-    const RunSummary<dim>                                 &summary,
-    const RunSummary<dim>                                 &coarser,
-    const std::function<std::string(const std::string &)> &label);
+  write_uncertainties(const std::string     &file,
+                      const Units           &units,
+                      const RunSummary<dim> &summary,
+                      const RunSummary<dim> &coarser);
 
 
 

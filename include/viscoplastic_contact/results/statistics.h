@@ -1,14 +1,79 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/base/units.h>
+
 #include <fstream>
-#include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace Viscoplastic
 {
+  /**
+   * What a step has to record: for each quantity its name, its unit, its value
+   * and whether the closing words of a run have it. Recorder::row() makes it,
+   * and so is the one place that knows them; statistics.csv, its labels of
+   * units, the closing words and uncertainty.csv follow from it.
+   */
+  class StatisticsRow
+  {
+  public:
+    /// Where the value at the end of a run appears.
+    enum class AtEnd
+    {
+      absent,
+      /// Among the closing words, and in uncertainty.csv.
+      printed,
+      /// In uncertainty.csv, and among the closing words where they have
+      /// uncertainties.
+      compared
+    };
+
+    /// A number, or the components of a vector.
+    struct Entry
+    {
+      std::string         name;
+      Quantity            quantity;
+      std::vector<double> values;
+      bool                is_vector;
+      AtEnd               at_end;
+
+      /// The name of the column of a value: name_x, name_y (, name_z) for
+      /// vectors.
+      std::string
+      column(const std::size_t value) const
+      {
+        return is_vector ? name + '_' + "xyz"[value] : name;
+      }
+    };
+
+    void
+    add(const std::string &name,
+        const double       value,
+        const Quantity     quantity = Quantity::pure_number,
+        const AtEnd        at_end   = AtEnd::absent)
+    {
+      entries.push_back({name, quantity, {value}, false, at_end});
+    }
+
+    template <typename VectorType>
+    void
+    add_vector(const std::string &name,
+               const VectorType  &value,
+               const unsigned int dim,
+               const Quantity     quantity,
+               const AtEnd        at_end = AtEnd::absent)
+    {
+      entries.push_back({name, quantity, {}, true, at_end});
+      for (unsigned int d = 0; d < dim; ++d)
+        entries.back().values.push_back(value[d]);
+    }
+
+    std::vector<Entry> entries;
+  };
+
+
+
   /**
    * A table written row by row as comma separated values: the first row fixes
    * the columns. Each row is flushed, so a run that is killed leaves what it
@@ -18,11 +83,11 @@ namespace Viscoplastic
   class Statistics
   {
   public:
-    /// What stands behind the name of a column in the first line.
-    using Label = std::function<std::string(const std::string &column)>;
-
+    /// Begin a table of a scene with these @p units in @p dim dimensions.
     /// Throws ExcMessage if @p file cannot be written.
-    Statistics(const std::string &file, const Label &label);
+    Statistics(const std::string &file,
+               const Units       &units,
+               const unsigned int dim);
 
     /**
      * Go on after the row of step @p last_step of a file, whose first column
@@ -31,35 +96,20 @@ namespace Viscoplastic
      */
     Statistics(const std::string &file, const unsigned int last_step);
 
-    /// Append a value to the present row; integers print as such.
+    /// Write a row; integers print as such. Throws ExcMessage if that fails,
+    /// e.g. on a full disk, or if the columns are not those of the rows before.
     void
-    add(const std::string &column, const double value);
-
-    /// Append a vector as column_x, column_y (, column_z).
-    template <typename VectorType>
-    void
-    add_vector(const std::string &column,
-               const VectorType  &value,
-               const unsigned int dim)
-    {
-      for (unsigned int d = 0; d < dim; ++d)
-        add(column + "_" + "xyz"[d], value[d]);
-    }
-
-    /// Write the row. Throws ExcMessage if that fails, e.g. on a full disk, or
-    /// if the columns are not those of the rows before.
-    void
-    end_row();
+    write(const StatisticsRow &row);
 
     /// Put all rows to disk. Throws ExcMessage.
     void
     synchronize();
 
   private:
-    std::string                                 name;
-    Label                                       label;
-    std::ofstream                               file;
-    std::vector<std::string>                    columns;
-    std::vector<std::pair<std::string, double>> row;
+    std::string              name;
+    Units                    units;
+    unsigned int             dim = 0;
+    std::ofstream            file;
+    std::vector<std::string> columns;
   };
 } // namespace Viscoplastic

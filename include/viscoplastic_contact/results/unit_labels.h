@@ -8,30 +8,25 @@
 
 namespace Viscoplastic
 {
-  /// What the results of a scene have behind the names of columns and fields:
-  /// " [MPa]", or nothing where the scene declares no units.
+  /// What a field of the body or of the contact face is, or one of its
+  /// components; a pure number if it has no unit.
+  Quantity
+  quantity_of_field(const std::string &name);
+
+  /// What an integral over a boundary or a material is, by the name that
+  /// FieldIntegrals gives it.
+  Quantity
+  quantity_of_integral(const std::string &name);
+
+  /// The estimates of cells are a root of energies, or of the quantity of
+  /// interest, which may be anything.
   template <int dim>
-  class UnitLabels
-  {
-  public:
-    explicit UnitLabels(const Scene<dim> &scene)
-      : scene(scene)
-    {}
+  Quantity
+  quantity_of_estimator(const Scene<dim> &scene);
 
-    /// Of a column of statistics.csv.
-    std::string
-    of_column(const std::string &name) const;
-
-    /// Of a field of the body or of the contact face.
-    std::string
-    of_field(const std::string &name) const;
-
-  private:
-    /// The estimates of cells are a root of energies, or of the quantity of
-    /// interest, which may be anything.
-    Quantity
-    of_estimator() const;
-
-    const Scene<dim> &scene;
-  };
+  /// What the results of a scene have behind the name of a field: " [MPa]", or
+  /// nothing where the scene declares no units.
+  template <int dim>
+  std::string
+  label_of_field(const Scene<dim> &scene, const std::string &name);
 } // namespace Viscoplastic

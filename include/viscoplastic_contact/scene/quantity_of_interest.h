@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/base/units.h>
 #include <viscoplastic_contact/scene/boundary_condition.h>
 
 #include <map>
@@ -34,6 +35,14 @@ namespace Viscoplastic
     is_sum() const
     {
       return kind == Kind::friction_dissipation;
+    }
+
+    Quantity
+    unit() const
+    {
+      return is_sum()                   ? Quantity::energy :
+             kind == Kind::displacement ? Quantity::length :
+                                          Quantity::force;
     }
 
     bool

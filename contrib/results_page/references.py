@@ -29,11 +29,11 @@ def load(runner):
     tests = str(program.SOURCE / "tests" / "regression")
     if tests not in sys.path:
         sys.path.insert(0, tests)
+    import shear_layer
     import test_pad
-    import test_shear_layer
     import test_slab
 
-    return test_slab, test_pad, test_shear_layer
+    return test_slab, test_pad, shear_layer
 
 
 def section(runner):

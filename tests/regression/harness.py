@@ -343,12 +343,33 @@ class TestCase(unittest.TestCase):
                 f"{relative * abs(wanted) + absolute:.3g}, at index {worst})"
             )
 
-    def assertRefused(self, process, *sentences):
-        """The run of run(..., check=False) has ended with these sentences."""
-        self.assertNotEqual(process.returncode, 0)
+    # What refused() changes: a scene, entries of it, and the text of one that is no
+    # file.
+    refused_scene = ("slab", {}, None)
+
+    def refused(self, changes, *sentences, ranks=1, scene=None):
+        """The finished run of the scene with these changes, which is refused."""
+        name, entries, text = self.refused_scene
+        if scene is not None:
+            name, text = scene, None
+        process = run(name, {**entries, **changes}, ranks, text, check=False)
+        self.assertRefused(process, *sentences, ranks=ranks)
+        return process
+
+    def assertRefused(self, process, *sentences, ranks=1):
+        """The run of run(..., check=False) has ended with code 1 and one sentence
+        that contains these texts, or what matches these patterns."""
+        self.assertEqual(process.returncode, 1, process.stdout)
+        self.assertNotIn("Stacktrace", process.stderr)
+        if ranks == 1:
+            lines = process.stderr.strip().splitlines()
+            self.assertEqual(len(lines), 1, process.stderr)
         words = " ".join(process.stderr.split())
         for sentence in sentences:
-            self.assertIn(sentence, words)
+            if isinstance(sentence, re.Pattern):
+                self.assertRegex(words, sentence)
+            else:
+                self.assertIn(sentence, words)
 
     def check_identities(self, result, tolerance=1e-10, balance=None):
         """The discrete identities that hold at every step of every scene.

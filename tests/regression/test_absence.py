@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """An effect that a scene does not have leaves no trace."""
 
-import unittest
-
 import numpy as np
 
 from harness import TestCase, main, run

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Adaptive meshes: identities after every step, hanging nodes on the contact."""
 
-import unittest
-
 import numpy as np
 
 from harness import TestCase, lattice, main, run

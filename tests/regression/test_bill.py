@@ -2,7 +2,6 @@
 """What the closing words say of effects: what each cost, and which never acted."""
 
 import re
-import unittest
 
 from harness import TestCase, main, run
 

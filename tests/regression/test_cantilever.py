@@ -7,8 +7,6 @@ elements with mean dilatation on 8, 16, 32 cells -3.6903, -3.6911, -3.6944;
 both tend to -3.696 (plus or minus 0.002).
 """
 
-import unittest
-
 from harness import TestCase, main, run
 
 FINE = -3.696

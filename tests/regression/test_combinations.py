@@ -12,8 +12,9 @@ import os
 import random
 
 from harness import main
-from test_restart import EVERY_STEP, Job, RestartCase
-from test_schemes import HARDENING, NORTON, PERZYNA, pressure
+from laws import HARDENING, NORTON, PERZYNA, pressure
+from runs import EVERY_STEP, Job
+from test_restart import RestartCase
 
 N_COMBINATIONS = int(os.environ.get("COMBINATIONS", 8))
 

@@ -287,9 +287,7 @@ class EverySolution(TestCase):
 
 
 class Refused(TestCase):
-    def refused(self, changes, *sentences):
-        process = run("bar", {**bar(2, 2, 1), **changes}, text="", check=False)
-        self.assertRefused(process, *sentences)
+    refused_scene = ("bar", bar(2, 2, 1), "")
 
     def test_sentences(self):
         law, compliance = "Boundary 2/Contact law", "Boundary 2/Compliance"

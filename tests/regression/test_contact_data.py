@@ -7,8 +7,6 @@ over a foundation at rest must give the same stresses, forces and energies at
 every step, and displacements that differ by the motion.
 """
 
-import unittest
-
 import numpy as np
 
 from harness import TestCase, main, run

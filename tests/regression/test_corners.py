@@ -6,12 +6,10 @@ everywhere, so the discrete answer is exact: a wrong normal, a lost constraint
 or a wrong share of the bound at the corner shows at once.
 """
 
-import unittest
-
 import numpy as np
 
 from harness import TestCase, main, run
-from test_rotation import rotation
+from runs import rotation
 
 
 class Corners(TestCase):

@@ -26,7 +26,8 @@ from harness import (
     study_command,
     study_environment,
 )
-from test_study import VERIFICATION, Folder
+from runs import Folder
+from test_study import VERIFICATION
 
 sys.path.insert(0, str(SOURCE / "contrib"))
 

@@ -3,13 +3,12 @@
 of two levels."""
 
 import csv
-import unittest
 
 import numpy as np
 
-from harness import SOURCE, TestCase, main, run
-from test_restart import EVERY_STEP, Job, without_wall_times
-from test_shear_layer import MU, THETA, tau
+from harness import TestCase, main, run
+from runs import EVERY_STEP, Job, manufactured, without_wall_times
+from shear_layer import MU, THETA, tau
 
 # of a plane scene on one mesh, with cell means
 PARTS = ("space", "history", "time", "algebraic", "initial")
@@ -32,19 +31,6 @@ ADAPTIVE = {
     "Mesh refinement/Maximal level": 2,
     "Solver/Linear solver": "multigrid",
 }
-
-
-def manufactured(name, law=None, **overrides):
-    """A scene of prm/verification/manufactured, perhaps with another law."""
-    folder = SOURCE / "prm" / "verification" / "manufactured"
-    text = (folder / f"{name}.prm").read_text()
-    if law is not None:
-        text = text.replace(
-            text[text.index("  set Law ") : text.index("end\n\n# the sides")],
-            "",
-        )
-        text += (folder / f"law_{law}.prm").read_text()
-    return run(name, {"Output/Fields every": 0, **overrides}, text=text)
 
 
 class LongCreep(TestCase):

@@ -5,7 +5,6 @@ like an answer."""
 
 import subprocess
 import tempfile
-import unittest
 from pathlib import Path
 
 from harness import EXECUTABLE, MPIRUN, TestCase, main, run, scene_file

@@ -21,18 +21,10 @@ rounding of the VTU files (1e-7).
 import numpy as np
 
 from harness import TestCase, main, run
+from runs import entries
 
 # E* of the scenes with E = 1
 STIFFNESS = {nu: 1 / (1 - nu**2) for nu in (0.3, 0.49)}
-
-
-def entries(boundaries, values):
-    """The same entries of several boundaries."""
-    return {
-        f"Boundary {side}/{name}": value
-        for side in boundaries
-        for name, value in values.items()
-    }
 
 
 class Profile:

@@ -5,8 +5,6 @@ The fields lie in the finite element space, so the program must reproduce the
 answer of the scheme to solver tolerance.
 """
 
-import unittest
-
 import numpy as np
 
 from harness import TestCase, main, run

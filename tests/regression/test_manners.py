@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import tempfile
-import unittest
 from pathlib import Path
 
 from harness import EXECUTABLE, MPIRUN, SOURCE, TestCase, main, scene_file

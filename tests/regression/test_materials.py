@@ -5,127 +5,22 @@ The recursions are written here from the formulas of doc/parameters.md and
 doc/method.md, with full 3x3 tensors, and share nothing with the program.
 """
 
-import unittest
-
+import re
 import numpy as np
 
 from harness import TestCase, main, run
-
-IDENTITY = np.eye(3)
-
-
-def dev(tensor):
-    return tensor - np.trace(tensor) / 3 * IDENTITY
-
-
-def norm(tensor):
-    return np.sqrt(np.sum(tensor * tensor))
-
-
-def isotropic(youngs_modulus, poissons_ratio):
-    """E and its inverse as functions of tensors."""
-    mu = youngs_modulus / (2 * (1 + poissons_ratio))
-    bulk = youngs_modulus / (3 * (1 - 2 * poissons_ratio))
-    return (
-        lambda e: 2 * mu * dev(e) + bulk * np.trace(e) * IDENTITY,
-        lambda s: dev(s) / (2 * mu) + np.trace(s) / (9 * bulk) * IDENTITY,
-    )
-
-
-E, E_INVERSE = isotropic(1, 0.25)
-SOFT, _ = isotropic(0.4, 0.2)
-
-
-def maxwell(stress, strain, x, t):
-    return -E(dev(stress)) / (2 * 0.5)
-
-
-def perzyna(stress, strain, x, t):
-    radius = 0.02 + 0.3 * np.sqrt(2 / 3) * norm(dev(strain - E_INVERSE(stress)))
-    size = norm(dev(stress))
-    return -E(max(0, 1 - radius / size) * dev(stress)) / 0.8 if size else 0 * E(stress)
-
-
-def zener(stress, strain, x, t):
-    return -(stress - SOFT(strain)) / 0.7
-
-
-def elastic_in_pressure(stress, strain, x, t):
-    """zener with K_inf = K, mu_inf = mu/2."""
-    return -(stress - isotropic(6 / 11, 4 / 11)[0](strain)) / 0.7
-
-
-def power(equivalent):
-    """A sigma^n, continued by its tangent beyond the cap of 0.03."""
-    a, n, cap = 2000.0, 3.0, 0.03
-    if equivalent <= cap:
-        return a * equivalent**n
-    return a * cap**n + a * n * cap ** (n - 1) * (equivalent - cap)
-
-
-def flow(rate, stress):
-    equivalent = np.sqrt(1.5) * norm(dev(stress))
-    if equivalent == 0:
-        return 0 * stress
-    return -E(rate(equivalent) * 1.5 * dev(stress) / equivalent)
-
-
-def norton(stress, strain, x, t):
-    return flow(power, stress)
-
-
-def parsed(stress, strain, x, t):
-    """sinh creep with pressure, hardening and ageing."""
-    pressure = -np.trace(stress) / 3
-    creep = np.sqrt(2 / 3) * norm(dev(strain - E_INVERSE(stress)))
-    return flow(
-        lambda q: (1 + 0.5 * t) * 0.5 * np.sinh(8 * q)
-        * np.exp(-pressure) / (1 + 5 * creep),
-        stress,
-    )
-
-
-LAWS = {
-    "maxwell": (maxwell, {"Viscosity": 0.5}),
-    "perzyna": (
-        perzyna,
-        {"Yield radius": 0.02, "Hardening modulus": 0.3, "Viscosity": 0.8},
-    ),
-    "zener": (
-        zener,
-        {
-            "Relaxation time": 0.7,
-            "Long-term Young's modulus": 0.4,
-            "Long-term Poisson's ratio": 0.2,
-        },
-    ),
-    "norton": (norton, {"Rate factor": 2000, "Exponent": 3, "Stress cap": 0.03}),
-    "parsed": (
-        parsed,
-        {
-            "Strain rate": "0.5*sinh(8*sigma_eq)"
-            "*exp(-p)/(1 + 5*eps_eq)",
-            "Factor": "1 + 0.5*t",
-        },
-    ),
-}
-
-
-def displacement_gradient(t, dim):
-    f = min(t, 2 - t)
-    gradient = np.zeros((3, 3))
-    gradient[:2, :2] = f * np.array([[0.1, 0.04], [0.02, -0.07]])
-    if dim == 3:
-        gradient[2] = f * np.array([0.03, 0, 0.05])
-    return gradient
-
-
-THREE = {
-    "Dimension": 3,
-    "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : false",
-    "Boundary 0/Displacement": "min(t, 2 - t)*(0.1*x + 0.04*y); "
-    "min(t, 2 - t)*(0.02*x - 0.07*y); min(t, 2 - t)*(0.03*x + 0.05*z)",
-}
+from laws import (
+    E,
+    E_INVERSE,
+    IDENTITY,
+    LAWS,
+    SOFT,
+    THREE,
+    dev,
+    displacement_gradient,
+    elastic_in_pressure,
+    norm,
+)
 
 
 class UniformStrain(TestCase):
@@ -450,28 +345,29 @@ class ManyMaterials(TestCase):
 class Refused(TestCase):
     """Each wrong datum of a material gives one sentence, and no results."""
 
-    def refused(self, pattern, scene="uniform_strain", **overrides):
-        result = run(scene, overrides, check=False)
-        self.assertEqual(result.returncode, 1, result.stdout)
-        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
-        self.assertRegex(result.stderr, pattern)
-        self.assertFalse(result.directory.exists(), "results were written")
+    refused_scene = ("uniform_strain", {}, None)
+
+    def refused(self, *arguments, **options):
+        process = super().refused(*arguments, **options)
+        self.assertFalse(process.directory.exists(), "results were written")
 
     def test_long_term_modulus_beyond_the_elastic_one(self):
         self.refused(
-            r"'Material/zener/Long-term Young's modulus' = 1\.2 with Poisson's ratio "
-            r"0\.3 makes the body stiffer in the long term than at once, at x = ",
-            **{"Material/Law": "zener",
-               "Material/zener/Long-term Young's modulus": 1.2},
+            {"Material/Law": "zener",
+             "Material/zener/Long-term Young's modulus": 1.2},
+            re.compile(
+                r"'Material/zener/Long-term Young's modulus' = 1\.2 with Poisson's ratio "
+                r"0\.3 makes the body stiffer in the long term than at once, at x = "
+            ),
         )
 
     def test_long_term_modulus_beyond_the_elastic_one_somewhere(self):
         """Where E falls below it, at x > 1/2."""
         self.refused(
-            r"stiffer in the long term than at once, at x = \(0\.60",
-            **{"Material/Law": "zener",
-               "Material/Young's modulus": "1.2 - x",
-               "Material/zener/Long-term Young's modulus": 0.5},
+            {"Material/Law": "zener",
+             "Material/Young's modulus": "1.2 - x",
+             "Material/zener/Long-term Young's modulus": 0.5},
+            re.compile(r"stiffer in the long term than at once, at x = \(0\.60"),
         )
 
     def test_long_term_modulus_beyond_the_elastic_one_at_a_quadrature_point(self):
@@ -480,18 +376,18 @@ class Refused(TestCase):
         for time in ("1", "1 + t"):
             with self.subTest(time):
                 self.refused(
-                    r"stiffer in the long term than at once, at x = \(0\.89",
-                    **{"Material/Law": "zener",
+                    {"Material/Law": "zener",
                        "Material/Stress history": "quadrature points",
                        "Material/zener/Long-term Young's modulus": "0.5 + 0.6*x",
                        "Material/zener/Long-term Poisson's ratio": 0.25,
                        "Material/zener/Relaxation time": time},
+                    re.compile(r"stiffer in the long term than at once, at x = \(0\.89"),
                 )
 
     def test_negative_viscosity(self):
         self.refused(
+            {"Material/Law": "maxwell", "Material/maxwell/Viscosity": -2},
             "'Material/maxwell/Viscosity' is -2; it must be positive",
-            **{"Material/Law": "maxwell", "Material/maxwell/Viscosity": -2},
         )
 
     def test_viscosity_that_becomes_negative(self):
@@ -512,59 +408,64 @@ class Refused(TestCase):
 
     def test_poissons_ratio_of_an_incompressible_body(self):
         self.refused(
-            r"'Material/Poisson's ratio' is 0\.5; it must be .* smaller than 0\.5",
-            **{"Material/Poisson's ratio": 0.5},
+            {"Material/Poisson's ratio": 0.5},
+            re.compile(r"'Material/Poisson's ratio' is 0\.5; it must be .* smaller than 0\.5"),
         )
 
     def test_youngs_modulus_of_zero_somewhere(self):
         self.refused(
-            r"'Material/Young's modulus' is 0 at x = \(0\.25 .*; it must be positive",
-            **{"Material/Young's modulus": "x - 0.25"},
+            {"Material/Young's modulus": "x - 0.25"},
+            re.compile(r"'Material/Young's modulus' is 0 at x = \(0\.25 .*; it must be positive"),
         )
 
     def test_indefinite_voigt_matrix(self):
         matrix = np.diag([1.0, 1, 1, 1, 1, 1])
         matrix[0, 1] = matrix[1, 0] = 1.5
         self.refused(
-            "'Material/Voigt matrix'.*smallest eigenvalue.* is -0.5,",
-            **{**Anisotropy.NO_MODULI,
-               "Material/Voigt matrix": Anisotropy.text(matrix)},
+            {**Anisotropy.NO_MODULI,
+             "Material/Voigt matrix": Anisotropy.text(matrix)},
+            re.compile("'Material/Voigt matrix'.*smallest eigenvalue.* is -0.5,"),
         )
 
     def test_plane_strain_with_coupling_out_of_the_plane(self):
         matrix = np.diag([1.0, 1, 1, 1, 1, 1])
         matrix[0, 4] = matrix[4, 0] = 0.2
         self.refused(
+            {**Anisotropy.NO_MODULI,
+             "Material/Voigt matrix": Anisotropy.text(matrix)},
             "'Material/Voigt matrix': the entry in row 1, column 5 couples "
             "deformations in the plane with shear out of it",
-            **{**Anisotropy.NO_MODULI,
-               "Material/Voigt matrix": Anisotropy.text(matrix)},
         )
 
     def test_norton_without_a_cap(self):
-        self.refused("'Material/norton/Stress cap' is not given", **{"Material/Law": "norton"})
+        self.refused(
+            {"Material/Law": "norton"},
+            "'Material/norton/Stress cap' is not given",
+        )
 
     def test_negative_creep_rate(self):
         self.refused(
-            r"'Material/parsed/Strain rate' is -0\.1 at sigma_eq = 0, .*it must be "
-            "zero or positive",
-            **{"Material/Law": "parsed",
-               "Material/parsed/Strain rate": "0.1 - sigma_eq - 0.2"},
+            {"Material/Law": "parsed",
+             "Material/parsed/Strain rate": "0.1 - sigma_eq - 0.2"},
+            re.compile(
+                r"'Material/parsed/Strain rate' is -0\.1 at sigma_eq = 0, .*it must be "
+                "zero or positive"
+            ),
         )
 
     def test_material_id_without_material(self):
         self.refused(
+            {"Geometry/Material ids": "if(y < 0.5, 1, 3)"},
             "material id 3, but there is no `subsection Material 3'",
             scene="layers",
-            **{"Geometry/Material ids": "if(y < 0.5, 1, 3)"},
         )
 
     def test_elasticity_beside_numbered_materials(self):
         """A modulus that nobody would use."""
         self.refused(
+            {"Material/Young's modulus": 5},
             "'Material/Young's modulus' cannot be set beside 'Material 1'",
             scene="layers",
-            **{"Material/Young's modulus": 5},
         )
 
     def test_material_that_no_cell_has(self):
@@ -579,8 +480,8 @@ class Refused(TestCase):
     def test_first_step_beyond_the_stability_limit(self):
         """2/r = 2 eta/mu = 2.5."""
         self.refused(
-            r"Step 1 \(t = 3\): the time step 3 exceeds the stability limit 2/r = 2\.5 of",
-            **{"Material/Law": "maxwell", "Time/Phases": "6: 2"},
+            {"Material/Law": "maxwell", "Time/Phases": "6: 2"},
+            re.compile(r"Step 1 \(t = 3\): the time step 3 exceeds the stability limit 2/r = 2\.5 of"),
         )
 
 

@@ -17,7 +17,7 @@ compared.
 import numpy as np
 
 from harness import DEFECTS, EFFORT, TestCase, main, run
-from test_hertz import entries
+from runs import entries
 
 # rubbing_2d.prm in space: a block of 4 x 4 x 3 cells that turns as it slides
 IN_SPACE = {

@@ -5,7 +5,6 @@ import os
 import resource
 import subprocess
 import tempfile
-import unittest
 from pathlib import Path
 
 import numpy as np

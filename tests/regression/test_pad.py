@@ -5,8 +5,6 @@ Same discretisation, equal meshes; 1e-3 is the agreement asked of 3D scenes,
 where the direction of slip is found only to the solver's tolerance.
 """
 
-import unittest
-
 import numpy as np
 
 from harness import TestCase, main, run

@@ -10,7 +10,7 @@ import numpy as np
 
 import test_fields
 from harness import TestCase, main, run
-from test_restart import Job, without_wall_times
+from runs import Job, without_wall_times
 
 BODY_FIELDS = (
     "velocity, stress, von Mises stress, irreversible stress, total strain, "

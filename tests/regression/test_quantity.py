@@ -6,8 +6,7 @@ import functools
 import numpy as np
 
 from harness import TestCase, main, run
-from test_error_bar import manufactured
-from test_restart import EVERY_STEP, Job, without_wall_times
+from runs import EVERY_STEP, Job, manufactured, without_wall_times
 
 # What cell means leave out of the history is known without its sign only.
 POINTS = {"Material/Stress history": "quadrature points"}

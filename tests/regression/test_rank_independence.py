@@ -14,12 +14,10 @@ import dataclasses
 import os
 import re
 import sys
-import unittest
 
 from harness import SOURCE, TestCase, main, run, scene_file
+from runs import Folder, Job
 from rank_comparison import compare
-from test_restart import Job
-from test_study import Folder
 
 RANKS = 1, 2, 3, 4
 AGREE = 1e-7  # of the largest value of a column

@@ -18,25 +18,14 @@ import signal
 import subprocess
 import tempfile
 import time
-import unittest
 import zlib
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
 
-from harness import (
-    DEFECTS,
-    EFFORT,
-    EXECUTABLE,
-    Run,
-    TestCase,
-    as_prm,
-    launcher,
-    main,
-    run_program,
-    scene_file,
-)
+from harness import DEFECTS, EFFORT, TestCase, main
+from runs import EVERY_STEP, Job, without_wall_times
 
 N_KILLS = int(os.environ.get("RESTART_KILLS", 6))
 N_MUTATIONS = int(os.environ.get("RESTART_MUTATIONS", 12))
@@ -46,7 +35,6 @@ SLAB = {
     "Time/Phases": "1: 8, 2: 8",
     "Output/Fields every": 3,
 }
-EVERY_STEP = {"Checkpoint/Every n steps": 1, "Checkpoint/Keep": 1000}
 
 
 class Process:
@@ -68,85 +56,6 @@ def processes(condition):
             if condition(Process(pid)):
                 result.append(int(pid))
     return result
-
-
-class Job:
-    """A scene in a directory of its own, to be run several times."""
-
-    def __init__(self, scene, overrides=None, copy_of=None):
-        self.work = Path(tempfile.mkdtemp(prefix=f"restart_{scene}_"))
-        self.results = self.work / "results"
-        self.checkpoints = self.results / "checkpoint"
-        self.scene = scene
-        self.overrides = dict(overrides or {})
-        if copy_of is not None:
-            shutil.copytree(copy_of.results, self.results)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.work, ignore_errors=True)
-
-    def arguments(self, *options, **overrides):
-        file = self.work / f"{self.scene}.prm"
-        file.write_text(scene_file(self.scene).read_text())
-        variant = self.work / "overrides.prm"
-        variant.write_text(
-            as_prm(
-                {
-                    "Output/Directory": self.results,
-                    **self.overrides,
-                    **{k.replace("__", "/"): v for k, v in overrides.items()},
-                }
-            )
-        )
-        return [*options, str(file), str(variant)]
-
-    def start(self, *options, ranks=1, **arguments):
-        return subprocess.Popen(
-            [*launcher(ranks), EXECUTABLE, *self.arguments(*options)],
-            cwd=self.work,
-            env={**os.environ, "OMP_NUM_THREADS": "1"},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            errors="replace",
-            **arguments,
-        )
-
-    def run(self, *options, code=0, ranks=1, overrides=None):
-        process = run_program(
-            self.arguments(*options, **(overrides or {})), ranks, self.work
-        )
-        if code is not None and process.returncode != code:
-            raise AssertionError(
-                f"{self.scene} {options}: exit code {process.returncode}, not "
-                f"{code}:\n{process.stdout[-1000:]}\n{process.stderr[-3000:]}"
-            )
-        return Run(self.results, process)
-
-    def steps(self):
-        return sorted(
-            int(path.name[5:])
-            for path in self.checkpoints.glob("step_*")
-            if path.name[5:].isdigit()
-        )
-
-    def step(self, n):
-        return self.checkpoints / f"step_{n:06}"
-
-    def forget_after(self, n):
-        """As if the run had been killed before the next checkpoint."""
-        for later in self.steps():
-            if later > n:
-                shutil.rmtree(self.step(later))
-
-
-def without_wall_times(file):
-    rows = [line.split(",") for line in file.read_text().splitlines()]
-    keep = [i for i, name in enumerate(rows[0]) if not name.startswith("wall_")]
-    return [[row[i] for i in keep] for row in rows]
 
 
 def without_comments(file):

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+import shear_layer
 import synthetic_study as synthetic
 import test_pad
-import test_shear_layer
 import test_slab
 from harness import EXECUTABLE, SOURCE, TestCase, main
 
@@ -396,7 +396,7 @@ class References(TestCase):
             *references.slab_rows(test_slab, 16),
             *references.block_rows(test_slab, 32),
             *references.pad_rows(test_pad, 8),
-            *references.layer_rows(test_shear_layer, 8, 20),
+            *references.layer_rows(shear_layer, 8, 20),
         ]
         self.assertEqual(len(rows), 12 + 3 + 6 + 2)
         for row in rows:

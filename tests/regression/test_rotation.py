@@ -7,25 +7,12 @@ tolerance is 1e-10 in the energy norm, so forces and displacements agree to
 some 1e-8 of their maximum.
 """
 
-import unittest
-
 import numpy as np
 
 from harness import DEFECTS, EFFORT, TestCase, main, run
+from runs import rotation
 
 AGREE = 1e-7
-
-
-def rotation(degrees, axis=None):
-    """Rotation matrix: about z in 2D, about axis in 3D (Rodrigues)."""
-    angle = np.radians(degrees)
-    if axis is None:
-        return np.array(
-            [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
-        )
-    x, y, z = np.array(axis) / np.linalg.norm(axis)
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def expressions(matrix, components):

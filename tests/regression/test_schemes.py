@@ -6,16 +6,26 @@ with the program: the implicit equation is solved here by Newton's method with
 differences.
 """
 
-import unittest
-
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from harness import TestCase, main, run
+from laws import (
+    E,
+    HARDENING,
+    LAWS,
+    NORTON,
+    PERZYNA,
+    SOFT,
+    THREE,
+    dev,
+    displacement_gradient,
+    norm,
+    pressure,
+)
+from runs import EVERY_STEP, Job, without_wall_times
+from shear_layer import MU, THETA, layer, tau
 from rank_comparison import Comparison, compare_columns
-from test_materials import LAWS, SOFT, THREE, E, dev, displacement_gradient, norm
-from test_restart import EVERY_STEP, Job, without_wall_times
-from test_shear_layer import MU, THETA, layer, tau
 
 COMPONENTS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
@@ -338,21 +348,6 @@ class ShearLayer(TestCase):
         self.assertClose(result["friction_force_x"][-1], 0.1, absolute=1e-8)
 
 
-PERZYNA = {
-    "Material/Law": "perzyna",
-    "Material/perzyna/Yield radius": 0.12,
-    "Material/perzyna/Viscosity": 0.02,
-    "Boundary 0/Traction": "0.15*min(t, 1); 0",
-}
-NORTON = {
-    "Material/Law": "norton",
-    "Material/norton/Rate factor": 200,
-    "Material/norton/Exponent": 3,
-    "Material/norton/Stress cap": 1,
-}
-HARDENING = {**PERZYNA, "Material/perzyna/Hardening modulus": 0.3}
-
-
 class Slab(TestCase):
     """Friction and flow together, a front that moves and a reversal."""
 
@@ -464,17 +459,6 @@ class Slab(TestCase):
             "backward Euler", 8, **NORTON, **{"Solver/Linear solver": "multigrid"}
         )
         self.compare(direct, multigrid)
-
-
-def pressure(k_r, k):
-    """Yield stress and friction between grains: flow that depends on pressure
-    but preserves volume, so that its tangent is far from symmetric. r is
-    3 mu F."""
-    return {
-        "Material/Law": "parsed",
-        "Material/parsed/Strain rate": "max(0, sigma_eq - max(0, 0.1 + p))",
-        "Material/parsed/Factor": k_r / k / (3 / 2.6),
-    }
 
 
 def hardening(k_r, k, modulus=0.1):

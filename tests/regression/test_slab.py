@@ -6,8 +6,6 @@ contact operator, so equal meshes give equal numbers: the tolerance 1e-4 leaves
 room for the seven decimals of the table and nothing else.
 """
 
-import unittest
-
 import numpy as np
 
 from harness import TestCase, main, run

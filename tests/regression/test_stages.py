@@ -2,6 +2,7 @@
 """Initial states from which displacements count, and materials that are added
 or removed."""
 
+import re
 import tempfile
 from pathlib import Path
 
@@ -307,10 +308,7 @@ class Reset(TestCase):
 
 
 class Refused(TestCase):
-    def refused(self, overrides, pattern):
-        process = run("excavated_column", overrides, check=False)
-        self.assertNotEqual(process.returncode, 0)
-        self.assertRegex(process.stderr.replace("\n", " "), pattern)
+    refused_scene = ("excavated_column", {}, None)
 
     def test_what_cannot_be(self):
         for overrides, pattern in [
@@ -352,7 +350,7 @@ class Refused(TestCase):
             ),
         ]:
             with self.subTest(overrides):
-                self.refused(overrides, pattern)
+                self.refused(overrides, re.compile(pattern))
 
     def test_a_reset_of_nothing(self):
         result = run(

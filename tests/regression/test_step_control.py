@@ -7,13 +7,12 @@ given its accepted steps as phases of one step each.
 """
 
 import re
-import unittest
 
 import numpy as np
 
 from harness import EFFORT, TestCase, main, run
-from test_restart import EVERY_STEP, Job, without_wall_times
-from test_schemes import NORTON, PERZYNA
+from laws import NORTON, PERZYNA
+from runs import EVERY_STEP, Job, without_wall_times
 
 CONTROL = {"Step control/Tolerance": 0.02}
 SMALL = {
@@ -565,40 +564,38 @@ class Restart(TestCase):
 
 
 class Refused(TestCase):
-    def refused(self, pattern, *options, **overrides):
-        result = run("slab", {**CONTROL, **overrides}, check=False)
-        self.assertEqual(result.returncode, 1, result.stdout)
-        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
-        self.assertRegex(result.stderr, pattern)
+    refused_scene = ("slab", CONTROL, None)
 
     def test_entries(self):
         self.refused(
+            {"Error control/Error bar": "false"},
             r"'Step control/Tolerance' needs an estimate of the error; set 'Error "
             r"control/Error bar' = true",
-            **{"Error control/Error bar": "false"},
         )
         self.refused(
-            r"'Step control/Landing times': '3' is not a time between 0 and 2\.",
-            **{"Step control/Landing times": "1, 3"},
+            {"Step control/Landing times": "1, 3"},
+            re.compile(r"'Step control/Landing times': '3' is not a time between 0 and 2\."),
         )
         self.refused(
-            r"'Step control/Landing times': 'soon' is not a time between 0 and 2\.",
-            **{"Step control/Landing times": "soon"},
+            {"Step control/Landing times": "soon"},
+            re.compile(r"'Step control/Landing times': 'soon' is not a time between 0 and 2\."),
         )
         self.refused(
+            {"Step control/Landing times": "1", "Step control/Tolerance": 0},
             r"'Step control/Landing times' are given, but the steps are those of",
-            **{"Step control/Landing times": "1", "Step control/Tolerance": 0},
         )
         self.refused(
-            r"'Step control/Smallest step' = 0\.1 is larger than 'Step control/Largest "
-            r"step' = 0\.01",
-            **{"Step control/Smallest step": 0.1, "Step control/Largest step": 0.01},
+            {"Step control/Smallest step": 0.1, "Step control/Largest step": 0.01},
+            re.compile(
+                r"'Step control/Smallest step' = 0\.1 is larger than 'Step control/Largest "
+                r"step' = 0\.01"
+            ),
         )
 
     def test_divisions_without_end(self):
         self.refused(
-            r"The stability limit 2/r = \S+ at t = 0 would take \S+ steps until",
-            **{"Material/maxwell/Viscosity": 1e-12},
+            {"Material/maxwell/Viscosity": 1e-12},
+            re.compile(r"The stability limit 2/r = \S+ at t = 0 would take \S+ steps until"),
         )
 
 

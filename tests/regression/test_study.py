@@ -2,30 +2,18 @@
 """Studies: ladders of runs, what follows from them, and how they go on after
 an interruption; prices of errors."""
 
-import csv
 import fcntl
 import json
 import re
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-from pathlib import Path
 
 import numpy as np
 
-from harness import (
-    SOURCE,
-    TestCase,
-    as_prm,
-    main,
-    run_program,
-    run_study,
-    study_command,
-    study_environment,
-)
+from harness import SOURCE, TestCase, main, study_command, study_environment
+from runs import TEXTS, Folder
 
 sys.path[:0] = [str(SOURCE / "contrib"), str(SOURCE / "contrib" / "python")]
 
@@ -43,68 +31,11 @@ NUMBERS = (
     "seconds_errors,seconds_checkpoint,seconds_rest,"
     "peak_memory_MB,contact_iterations,linear_iterations"
 ).split(",")
-TEXTS = "run,strategy,scheme,history,solver,ladder".split(",")
 ERRORS = "error_energy,error_h1,error_stress,error_multiplier".split(",")
 ESTIMATES = (
     "estimate_space,estimate_time,estimate_algebraic,estimate_initial,"
     "estimate_total,effectivity,effectivity_recovery,estimate_quantity"
 ).split(",")
-
-
-class Folder:
-    """A working directory with a scene and what runs leave there."""
-
-    def __init__(self, scene, **overrides):
-        self.work = Path(tempfile.mkdtemp(prefix="study_"))
-        self.scene = scene
-        self.variant = self.work / "overrides.prm"
-        self.results = self.work / "results"
-        self.study = self.results / "study"
-        self.overrides = {"Output/Directory": self.results}
-        self.set(**overrides)
-
-    def set(self, **overrides):
-        self.overrides.update(
-            {k.replace("__", "/").replace("_", " "): v for k, v in overrides.items()}
-        )
-        self.variant.write_text(as_prm(self.overrides))
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.work, ignore_errors=True)
-
-    def arguments(self, *arguments):
-        return [*arguments, str(self.scene), str(self.variant)]
-
-    def run(self, *arguments, ranks=1):
-        """Of the scene, or study, effects and price."""
-        is_study = arguments and arguments[0] in ("study", "effects", "price")
-        call = run_study if is_study else run_program
-        return call(self.arguments(*arguments), ranks, self.work)
-
-    def rows(self):
-        with open(self.study / "study.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-        return [
-            {k: v if k in TEXTS else float(v) for k, v in row.items()} for row in rows
-        ]
-
-    def ladder(self, name, **choice):
-        rows = [
-            row
-            for row in self.rows()
-            if row["ladder"] == name and all(row[k] == v for k, v in choice.items())
-        ]
-        return sorted(rows, key=lambda row: row["mesh_level"] + row["time_level"])
-
-    def finished(self):
-        """{run: what tells its result.json from another one}"""
-        return {
-            file.parent.name: (file.stat().st_ino, file.stat().st_mtime_ns)
-            for file in self.study.glob("*/result.json")
-        }
 
 
 def announced(text):

@@ -4,8 +4,7 @@
 import numpy as np
 
 from harness import TestCase, main, run
-from test_error_bar import manufactured
-from test_restart import EVERY_STEP, Job, without_wall_times
+from runs import EVERY_STEP, Job, manufactured, without_wall_times
 
 # The scenes of the paper keep cell means, whose errors no later mesh mends.
 POINTS = {"Material/Stress history": "quadrature points"}
@@ -299,29 +298,23 @@ class Twice(TestCase):
 
 
 class Refused(TestCase):
-    def refused(self, pattern, *options, **overrides):
-        result = run(
-            "slab", {**COARSE_SLAB, **to(0.1), **overrides}, check=False
-        )
-        self.assertEqual(result.returncode, 1, result.stdout)
-        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
-        self.assertRegex(result.stderr, pattern)
+    refused_scene = ("slab", {**COARSE_SLAB, **to(0.1)}, None)
 
     def test_contradictions(self):
         self.refused(
+            {"Error control/Error bar": "false"},
             r"'Error control/Tolerance' needs an estimate of the error; set 'Error "
             r"control/Error bar' = true",
-            **{"Error control/Error bar": "false"},
         )
         self.refused(
+            {"Step control/Tolerance": 0.01},
             r"'Error control/Tolerance' chooses the steps, too; set 'Step "
             r"control/Tolerance' = 0",
-            **{"Step control/Tolerance": 0.01},
         )
         self.refused(
+            {"Mesh refinement/Strategy": "kelly"},
             r"refines by the estimate of the error; set 'Mesh refinement/Strategy' = "
             r"residual, or none",
-            **{"Mesh refinement/Strategy": "kelly"},
         )
 
 

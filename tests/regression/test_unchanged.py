@@ -4,12 +4,10 @@
 They are compared with the full evaluation, `Solver/Reuse unchanged = false'.
 """
 
-import unittest
-
 import numpy as np
 
 from harness import TestCase, main, run
-from test_restart import EVERY_STEP, Job
+from runs import EVERY_STEP, Job
 
 FULL = {"Solver/Reuse unchanged": "false"}
 # Loads grow for two steps and are held for three; then they are another.

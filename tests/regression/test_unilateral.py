@@ -5,8 +5,6 @@ Small scenes against an independent solver of the same discretisation
 (independent_contact.py), which shares no algorithm with the program.
 """
 
-import unittest
-
 import numpy as np
 
 import independent_contact
@@ -783,9 +781,7 @@ class Refused(TestCase):
         "Time/Phases": "1: 2",
     }
 
-    def refused(self, changes, *sentences):
-        process = run("plate", {**self.PLATE, **changes}, text="", check=False)
-        self.assertRefused(process, *sentences)
+    refused_scene = ("plate", PLATE, "")
 
     def test_laws_that_do_not_go_together(self):
         law, friction = "Boundary 2/Contact law", "Boundary 2/Friction law"

@@ -68,7 +68,8 @@ namespace Viscoplastic
 
 
 
-    /// All but the truncation, which has values at nodes.
+    /// Exchange the state of the preconditioner but for its truncation, which
+    /// has values at nodes.
     template <typename Archive>
     void
     exchange_preconditioner(Archive                            &archive,

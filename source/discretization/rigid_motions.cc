@@ -195,10 +195,10 @@ namespace Viscoplastic
     struct BodyParts
     {
       unsigned int n = 1;
-      /// Those that each boundary node belongs to, by its position in the list
-      /// of boundary nodes.
+      /// The parts that each boundary node belongs to, by its position in the
+      /// list of boundary nodes.
       std::vector<std::set<unsigned int>> of_node;
-      /// That of each cell of the coarse mesh; empty without stages.
+      /// The part of each cell of the coarse mesh; empty without stages.
       std::vector<unsigned int> of_cell;
     };
 

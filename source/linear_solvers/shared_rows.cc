@@ -65,7 +65,7 @@ namespace Viscoplastic
 
 
 
-    /// The same for equal blocks.
+    /// A hash, the same for equal blocks.
     template <int dim, typename Number>
     std::size_t
     key(const PackedBlock<dim, Number> &block)

@@ -36,7 +36,7 @@ namespace Viscoplastic
       }
     };
 
-    /// As benchmarks/results.md has them.
+    /// Costs measured on one machine, as benchmarks/results.md has them.
     Costs
     costs(const unsigned int dim)
     {

@@ -21,9 +21,10 @@ namespace Viscoplastic
     /// A part of an expression.
     struct Value
     {
-      /// None where numbers without unit make it fit anything.
+      /// The dimension of the value; none where numbers without unit make it
+      /// fit anything.
       std::optional<Dimension> dimension;
-      /// Of a constant, for exponents, whatever the dimension.
+      /// The value of a constant, which exponents need, whatever its dimension.
       std::optional<double> number = {};
     };
 
@@ -113,7 +114,7 @@ namespace Viscoplastic
         return false;
       }
 
-      /// Of two that have to be equal.
+      /// The value of two operands that have to have the same dimension.
       Value
       common(const Value &a, const Value &b, const std::size_t begin) const
       {
@@ -317,7 +318,8 @@ namespace Viscoplastic
         return anything; // sign, columns of tables, what muParser will refuse
       }
 
-      /// One more part within a part, as long as it is read.
+      /// Counts the parts within parts that are being read, as long as it
+      /// lives.
       struct Level
       {
         explicit Level(DimensionReader &reader)

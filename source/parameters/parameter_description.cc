@@ -161,8 +161,8 @@ namespace Viscoplastic
 
     // ------------------------------------------------------ parameter file
 
-    /// With @p explain, every entry and its comments; without, those that
-    /// differ from their defaults. Lines begin with @p margin.
+    /// Print a section. With @p explain, every entry and its comments; without,
+    /// those that differ from their defaults. Lines begin with @p margin.
     void
     print_section(std::ostream      &out,
                   const Tree        &section,
@@ -206,7 +206,7 @@ namespace Viscoplastic
 
 
 
-    /// All entries with their defaults, commented out.
+    /// Print all entries with their defaults, commented out.
     void
     print_template(std::ostream      &out,
                    const Tree        &section,

@@ -77,7 +77,7 @@ namespace Viscoplastic
     {
       std::size_t begin, end_of_number;
       UnitInText  found;
-      /// As in `25MPa'.
+      /// Whether the blank between number and unit is missing, as in `25MPa'.
       bool lacks_blank;
     };
 

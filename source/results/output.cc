@@ -51,7 +51,7 @@ namespace Viscoplastic
 
 
 
-    /// Those of Gamma_3, but for the displacement.
+    /// The fields of Gamma_3 but for the displacement.
     template <int dim>
     std::set<RecordedField>
     fields_of_contact(const Scene<dim> &scene, const ContactFace<dim> *face)

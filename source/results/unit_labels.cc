@@ -47,7 +47,7 @@ namespace Viscoplastic
 
 
 
-    /// Of an integral over a boundary or a material.
+    /// What an integral over a boundary or a material is.
     Quantity
     integrated(const Quantity quantity, const bool is_of_boundary)
     {

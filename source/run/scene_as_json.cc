@@ -53,7 +53,7 @@ namespace Viscoplastic
 
 
 
-    /// Of meshes, libraries and tables.
+    /// A checksum of all meshes, libraries and tables that the scene reads.
     unsigned int
     checksum_of_files(const Parameters &scene)
     {

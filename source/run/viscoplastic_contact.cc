@@ -18,7 +18,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// That of all ranks together in MB, now and at the most.
+    /// The memory of all ranks together in MB, now and at the most.
     std::pair<double, double>
     memory_of_ranks(const MPI_Comm communicator)
     {

@@ -112,7 +112,7 @@ namespace Viscoplastic
         return n > 0 && n >= least_places * n_moving;
       }
 
-      /// Of [t, t + width], in its middle, by place.
+      /// The second differences over [t, t + width] with its middle, by place.
       std::vector<double>
       second_differences(const double t, const double width) const
       {

@@ -72,8 +72,8 @@ namespace Viscoplastic
 
 
 
-    /// That the scene has the fields of contact and friction among some that
-    /// @p entry asks for.
+    /// Throw unless the scene has the fields of contact and friction that @p
+    /// entry asks for.
     template <int dim>
     void
     check_fields(const Scene<dim>              &scene,
@@ -101,8 +101,8 @@ namespace Viscoplastic
 
 
 
-    /// The same for places, of which some have to be on Gamma_3 if there are
-    /// fields of the boundary.
+    /// Throw likewise for places, of which some have to be on Gamma_3 if there
+    /// are fields of the boundary.
     template <int dim>
     void
     check_fields_at(

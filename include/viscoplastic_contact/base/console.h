@@ -81,7 +81,7 @@ namespace Viscoplastic
     void
     remark(const std::string &sentence);
 
-    /// In their order.
+    /// The sentences given to remark(), in the order in which they came.
     const std::vector<std::string> &
     remarks() const
     {

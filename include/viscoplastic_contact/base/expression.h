@@ -80,13 +80,14 @@ namespace Viscoplastic
     double
     value(const Point<dim> &x, const double t) const;
 
-    /// The same for the value @p result that is known already.
+    /// Throw ExcMessage, naming entry, place and time, unless the value @p
+    /// result that is known already is finite.
     void
     require_finite(const double      result,
                    const Point<dim> &x,
                    const double      t) const;
 
-    /// By central differences of the expression.
+    /// The gradient, by central differences of the expression.
     Tensor<1, dim>
     gradient(const Point<dim> &x, const double t) const;
 
@@ -107,7 +108,7 @@ namespace Viscoplastic
     bool
     may_jump() const;
 
-    /// The same for its first derivative.
+    /// Whether it depends on time and its first derivative may jump.
     bool
     may_have_kinks() const;
 

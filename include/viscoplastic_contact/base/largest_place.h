@@ -43,7 +43,7 @@ namespace Viscoplastic
         }
     }
 
-    /// Of all ranks. Collective.
+    /// Take the largest value of all ranks, and its place. Collective.
     void
     reduce(const MPI_Comm communicator)
     {

@@ -86,15 +86,16 @@ namespace Viscoplastic
   {
     unsigned int n;
     double       t, k;
-    /// Of the whole mesh.
+    /// The number of active cells of the whole mesh.
     double n_cells;
-    /// With friction: corrections of the active set, and the slipping part of
-    /// the area.
+    /// Corrections of the active set, and the slipping part of the area; in
+    /// scenes with friction.
     std::optional<unsigned int> contact_iterations = {};
     std::optional<double>       slipping           = {};
-    /// In adaptive scenes without error estimate.
+    /// The estimate by which an adaptive scene without error estimate refines.
     std::optional<double> error_estimate = {};
-    /// With an error estimate: its total over the energy norm of the solution.
+    /// The total error estimate over the energy norm of the solution; in scenes
+    /// with an error estimate.
     std::optional<double> relative_error = {};
     /// Where steps are chosen on the way: which part of the time is done, and
     /// how many the run may have, if that is known already.
@@ -153,8 +154,8 @@ namespace Viscoplastic
     unsigned int next_distance = 1;
     /// Steps without a line since then, those like it among them.
     unsigned int n_left_out = 0, n_left_out_alike = 0;
-    /// Of the step before: cells, and whether none, some or all of the face
-    /// slips.
+    /// Of the step before the present one: the number of cells, and whether
+    /// none (0), some (1) or all (2) of the face slips.
     double last_cells = 0.;
     int    last_slip  = 0;
     /// The part of the run that had been done at the last line, and at the last

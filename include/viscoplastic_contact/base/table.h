@@ -53,7 +53,7 @@ namespace Viscoplastic
         , number(number)
       {}
 
-      /// Not a number where the table has no value.
+      /// The value at a place; not a number where the table has none.
       double
       value(const double argument) const;
 
@@ -84,8 +84,8 @@ namespace Viscoplastic
     DataTable &
     operator=(const DataTable &) = delete;
 
-    /// Of its rows, ascending: where linear functions have kinks and constant
-    /// ones jump.
+    /// The arguments of the rows, ascending: where linear functions have kinks
+    /// and constant ones jump.
     const std::vector<double> &
     nodes() const
     {
@@ -101,7 +101,7 @@ namespace Viscoplastic
     const std::string   file, section;
     const Interpolation interpolation;
     const Outside       outside;
-    /// Of the text.
+    /// The CRC-32 of the text of the file.
     const unsigned int checksum;
 
   private:

@@ -24,7 +24,7 @@ namespace Viscoplastic
     power(const double exponent) const;
   };
 
-  /// In words: "a stress", "a velocity", "length^2 / time".
+  /// The dimension in words: "a stress", "a velocity", "length^2 / time".
   std::string
   in_words(const Dimension &dimension);
 
@@ -98,7 +98,7 @@ namespace Viscoplastic
   class Units
   {
   public:
-    /// None.
+    /// No units: numbers are taken to be consistent.
     Units() = default;
 
     /**

@@ -116,8 +116,8 @@ namespace Viscoplastic
       bool is_complete = true;
     };
 
-    /// All of them by ascending steps. Empty if there is no directory; throws
-    /// ExcMessage if it cannot be read. Not collective.
+    /// All checkpoints by ascending steps. Empty if there is no directory;
+    /// throws ExcMessage if it cannot be read. Not collective.
     std::vector<Entry>
     entries() const;
 

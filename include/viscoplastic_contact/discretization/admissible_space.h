@@ -167,7 +167,8 @@ namespace Viscoplastic
       return frames[index];
     }
 
-    /// That of a node of `relevant`, by its first degree of freedom.
+    /// The frame of a node of `relevant', by the first degree of freedom of the
+    /// node.
     const NodalFrame<dim> &
     frame_at(const types::global_dof_index first_dof) const
     {

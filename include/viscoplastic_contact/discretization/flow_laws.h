@@ -122,8 +122,8 @@ namespace Viscoplastic
     Point<3> critical_position = {};
   };
 
-  /// One evaluation a cell, of all its samples; a source is that of the step on
-  /// this side of t. Collective.
+  /// The rate G at all samples of all cells, by one evaluation of the law a
+  /// cell; a source is that of the step on this side of t. Collective.
   template <int dim>
   FlowRate
   evaluate_flow(const FlowLaws<dim>                    &laws,

@@ -106,8 +106,8 @@ namespace Viscoplastic
     mean_stress(const DistributedVector  &ghosted_u,
                 const IrreversibleStress &z) const;
 
-    /// For each child of a cell the matrix that makes its samples from those of
-    /// its parent: values of the polynomial through them.
+    /// For each child of a cell, the matrix that makes the samples of the child
+    /// from those of its parent, as values of the polynomial through them.
     std::vector<FullMatrix<double>>
     prolongation() const;
 

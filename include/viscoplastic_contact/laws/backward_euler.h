@@ -21,8 +21,8 @@ namespace Viscoplastic
       return z - old_z - k * law.rate(elastic + z, strain, stiffness, point);
     }
 
-    /// Its norm; not finite where the law has no value, which a trial may
-    /// meet.
+    /// The norm of the residual; not finite where the law has no value, which a
+    /// trial state may meet.
     double
     try_residual(const SymmetricTensor<2, 3> &z, SymmetricTensor<2, 3> &F) const
     {

@@ -217,8 +217,8 @@ namespace Viscoplastic
       return false;
     }
 
-    /// Of flow along the deviator at the strain rate 3/2 f
-    /// dev(stress)/sigma_eq.
+    /// The slopes of a flow rule along the deviator, whose strain rate is 3/2
+    /// f(sigma_eq) dev(stress)/sigma_eq.
     struct FlowSlopes
     {
       /// f/sigma_eq and df/dsigma_eq, 1/(stress time).

@@ -33,7 +33,7 @@ namespace Viscoplastic
                    const std::vector<NodeHierarchy::Node> &begins,
                    const MPI_Comm                          communicator);
 
-    /// By their numbers in the last mesh, ascending.
+    /// The nodes of the level by their numbers in the last mesh, ascending.
     const std::vector<NodeHierarchy::Node> &
     owned_nodes() const
     {

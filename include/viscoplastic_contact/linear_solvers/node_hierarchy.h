@@ -54,8 +54,8 @@ namespace Viscoplastic
     std::vector<std::size_t> row_begin;
     std::vector<Parent>      parents;
 
-    /// Of owned nodes and ghosts whose frame is not Cartesian: its directions,
-    /// as columns.
+    /// The directions, as columns, of owned nodes and ghosts whose frame is not
+    /// Cartesian.
     std::map<Node, Tensor<2, 3>> frames;
   };
 

@@ -68,13 +68,13 @@ namespace Viscoplastic
                             const Number *b);
   };
 
-  /// For any processor that the program runs on.
+  /// The kernels for any processor that the program runs on.
   template <int dim, typename Number>
   RowKernels<dim, Number>
   portable_row_kernels();
 
 #ifdef VISCOPLASTIC_CONTACT_HAS_AVX2_KERNELS
-  /// For x86 with the extensions AVX2 and FMA (2013 and later).
+  /// The kernels for x86 with the extensions AVX2 and FMA (2013 and later).
   template <int dim, typename Number>
   RowKernels<dim, Number>
   avx2_row_kernels();
@@ -84,7 +84,7 @@ namespace Viscoplastic
   bool
   has_four_doubles();
 
-  /// For the processor at hand.
+  /// The fastest kernels for the processor at hand.
   template <int dim, typename Number>
   RowKernels<dim, Number>
   row_kernels();

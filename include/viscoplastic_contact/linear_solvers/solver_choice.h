@@ -18,7 +18,7 @@ namespace Viscoplastic
     algebraic_multigrid
   };
 
-  /// As tables of a study have it.
+  /// The name of a solver as tables of a study have it.
   std::string
   to_string(const BulkSolverKind kind);
 
@@ -35,8 +35,8 @@ namespace Viscoplastic
     /// Degrees of freedom in all, and of these on the contact face. Prices are
     /// those of systems beyond dealii::types::global_dof_index, too.
     std::uint64_t n_dofs = 0, n_face_dofs = 0;
-    /// Those of the mesh that the present one is refined from; 0 where it is
-    /// not refined.
+    /// The number of unknowns of the mesh that the present one is refined from;
+    /// 0 where it is not refined.
     std::uint64_t n_first_dofs = 0;
   };
 

@@ -12,7 +12,8 @@ namespace Viscoplastic
   template <int dim>
   struct PieceNormal
   {
-    /// Of unit length; exact for pieces along coordinate planes.
+    /// The outward normal of unit length; exact for pieces along coordinate
+    /// planes.
     Tensor<1, dim> normal;
     /// The largest angle between it and the normals of the faces, in degrees.
     double deviation;

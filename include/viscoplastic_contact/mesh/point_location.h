@@ -23,7 +23,7 @@ namespace Viscoplastic
     /// The cell by its number in owned_cells(); elsewhere on all ranks but the
     /// one that owns it.
     std::size_t cell = elsewhere;
-    /// Its coordinates in the unit cell.
+    /// The coordinates of the point in the unit cell.
     Point<dim> unit;
     /// The face of the cell that it has been looked for on, if any.
     unsigned int face = numbers::invalid_unsigned_int;

@@ -105,7 +105,8 @@ namespace Viscoplastic
     return "true|false|automatic";
   }
 
-  /// From where Coulomb's law takes the pressure of unilateral contact.
+  /// The pressure of unilateral contact with which Coulomb's law bounds
+  /// friction.
   enum class CoulombPressure
   {
     lagged,

@@ -16,8 +16,8 @@ namespace Viscoplastic
   describe_parameters(const std::vector<std::string> &files     = {},
                       const std::vector<std::string> &overrides = {});
 
-  /// All entries as a chapter of the manual, doc/parameters.md, with those of
-  /// the laws in the shared libraries of the scene.
+  /// A chapter of the manual with all entries, doc/parameters.md, with those of
+  /// laws in the shared libraries of the scene.
   std::string
   describe_parameters_as_markdown(
     const std::vector<std::string> &files     = {},

@@ -51,13 +51,14 @@ namespace Viscoplastic
     std::vector<LawDescription> laws;
     unsigned int                dimension = 2;
     UnitParameters              unit_names;
-    /// In which all numbers are; not declared unless the scene does.
+    /// The units in which all numbers are; not declared unless the scene does.
     Units              units;
     GeometryParameters geometry;
-    /// Of all cells, or of none where there are numbered materials.
+    /// The material of all cells; without meaning where there are numbered
+    /// materials.
     MaterialParameters material;
     StressParameters   stress;
-    /// By material id of the cells.
+    /// The numbered materials by material id of the cells.
     std::map<unsigned int, MaterialParameters> materials;
     SupportParameters                          supports;
     LoadParameters                             loads;
@@ -103,7 +104,7 @@ namespace Viscoplastic
     std::string
     origin_of(const std::string &path) const;
 
-    /// The same with every entry, for law parameters.
+    /// All entries again, from which laws read their parameters.
     mutable ParameterHandler handler;
 
   private:
@@ -131,7 +132,7 @@ namespace Viscoplastic
     void
     locate_mesh_file(const std::vector<ParameterLine> &lines);
 
-    /// By path, see origin_of().
+    /// By path of the entry, where its value comes from; see origin_of().
     std::map<std::string, std::string> origins;
     /// The values of the files that have units in them, by path.
     std::map<std::string, std::string> as_written;

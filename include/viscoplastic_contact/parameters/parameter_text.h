@@ -12,11 +12,12 @@ namespace Viscoplastic
     /// The name of the file and the line, or the option and 0.
     std::string  source;
     unsigned int number;
-    /// As ParameterHandler reads it, on one line and without comment.
+    /// The text as ParameterHandler reads it, on one line and without comment.
     std::string text;
     /// The subsections around it, each with a `/' behind it.
     std::string section;
-    /// Of the entry that it sets or the subsection that it opens, if any.
+    /// The name of the entry that the line sets or of the subsection that it
+    /// opens, if any.
     std::string name       = {};
     std::string value      = {};
     bool        is_opening = false;

@@ -45,7 +45,7 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
-  /// Of one material; the entries of its law are read by the law itself.
+  /// The entries of one material; those of its law are read by the law itself.
   struct MaterialParameters
   {
     std::string youngs_modulus = "1";
@@ -141,7 +141,7 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
-  /// Of the size of time steps by their error.
+  /// The entries that control the size of time steps by their error.
   struct StepControlParameters
   {
     /// 0: the steps of the phases.
@@ -185,7 +185,8 @@ namespace Viscoplastic
 
   struct ErrorControlParameters
   {
-    /// Of the run, relative; 0 where meshes and steps are given.
+    /// The error that the run may have, relative to the solution; 0 where
+    /// meshes and steps are given.
     double tolerance = 0.;
     /// The column of statistics.csv whose error is controlled; empty for the
     /// energy norm.
@@ -205,7 +206,7 @@ namespace Viscoplastic
     declare(ParameterHandler &prm);
   };
 
-  /// Of the ladders of runs of the study mode.
+  /// The entries for ladders of runs, which contrib/study reads.
   struct StudyParameters
   {
     unsigned int levels  = 4;

@@ -12,12 +12,13 @@ namespace Viscoplastic
   // What is wrong with a line of a parameter file, and what would be right.
   // @p declared: declared_entries() of the handler.
 
-  /// That there is no such entry or subsection, and what may have been meant.
+  /// A sentence that there is no such entry or subsection, and what may have
+  /// been meant.
   std::string
   unknown_name(const ParameterLine               &line,
                const boost::property_tree::ptree &declared);
 
-  /// Of a text that ParameterHandler does not understand.
+  /// A sentence about a line that ParameterHandler does not understand.
   std::string
   no_statement(const std::string &text);
 

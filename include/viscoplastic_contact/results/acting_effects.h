@@ -49,7 +49,7 @@ namespace Viscoplastic
     }
 
   private:
-    /// By boundary, see Load::acting.
+    /// The boundaries whose loads have acted, see Load::acting.
     std::set<types::boundary_id> loads;
     bool                         mesh_has_changed = false;
     /// Whether a friction bound has been above zero somewhere.

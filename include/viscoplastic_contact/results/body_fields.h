@@ -30,8 +30,8 @@ namespace Viscoplastic
   class BodyFields
   {
   public:
-    /// Of @p fields those of the body; with the other arguments in use as long
-    /// as this object. Collective.
+    /// Make the fields of the body among @p fields; the other arguments stay in
+    /// use as long as this object. Collective.
     BodyFields(const FlowLaws<dim>           &laws,
                const State<dim>              &state,
                const std::set<RecordedField> &fields);
@@ -61,7 +61,7 @@ namespace Viscoplastic
     /// The displacement as it is reported.
     DistributedVector        difference;
     const DistributedVector &u;
-    /// Those that are means, and the others.
+    /// The fields that are means of cells, and the others.
     std::set<RecordedField>                cell_fields;
     std::vector<const DistributedVector *> nodal_fields;
     /// G at the samples, where it is needed, and the irreversible strain of the

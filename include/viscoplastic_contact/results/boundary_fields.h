@@ -19,8 +19,8 @@ namespace Viscoplastic
   class BoundaryFields
   {
   public:
-    /// Of @p fields those of the boundary. @p face is null without contact
-    /// points. Collective.
+    /// Make the fields of the boundary among @p fields. @p face is null without
+    /// contact points. Collective.
     BoundaryFields(const StressSpace<dim>        &stress_space,
                    const State<dim>              &state,
                    const ContactFace<dim>        *face,
@@ -63,8 +63,8 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space;
     const State<dim>       &state;
     std::set<RecordedField> fields;
-    /// Of friction points, at the nodes: where a frictional piece has none,
-    /// other conditions prescribe the node. Absent where not needed.
+    /// Of friction points, at the nodes. A node that other conditions prescribe
+    /// has no point; fields that are not asked for are empty.
     DistributedVector density, bound, utilization, slipping, pressure, gap;
   };
 } // namespace Viscoplastic

@@ -51,7 +51,7 @@ namespace Viscoplastic
       std::size_t        cell;
       unsigned int       face;
       VertexWeights<dim> weights;
-      /// Of faces, the mean of the outward unit normal.
+      /// The mean of the outward unit normal of a face; zero for cells.
       Tensor<1, dim> normal;
     };
 

@@ -58,10 +58,11 @@ namespace Viscoplastic
     const std::set<RecordedField> fields;
     std::vector<std::string>      all_names;
     std::size_t                   n_body;
-    /// In the body and on Gamma_3.
+    /// The places of the points among the cells of the body, and among the
+    /// faces of Gamma_3.
     std::vector<CellPoint<dim>> in_body, on_face;
     std::vector<bool>           is_on_face;
-    /// Those that only cells of absent materials hold.
+    /// The points that only cells of absent materials hold.
     std::vector<std::size_t> absent_points;
   };
 } // namespace Viscoplastic

@@ -10,7 +10,7 @@
 
 namespace Viscoplastic
 {
-  /// Of the i-th line, from 0: `line_0.csv'.
+  /// The name of the file of the i-th line, counted from 0: `line_0.csv'.
   std::string
   line_file_name(const std::size_t i);
 
@@ -59,7 +59,8 @@ namespace Viscoplastic
     const Scene<dim>             &scene;
     const std::set<RecordedField> fields;
     const Discretization<dim>    *discretization = nullptr;
-    /// Of each line on the present mesh; empty until they are needed.
+    /// The fields along each line on the present mesh; empty until they are
+    /// needed.
     std::vector<std::unique_ptr<FieldProbes<dim>>> probes;
     std::vector<std::string>                       names;
     std::vector<std::ofstream>                     files;

@@ -222,7 +222,8 @@ namespace Viscoplastic
     /// the run before the last restart.
     std::map<std::string, double> last_seconds;
     double                        first_set_up_seconds = 0.;
-    /// Of the solves of this process, see ContactReport.
+    /// Seconds of the solves of this process, and what they would have taken
+    /// without friction; see ContactReport.
     double       solve_seconds = 0., plain_solve_seconds = 0.;
     double       earlier_seconds = 0.;
     ExpectedStep expected_step;

@@ -29,9 +29,9 @@ namespace Viscoplastic
   {
     /// Wall time by phase, see run_phases; of a resumed run, of its last part.
     std::map<std::string, double> seconds;
-    /// Of all ranks together in MB: before the run, and at the most.
+    /// Memory of all ranks together in MB: before the run, and the largest.
     double first_memory = 0., peak_memory = 0.;
-    /// That of the last mesh.
+    /// What the solver of the last mesh had to do.
     SolverDemand solver_demand;
   };
 

@@ -55,10 +55,10 @@ namespace Viscoplastic
     std::optional<double> error_estimate;
     /// The errors of a scene with error estimate.
     std::optional<ErrorSummary> errors;
-    /// Those of the quantity of this name; empty without one.
+    /// The errors of the quantity of interest of this name; empty without one.
     std::string  quantity;
     ErrorSummary quantity_errors;
-    /// Of a run that has one.
+    /// The tolerance of a run that keeps one.
     std::optional<double> tolerance;
 
     /// The errors that a tolerance is for.
@@ -70,15 +70,16 @@ namespace Viscoplastic
 
     Largest displacement, strain, von_mises, slip_area, capped_volume,
       utilization;
-    /// Of the faces in bilateral contact, in which the foundation pulls.
+    /// The part of the faces in bilateral contact on which the foundation
+    /// pulls.
     Largest tension_share;
     /// Where the displacement and the stress were that large.
     Point<dim> displacement_position, von_mises_position;
     /// The area of all friction points on the mesh on which slip_area was
     /// reached.
     double friction_area = 0.;
-    /// Of lagged Coulomb friction, sums over the steps of k times what
-    /// StepQuantities has.
+    /// With lagged Coulomb friction: sums over the steps of k times what
+    /// StepQuantities::friction_bounds has.
     double missed_bounds = 0., computed_bounds = 0.;
     /// The largest k r, and where r was that large.
     Largest    stiffness;
@@ -90,7 +91,8 @@ namespace Viscoplastic
     unsigned int                unchanged_steps = 0;
     std::optional<StepCounts>   steps;
     std::optional<unsigned int> implicit_steps;
-    /// Against an exact solution; zero without one.
+    /// The largest errors against an exact solution, and the largest norms of
+    /// that; zero without one.
     SolutionNorms largest_error, largest_exact;
 
     /// @p coarser: of a run with twice the mesh width and twice the time steps,
@@ -118,14 +120,14 @@ namespace Viscoplastic
   /// What a run has paid for its effects: wall time.
   struct RunBill
   {
-    /// By phase, as run_phases names them; `set-up' is that of the first mesh,
-    /// later ones are part of the adaptation.
+    /// Seconds by phase, as run_phases names them; `set-up' is that of the
+    /// first mesh, later ones are part of the adaptation.
     std::map<std::string, double> seconds;
-    /// Of the run.
+    /// Seconds of the whole run.
     double total         = 0.;
     bool   has_viscosity = false;
-    /// Of the solves of all steps, and what they would have taken without
-    /// friction; the latter is absent where nothing can slip.
+    /// Seconds of the solves of all steps, and what they would have taken
+    /// without friction; the latter is absent where nothing can slip.
     double                solves = 0.;
     std::optional<double> plain_solves;
 

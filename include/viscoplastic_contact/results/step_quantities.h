@@ -43,7 +43,8 @@ namespace Viscoplastic
     Point<dim> displacement_position;
     /// The area on which bilateral contact pulls at the body.
     double tension_area = 0.;
-    /// Of Coulomb friction with the pressure of the step before.
+    /// By how much friction bounds of the pressure of the step before miss
+    /// those of the present one.
     typename ContactFace<dim>::MissedBounds friction_bounds;
     /// The estimate by which an adaptive mesh is refined; zero before the first
     /// one.

@@ -19,7 +19,8 @@ namespace Viscoplastic
   class RunDirectories
   {
   public:
-    /// Both stay in use. Touches nothing yet.
+    /// Remember where results and checkpoints go; nothing is touched yet. Both
+    /// arguments stay in use.
     RunDirectories(const Parameters &parameters,
                    Console          &console,
                    const MPI_Comm    communicator);

@@ -30,7 +30,7 @@ namespace Viscoplastic
     over_boundary(const std::string &components,
                   const unsigned int id) const = 0;
 
-    /// The same over the cells of a material, or over all.
+    /// The mean over the cells of a material, or over all of them, likewise.
     virtual std::optional<std::string>
     over_body(const std::string                &components,
               const std::optional<unsigned int> material = {}) const = 0;
@@ -50,7 +50,7 @@ namespace Viscoplastic
     virtual VolumetricIntegration
     volumetric_integration() const = 0;
 
-    /// Those of a scene on its first mesh. Collective.
+    /// The data of a scene on its first mesh. Collective.
     static std::unique_ptr<const SceneData>
     of(const Parameters &scene, const MPI_Comm communicator);
   };

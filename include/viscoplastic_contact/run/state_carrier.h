@@ -18,7 +18,7 @@ namespace Viscoplastic
   class StateCarrier
   {
   public:
-    /// Of the old discretization.
+    /// The energies on the old mesh.
     EnergiesOnMesh energies;
 
   protected:
@@ -36,7 +36,8 @@ namespace Viscoplastic
              EvaluatedState<dim>       &accepted) const;
 
     const ErrorEstimator<dim> *error_estimator;
-    /// Of the multipliers; empty without contact points.
+    /// The density of the multipliers at the nodes; empty without contact
+    /// points.
     DistributedVector density;
   };
 

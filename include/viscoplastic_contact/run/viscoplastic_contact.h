@@ -59,8 +59,8 @@ namespace Viscoplastic
     run(const CommandLine::Restart restart = CommandLine::Restart::no,
         const RunSummary<dim>     *coarser = nullptr);
 
-    /// All steps without any file and without the words at the beginning, and
-    /// what is known at the end.
+    /// Run without files and without the words at the beginning; returns what
+    /// is known at the end.
     RunSummary<dim>
     run_without_files();
 
@@ -85,7 +85,7 @@ namespace Viscoplastic
     void
     record_initial_state();
 
-    /// All steps up to the end. @p signals is null in a run without files.
+    /// Make all steps up to the end. @p signals is null in a run without files.
     /// Returns a sentence if a signal has ended the run early.
     std::string
     make_steps(const SignalRequests *signals);
@@ -158,7 +158,7 @@ namespace Viscoplastic
     /// The last state that will do, and the solve that has made the first one.
     EvaluatedState<dim> accepted;
     ContactReport       initial_report;
-    /// In MB, of all ranks, when the run began.
+    /// Memory of all ranks together in MB when the run began.
     double first_memory = 0.;
 
     // What is said and kept.

@@ -91,8 +91,8 @@ namespace Viscoplastic
     std::optional<Expression<dim>> friction_bound;
     /// mu and S of the law coulomb.
     std::optional<Expression<dim>> friction_coefficient, normal_stress;
-    /// By which bounds are multiplied, as a function of the slip rate; absent
-    /// where identically one.
+    /// The factor of friction bounds as a function of the slip rate; absent
+    /// where it is one.
     std::optional<Expression<1>> slip_rate_factor;
     /// What makes the data, or null.
     const ExactSolution<dim> *solution;
@@ -226,7 +226,7 @@ namespace Viscoplastic
       return all || role == BoundaryRole::clamped || is_glued();
     }
 
-    /// All of the data, those of the friction bound included.
+    /// All data of the condition, those of the friction bound included.
     std::vector<const Expression<dim> *>
     data() const;
 

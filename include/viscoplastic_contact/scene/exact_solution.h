@@ -77,8 +77,8 @@ namespace Viscoplastic
     Tensor<1, dim>
     body_force(const Point<dim> &x, const double t) const;
 
-    /// From which side of t a time derivative is taken: that of the step that
-    /// begins, or of the step that ends there.
+    /// The side of t from which a time derivative is taken: that of the step
+    /// that begins there, or of the step that ends there.
     enum class Side
     {
       after,

@@ -41,7 +41,8 @@ namespace Viscoplastic
     std::vector<std::string> entries;
   };
 
-  /// Those of loads, displacements and data of friction. The same on all ranks.
+  /// The kinks of loads, displacements and data of friction. The same on all
+  /// ranks.
   template <int dim>
   KinksOfScene
   find_kinks(const Scene<dim> &scene, const Triangulation<dim> &triangulation);

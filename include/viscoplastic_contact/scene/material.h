@@ -61,7 +61,7 @@ namespace Viscoplastic
     std::unique_ptr<const ViscoplasticLaw> law;
 
   private:
-    /// From Young's modulus and Poisson's ratio at x.
+    /// The stiffness from Young's modulus and Poisson's ratio at x.
     Stiffness
     isotropic(const Point<dim> &x) const;
 

@@ -51,7 +51,8 @@ namespace Viscoplastic
     /// Whether energies are asked for: of materials and the body.
     bool energies = false;
 
-    /// As in names of columns: `boundary_3', `material_2', `body'.
+    /// The place as names of columns have it: `boundary_3', `material_2',
+    /// `body'.
     std::string
     name() const;
   };

@@ -196,7 +196,7 @@ namespace Viscoplastic
     bool
     has_contact() const;
 
-    /// Those with the role contact.
+    /// The boundary ids with the role contact.
     std::set<types::boundary_id>
     contact_boundaries() const;
 
@@ -232,7 +232,7 @@ namespace Viscoplastic
     std::vector<Point<dim>>      output_points;
     std::vector<OutputLine<dim>> output_lines;
     std::vector<OutputIntegral>  output_integrals;
-    /// That of `Error control/Quantity'; absent if there is none.
+    /// The quantity of `Error control/Quantity'; absent if there is none.
     std::optional<QuantityOfInterest> quantity;
     /// What is allowed but should be known, a sentence each.
     std::vector<std::string> warnings;

@@ -30,18 +30,19 @@ namespace Viscoplastic
   template <int dim>
   struct Support
   {
-    /// In words.
+    /// The place of the support in words.
     std::string place;
-    /// That of a point; once the mesh is known, that of its vertex.
+    /// The place of a support at a point; once the mesh is known, that of its
+    /// vertex.
     std::optional<Point<dim>> position;
-    /// Of an edge.
+    /// The boundaries whose common edge is supported; empty for points.
     std::set<types::boundary_id> boundaries;
     /// The role displacement with the components that are held.
     BoundaryCondition<dim> condition;
   };
 
 
-  /// Those of the section `Supports'. Throws ExcMessage.
+  /// The supports of the section `Supports'. Throws ExcMessage.
   template <int dim>
   std::vector<Support<dim>>
   read_supports(const SupportParameters &parameters);

@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
+#include <viscoplastic_contact/run/runs_ahead.h>
 #include <viscoplastic_contact/run/scene_as_json.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/two_level.h>

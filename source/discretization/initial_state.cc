@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/discretization/springs.h>
+#include <viscoplastic_contact/laws/strain.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
 #include <viscoplastic_contact/base/subsection.h>
-#include <viscoplastic_contact/laws/pointwise_law.h>
+#include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <algorithm>
 #include <sstream>

@@ -4,7 +4,7 @@
 
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/mesh/files/mesh_file.h>
+#include <viscoplastic_contact/mesh/files/read_mesh_file.h>
 #include <viscoplastic_contact/mesh/hanging_vertices.h>
 #include <viscoplastic_contact/mesh/mesh.h>
 #include <viscoplastic_contact/mesh/mesh_check.h>

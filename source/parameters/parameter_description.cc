@@ -2,9 +2,8 @@
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
+#include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/wrong_lines.h>
-
-#include <boost/property_tree/ptree.hpp>
 
 #include <cctype>
 #include <map>

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Boost's JSON parser uses placeholders that boost says are deprecated.
-#define BOOST_BIND_GLOBAL_PLACEHOLDERS
-
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
@@ -10,11 +7,10 @@
 #include <viscoplastic_contact/laws/law_library.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
+#include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/quantities.h>
 #include <viscoplastic_contact/parameters/table_sections.h>
 #include <viscoplastic_contact/parameters/wrong_lines.h>
-
-#include <boost/property_tree/json_parser.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -42,44 +38,6 @@ namespace Viscoplastic
       return result;
     }
   } // namespace
-
-
-
-  Tree
-  declared_entries(const ParameterHandler &handler)
-  {
-    std::stringstream json;
-    handler.print_parameters(json,
-                             ParameterHandler::JSON |
-                               ParameterHandler::KeepDeclarationOrder);
-    Tree tree;
-    boost::property_tree::read_json(json, tree);
-    return tree;
-  }
-
-
-
-  bool
-  is_entry(const Tree &node)
-  {
-    const auto value = node.find("value");
-    return value != node.not_found() && value->second.empty();
-  }
-
-
-
-  std::vector<std::pair<std::string, std::string>>
-  values_of(const Tree &node, const std::string &path)
-  {
-    std::vector<std::pair<std::string, std::string>> entries;
-    for (const auto &[name, below] : node)
-      if (is_entry(below))
-        entries.emplace_back(path + name, below.get<std::string>("value"));
-      else
-        for (auto &entry : values_of(below, path + name + '/'))
-          entries.push_back(std::move(entry));
-    return entries;
-  }
 
 
 

@@ -4,7 +4,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/parameters/dimension_check.h>
-#include <viscoplastic_contact/parameters/parameter_file.h>
+#include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/quantities.h>
 
 #include <boost/property_tree/ptree.hpp>

@@ -4,8 +4,8 @@
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
-#include <viscoplastic_contact/parameters/parameter_file.h>
 #include <viscoplastic_contact/parameters/parameter_text.h>
+#include <viscoplastic_contact/parameters/parameter_tree.h>
 #include <viscoplastic_contact/parameters/wrong_lines.h>
 
 #include <boost/property_tree/ptree.hpp>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/base/blas_kernel.h>
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/run/announcer.h>
@@ -21,9 +20,6 @@ namespace Viscoplastic
       out << "  " << effect << '\n';
     for (const std::string &warning : scene.warnings)
       console.remark("Warning: " + warning);
-    const std::string advice = advice_on_blas_kernel();
-    if (!advice.empty())
-      out << "Note: " << advice << '\n';
     out << std::flush;
   }
 

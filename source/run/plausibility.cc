@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <viscoplastic_contact/laws/strain.h>
 #include <viscoplastic_contact/run/plausibility.h>
 #include <viscoplastic_contact/scene/sample_places.h>
 

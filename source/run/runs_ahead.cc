@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/mesh_refinement.h>
 #include <viscoplastic_contact/parameters/phases.h>
+#include <viscoplastic_contact/run/runs_ahead.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <algorithm>

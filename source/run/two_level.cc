@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/parameters/phases.h>
+#include <viscoplastic_contact/run/runs_ahead.h>
 #include <viscoplastic_contact/run/two_level.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 

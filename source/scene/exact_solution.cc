@@ -3,7 +3,6 @@
 
 #include <viscoplastic_contact/laws/strain.h>
 #include <viscoplastic_contact/scene/exact_solution.h>
-#include <viscoplastic_contact/scene/scene.h>
 
 #include <sstream>
 

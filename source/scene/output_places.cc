@@ -5,9 +5,7 @@
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/spelling.h>
-#include <viscoplastic_contact/mesh/mesh_ids.h>
-#include <viscoplastic_contact/mesh/point_location.h>
-#include <viscoplastic_contact/scene/scene.h>
+#include <viscoplastic_contact/scene/output_places.h>
 
 #include <algorithm>
 
@@ -68,65 +66,6 @@ namespace Viscoplastic
                              "`boundary ID: fields', `material ID: fields' or "
                              "`body: fields'."));
       return result;
-    }
-
-
-
-    /// Throw unless the scene has the fields of contact and friction that @p
-    /// entry asks for.
-    template <int dim>
-    void
-    check_fields(const Scene<dim>              &scene,
-                 const std::set<RecordedField> &fields,
-                 const std::string             &entry)
-    {
-      for (const RecordedField field : fields)
-        {
-          AssertThrow(!is_of_contact(field) || scene.has_contact(),
-                      ExcMessage("'" + entry + "': there is no `" +
-                                 name_of(field) +
-                                 "' where no boundary has the role contact."));
-          AssertThrow(!is_of_friction(field) || scene.has_friction(),
-                      ExcMessage("'" + entry + "': there is no `" +
-                                 name_of(field) +
-                                 "' where no boundary has friction."));
-          AssertThrow(!is_of_unilateral_contact(field) ||
-                        scene.has_unilateral_contact(),
-                      ExcMessage("'" + entry + "': there is no `" +
-                                 name_of(field) +
-                                 "' where no boundary has unilateral "
-                                 "contact."));
-        }
-    }
-
-
-
-    /// Throw likewise for places, of which some have to be on Gamma_3 if there
-    /// are fields of the boundary.
-    template <int dim>
-    void
-    check_fields_at(
-      const Scene<dim>                                &scene,
-      const parallel::distributed::Triangulation<dim> &triangulation,
-      const std::vector<Point<dim>>                   &points,
-      const std::set<RecordedField>                   &fields,
-      const std::string                               &entry,
-      const std::string                               &places)
-    {
-      check_fields(scene, fields, entry);
-      const auto field =
-        std::find_if(fields.begin(), fields.end(), is_of_boundary);
-      if (points.empty() || field == fields.end())
-        return;
-      const auto found =
-        locate_on_boundary(triangulation, points, scene.contact_boundaries());
-      AssertThrow(std::count(found.distances.begin(),
-                             found.distances.end(),
-                             0.) > 0,
-                  ExcMessage("'" + entry + "': `" + name_of(*field) +
-                             "' is a field of boundaries with the role "
-                             "contact, and " +
-                             places + "."));
     }
   } // namespace
 
@@ -256,80 +195,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  std::vector<std::string>
-  check_output_places(
-    const Scene<dim>                                &scene,
-    const parallel::distributed::Triangulation<dim> &triangulation)
-  {
-    const OutputParameters &asked = scene.parameters.output;
-    check_points(triangulation, scene.output_points, "Output/Points");
-    check_fields_at(scene,
-                    triangulation,
-                    scene.output_points,
-                    asked.point_fields,
-                    "Output/Point fields",
-                    "none of 'Output/Points' is on one");
-    std::vector<Point<dim>> points_of_lines;
-    for (const OutputLine<dim> &line : scene.output_lines)
-      for (const Point<dim> &x : line.points())
-        points_of_lines.push_back(x);
-    check_points(triangulation, points_of_lines, "Output/Lines");
-    check_fields_at(scene,
-                    triangulation,
-                    points_of_lines,
-                    asked.line_fields,
-                    "Output/Line fields",
-                    "none of 'Output/Lines' has a point on one");
-
-    using Domain                                 = OutputIntegral::Domain;
-    const std::string                  entry     = "Output/Integrals";
-    const std::set<types::material_id> materials = material_ids(triangulation);
-    for (const OutputIntegral &integral : scene.output_integrals)
-      {
-        const std::string id = std::to_string(integral.id);
-        AssertThrow(integral.domain != Domain::material ||
-                      materials.count(integral.id) == 1,
-                    ExcMessage("'" + entry + "': no cell has the material id " +
-                               id + "; the mesh has the material ids " +
-                               list({materials.begin(), materials.end()}) +
-                               "."));
-        if (integral.domain != Domain::boundary)
-          continue;
-        const auto boundary = scene.boundary.find(integral.id);
-        AssertThrow(boundary != scene.boundary.end(),
-                    ExcMessage("'" + entry + "': there is no boundary " + id +
-                               "; the mesh has the ids " +
-                               list(boundary_ids(triangulation)) + "."));
-        for (const RecordedField field : integral.fields)
-          AssertThrow(
-            (!is_of_contact(field) ||
-             boundary->second.role == BoundaryRole::contact) &&
-              (!is_of_friction(field) || boundary->second.has_friction()) &&
-              (!is_of_unilateral_contact(field) ||
-               boundary->second.is_unilateral()),
-            ExcMessage("'" + entry + "': boundary " + id + " has no `" +
-                       name_of(field) + "', which takes " +
-                       (is_of_friction(field) ? "friction." :
-                        is_of_unilateral_contact(field) ?
-                                                "unilateral contact." :
-                                                "the role contact.")));
-      }
-
-    std::vector<std::string> warnings;
-    if (!asked.point_fields.empty() && scene.output_points.empty())
-      warnings.push_back(
-        "'Output/Point fields' is not used without 'Output/Points'.");
-    if (!asked.line_fields.empty() && scene.output_lines.empty())
-      warnings.push_back(
-        "'Output/Line fields' is not used without 'Output/Lines'.");
-    return warnings;
-  }
-
-
-
-  template struct OutputLine<2>;
-  template struct OutputLine<3>;
   template std::vector<Point<2>>
   read_output_points(const std::string &);
   template std::vector<Point<3>>
@@ -338,10 +203,4 @@ namespace Viscoplastic
   read_output_lines(const std::string &);
   template std::vector<OutputLine<3>>
   read_output_lines(const std::string &);
-  template std::vector<std::string>
-  check_output_places(const Scene<2> &,
-                      const parallel::distributed::Triangulation<2> &);
-  template std::vector<std::string>
-  check_output_places(const Scene<3> &,
-                      const parallel::distributed::Triangulation<3> &);
 } // namespace Viscoplastic

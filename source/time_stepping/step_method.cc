@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <viscoplastic_contact/time_stepping/explicit_step.h>
-#include <viscoplastic_contact/time_stepping/implicit_step.h>
-#include <viscoplastic_contact/time_stepping/step_control.h>
+#include <viscoplastic_contact/time_stepping/step_method.h>
 
 #include <algorithm>
 
@@ -29,71 +27,6 @@ namespace Viscoplastic
           return false;
       return true;
     }
-
-
-
-    /// Explicit steps up to the stability limit 2/r, implicit ones beyond it.
-    template <int dim>
-    class ExplicitUpToTheLimit : public StepMethod<dim>
-    {
-    public:
-      ExplicitUpToTheLimit(const Discretization<dim> &discretization,
-                           TimerOutput               &timer)
-        : explicit_step(discretization, timer)
-        , implicit_step(discretization, timer, /* takes_all_steps = */ false)
-      {}
-
-      StepSolution<dim>
-      advance(const StepProblem<dim> &problem) override
-      {
-        if (is_stable(*problem.old_rate, problem.time_step.k))
-          try
-            {
-              return explicit_step.advance(problem);
-            }
-          catch (const StepBeyondStability &)
-            {
-              // Heun's method sees the end of the step, too.
-            }
-        return implicit_step.advance(problem);
-      }
-
-      StepSolution<dim>
-      equilibrate(const StepProblem<dim> &problem) override
-      {
-        return explicit_step.equilibrate(problem);
-      }
-
-      StepSolver<dim> *
-      elastic_solver() override
-      {
-        return explicit_step.elastic_solver();
-      }
-
-      // Implicit steps among others keep nothing.
-      std::optional<PreconditionerState>
-      preconditioner_state() const override
-      {
-        return explicit_step.preconditioner_state();
-      }
-
-      void
-      restore(const EvaluatedState<dim>                &accepted,
-              const std::optional<PreconditionerState> &preconditioner) override
-      {
-        explicit_step.restore(accepted, preconditioner);
-      }
-
-      std::string
-      solver_name() const override
-      {
-        return explicit_step.solver_name();
-      }
-
-    private:
-      ExplicitStep<dim> explicit_step;
-      ImplicitStep<dim> implicit_step;
-    };
   } // namespace
 
 
@@ -174,21 +107,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  std::unique_ptr<StepMethod<dim>>
-  make_step_method(const Discretization<dim> &discretization,
-                   TimerOutput               &timer)
-  {
-    const Scene<dim> &scene = discretization.scene();
-    if (scene.is_implicit())
-      return std::make_unique<ImplicitStep<dim>>(discretization, timer);
-    if (scene.is_implicit_beyond_the_limit())
-      return std::make_unique<ExplicitUpToTheLimit<dim>>(discretization, timer);
-    return std::make_unique<ExplicitStep<dim>>(discretization, timer);
-  }
-
-
-
   template void
   StepSolution<2>::stay(const StepProblem<2> &,
                         const AdmissibleSpace<2> &,
@@ -201,8 +119,4 @@ namespace Viscoplastic
   data_are_unchanged(const Discretization<2> &, const StepProblem<2> &);
   template bool
   data_are_unchanged(const Discretization<3> &, const StepProblem<3> &);
-  template std::unique_ptr<StepMethod<2>>
-  make_step_method(const Discretization<2> &, TimerOutput &);
-  template std::unique_ptr<StepMethod<3>>
-  make_step_method(const Discretization<3> &, TimerOutput &);
 } // namespace Viscoplastic

@@ -57,6 +57,29 @@ class Rooms(unittest.TestCase):
                     )
         self.assertGreater(n_includes, 300)
 
+    def test_no_files_include_each_other(self):
+        """A header and its source count as one, and so do the kernels' templates."""
+
+        def unit(path):
+            return re.sub(r"_implementation$", "", path)
+
+        includes = {}
+        for place in (HEADERS, SOURCES):
+            for file in place.rglob("*.*"):
+                name = unit(str(file.relative_to(place).with_suffix("")))
+                found = re.findall(
+                    r"#include <viscoplastic_contact/([\w/]+)\.h>", file.read_text()
+                )
+                includes.setdefault(name, set()).update(set(map(unit, found)) - {name})
+        # Those that include nothing that is left go, until only cycles are left.
+        while True:
+            ends = {name for name, others in includes.items() if not others & set(includes)}
+            if not ends:
+                break
+            for name in ends:
+                del includes[name]
+        self.assertEqual(sorted(includes), [])
+
     def test_the_figure_shows_who_uses_whom(self):
         """Each arrow is an include, and each include an arrow or a path."""
         text = (SOURCE / "doc" / "figures" / "rooms.dot").read_text()

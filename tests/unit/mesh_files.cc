@@ -4,7 +4,7 @@
 // is refused. On any number of ranks.
 
 #include "meshes.h"
-#include <viscoplastic_contact/mesh/files/mesh_file.h>
+#include <viscoplastic_contact/mesh/files/read_mesh_file.h>
 #include <viscoplastic_contact/mesh/mesh_pieces.h>
 
 using namespace Viscoplastic;

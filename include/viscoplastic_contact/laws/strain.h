@@ -3,11 +3,25 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <array>
+#include <utility>
 #include <vector>
 
 namespace Viscoplastic
 {
   using namespace dealii;
+
+  /// The six (four in plane strain) stress components in the order of the
+  /// parameter file: xx, yy, zz, xy (, xz, yz).
+  template <int dim>
+  constexpr std::array<std::pair<unsigned int, unsigned int>, dim == 2 ? 4 : 6>
+  stress_components()
+  {
+    if constexpr (dim == 2)
+      return {{{0, 0}, {1, 1}, {2, 2}, {0, 1}}};
+    else
+      return {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  }
 
   /// The symmetric part of a displacement gradient as a 3D tensor; in plane
   /// strain, what has z is zero.

@@ -324,6 +324,26 @@ namespace Viscoplastic
 
 
 
+  /// ViscoplasticLaw::flow() point by point. For a class that is final the
+  /// calls are not virtual, and are inlined.
+  template <typename Law>
+  void
+  flow_at_points(const Law &law, const LawStates &states, Flow *result)
+  {
+    for (unsigned int i = 0; i < states.n; ++i)
+      {
+        const SymmetricTensor<2, 3> &stress = states.stress[i],
+                                    &strain = states.strain[i];
+        const LawPoint &point               = states.point[i];
+        result[i].rate = law.rate(stress, strain, states.stiffness, point);
+        result[i].relaxation_rate =
+          law.relaxation_rate(stress, strain, states.stiffness, point);
+        result[i].is_beyond_cap = law.is_beyond_cap(stress, point);
+      }
+  }
+
+
+
   /**
    * The derivative, with respect to stress, of the strain rate
    * 3/2 f dev(stress)/sigma_eq of a flow along the deviator, where f depends

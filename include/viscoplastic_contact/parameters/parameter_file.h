@@ -137,24 +137,4 @@ namespace Viscoplastic
     /// The values of the files that have units in them, by path.
     std::map<std::string, std::string> as_written;
   };
-
-
-
-  /**
-   * Everything that is declared, in the order of declaration: a node with a
-   * leaf `value' is an entry, with the leaves `default_value', `documentation'
-   * and `pattern_description'; others are subsections.
-   */
-  boost::property_tree::ptree
-  declared_entries(const ParameterHandler &handler);
-
-  /// Whether a node of that tree is an entry.
-  bool
-  is_entry(const boost::property_tree::ptree &node);
-
-  /// Paths `Section/Entry' and values of the entries below a node of it, in the
-  /// order of declaration; @p path: that of the node, and a slash.
-  std::vector<std::pair<std::string, std::string>>
-  values_of(const boost::property_tree::ptree &node,
-            const std::string                 &path = "");
 } // namespace Viscoplastic

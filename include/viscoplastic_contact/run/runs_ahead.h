@@ -1,30 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/distributed/tria.h>
-
 #include <viscoplastic_contact/base/console.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
-
-#include <functional>
-#include <string>
+#include <viscoplastic_contact/run/expectation.h>
 
 namespace Viscoplastic
 {
-  /// What a run to a tolerance has to know before its first step.
-  struct Expectation
-  {
-    /// About how large the solution becomes, in the energy norm or by its
-    /// quantity of interest. Zero, and @p failure says why, if nobody knows.
-    double      size = 0.;
-    std::string failure;
-  };
-
-  /// Finds that out, and may refine the first mesh. Collective.
-  template <int dim>
-  using RunsAhead =
-    std::function<Expectation(parallel::distributed::Triangulation<dim> &)>;
-
   /**
    * By runs of the scene without files. One on the first mesh with at most
    * eight steps for each phase tells the size. For the tolerance of a quantity

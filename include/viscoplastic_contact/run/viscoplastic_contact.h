@@ -18,8 +18,8 @@
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/run/announcer.h>
 #include <viscoplastic_contact/run/command_line.h>
+#include <viscoplastic_contact/run/expectation.h>
 #include <viscoplastic_contact/run/run_directories.h>
-#include <viscoplastic_contact/run/runs_ahead.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <memory>

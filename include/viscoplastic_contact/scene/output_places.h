@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deal.II/base/point.h>
-#include <deal.II/distributed/tria.h>
 
 #include <viscoplastic_contact/parameters/choices.h>
 
@@ -13,9 +12,6 @@
 namespace Viscoplastic
 {
   using namespace dealii;
-
-  template <int dim>
-  class Scene;
 
   /// A line of `Output/Lines': points at equal distances, the ends among them.
   template <int dim>
@@ -71,16 +67,4 @@ namespace Viscoplastic
   /// The integrals of `Output/Integrals'.
   std::vector<OutputIntegral>
   read_output_integrals(const std::string &text);
-
-
-  /**
-   * Hold what a scene records against its mesh: points and lines have to be in
-   * the body, boundaries, materials and fields to exist. Returns what is
-   * allowed but means nothing, a sentence each. Collective. Throws ExcMessage.
-   */
-  template <int dim>
-  std::vector<std::string>
-  check_output_places(
-    const Scene<dim>                                &scene,
-    const parallel::distributed::Triangulation<dim> &triangulation);
 } // namespace Viscoplastic

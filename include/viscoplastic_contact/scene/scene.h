@@ -281,17 +281,4 @@ namespace Viscoplastic
     unsigned int                                        present_stage = 0;
     bool has_changing_materials                                       = false;
   };
-
-
-  /// The six (four in plane strain) stress components in the order of the
-  /// parameter file: xx, yy, zz, xy (, xz, yz).
-  template <int dim>
-  constexpr std::array<std::pair<unsigned int, unsigned int>, dim == 2 ? 4 : 6>
-  stress_components()
-  {
-    if constexpr (dim == 2)
-      return {{{0, 0}, {1, 1}, {2, 2}, {0, 1}}};
-    else
-      return {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
-  }
 } // namespace Viscoplastic

@@ -3,10 +3,7 @@
 
 #include <deal.II/base/point.h>
 
-#include <mpi.h>
-
 #include <array>
-#include <string>
 #include <vector>
 
 namespace Viscoplastic
@@ -35,25 +32,4 @@ namespace Viscoplastic
     std::vector<Point<3>> nodes;
     std::vector<Element>  cells, faces;
   };
-
-
-  /**
-   * Read @p name as one of the formats of the parameter file: automatic, msh,
-   * ucd, vtk or abaqus, for a body of @p dim dimensions. What is returned is
-   * consistent: indices are in range, numbers are finite, there are cells, none
-   * of them twice, no face belongs to more than two of them, and the faces are
-   * those on the boundary; what else a file has is left out. Collective. Throws
-   * ExcMessage with a sentence for the user that names the file and the line.
-   *
-   * Gmsh's format is read here, the others are converted to it. deal.II's
-   * GridIn of version 9.4 is no base for any of them: it waits forever for the
-   * end of truncated sections, checks indices in debug mode only, takes the
-   * lines of Gmsh's ABAQUS files for cells, reads ABAQUS coordinates with nine
-   * digits, and VTK files of one version only.
-   */
-  MeshFile
-  read_mesh_file(const std::string &name,
-                 const std::string &format,
-                 const unsigned int dim,
-                 const MPI_Comm     communicator);
 } // namespace Viscoplastic

@@ -3,8 +3,8 @@
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/mesh/files/mesh_converter.h>
-#include <viscoplastic_contact/mesh/files/mesh_file.h>
 #include <viscoplastic_contact/mesh/files/mesh_reader.h>
+#include <viscoplastic_contact/mesh/files/read_mesh_file.h>
 
 #include <algorithm>
 #include <filesystem>

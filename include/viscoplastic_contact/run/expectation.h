@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/distributed/tria.h>
+
+#include <functional>
+#include <string>
+
+namespace Viscoplastic
+{
+  using namespace dealii;
+
+  /// What a run to a tolerance has to know before its first step.
+  struct Expectation
+  {
+    /// About how large the solution becomes, in the energy norm or by its
+    /// quantity of interest. Zero, and @p failure says why, if nobody knows.
+    double      size = 0.;
+    std::string failure;
+  };
+
+  /// Finds that out, and may refine the first mesh. Collective.
+  template <int dim>
+  using RunsAhead =
+    std::function<Expectation(parallel::distributed::Triangulation<dim> &)>;
+} // namespace Viscoplastic

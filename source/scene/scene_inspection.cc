@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/grid/grid_tools.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/mesh/mesh_ids.h>
+#include <viscoplastic_contact/mesh/mesh_pieces.h>
+#include <viscoplastic_contact/scene/jump_in_time.h>
+#include <viscoplastic_contact/scene/output_check.h>
+
+#include <cmath>
+#include <sstream>
+
+// What a scene learns from its mesh, and what is wrong with the two together.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The diagonal of the box around the vertices.
+    template <int dim>
+    double
+    mesh_size(const Triangulation<dim> &triangulation)
+    {
+      const auto corners =
+        GridTools::compute_bounding_box(triangulation).get_boundary_points();
+      return corners.first.distance(corners.second);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    warnings.clear();
+    inspect_boundary_ids(boundary_ids(triangulation));
+    inspect_unused_entries();
+    inspect_flatness(triangulation);
+    inspect_junctions(triangulation);
+    for (const std::string &warning :
+         place_supports(triangulation, boundary, supports))
+      warnings.push_back(warning);
+    for (const std::string &warning :
+         warnings_of_data_in_time(*this, triangulation))
+      warnings.push_back(warning);
+    make_materials(material_ids(triangulation));
+    find_stages(triangulation);
+    for (const std::string &warning : check_output_places(*this, triangulation))
+      warnings.push_back(warning);
+    if (exact_solution)
+      {
+        const bool is_elastic = materials.size() == 1 && !materials[0]->law;
+        exact_solution->set_body(mesh_size(triangulation),
+                                 is_elastic ? materials[0].get() : nullptr);
+        for (auto &pair : boundary)
+          pair.second.derive_data();
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_boundary_ids(
+    const std::set<types::boundary_id> &ids) const
+  {
+    for (const types::boundary_id id : ids)
+      AssertThrow(boundary.count(id) == 1,
+                  ExcMessage("Boundary id " + std::to_string(id) +
+                             " of the mesh has no role; add `subsection "
+                             "Boundary " +
+                             std::to_string(id) +
+                             "' with a role (free, if it carries no load). "
+                             "The mesh has the ids " +
+                             list(ids) +
+                             (id == 0 && !parameters.geometry.file.empty() ?
+                                "; faces that the file puts into no group "
+                                "have the id 0." :
+                                ".")));
+    for (const auto &pair : boundary)
+      AssertThrow(ids.count(pair.first) == 1,
+                  ExcMessage("'Boundary " + std::to_string(pair.first) +
+                             "' has a role, but the mesh has no such boundary "
+                             "id; it has the ids " +
+                             list(ids) + "."));
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_unused_entries()
+  {
+    if (parameters.initial_state.reset_displacement &&
+        !parameters.initial_state.equilibrate && !initial_displacement)
+      warnings.emplace_back(
+        "'Initial state/Reset displacement' changes nothing: without "
+        "'Displacement' or 'Equilibrate' displacements begin with zero.");
+    for (const auto &[id, condition] : boundary)
+      {
+        const BoundaryParameters &given = parameters.boundaries.at(id);
+        for (const std::string &name : condition.unused_entries(given))
+          warnings.push_back(
+            "'Boundary " + std::to_string(id) + "/" + name +
+            "' is not used by the role " + given.role +
+            (condition.role == BoundaryRole::contact ?
+               (given.contact_law == "not given" ?
+                  "" :
+                  " with the contact law " + given.contact_law) +
+                 " with the friction law " + given.friction_law :
+               "") +
+            ".");
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_flatness(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    const double tolerance = parameters.geometry.flatness_tolerance;
+    for (auto &[id, condition] : boundary)
+      if (condition.role == BoundaryRole::symmetry ||
+          condition.role == BoundaryRole::contact)
+        {
+          const PieceNormal<dim> piece = piece_normal(triangulation, id);
+          if (condition.normal_is_given)
+            {
+              AssertThrow(faces_towards(triangulation, id, condition.normal),
+                          ExcMessage(
+                            "'Boundary " + std::to_string(id) +
+                            "/Foundation normal' points into the body; it "
+                            "goes from the body into the foundation."));
+              continue;
+            }
+          condition.normal = piece.normal;
+          std::ostringstream message;
+          message << "Boundary " << id << " has the role "
+                  << (condition.role == BoundaryRole::contact ? "contact" :
+                                                                "symmetry")
+                  << " but is not flat: its normals deviate by "
+                  << piece.deviation
+                  << " degrees from their mean, and 'Geometry/Flatness "
+                     "tolerance' is "
+                  << tolerance
+                  << "; give each flat piece a boundary id of its own"
+                  << (condition.is_unilateral() ?
+                        ", or the foundation a 'Foundation normal'." :
+                        ".");
+          AssertThrow(piece.deviation <= tolerance, ExcMessage(message.str()));
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_junctions(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    // On the coarse mesh, which all ranks know.
+    std::map<types::boundary_id, std::set<unsigned int>> vertices;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          for (const unsigned int v : cell->face(f)->vertex_indices())
+            vertices[cell->face(f)->boundary_id()].insert(
+              cell->face(f)->vertex_index(v));
+    for (const auto &[id, condition] : boundary)
+      if (condition.prescribes_all())
+        for (const auto &[other_id, other] : boundary)
+          if (other.has_contact_points())
+            for (const unsigned int v : vertices[id])
+              if (vertices[other_id].count(v) == 1)
+                {
+                  warnings.push_back(
+                    "Boundary " + std::to_string(id) + " (" +
+                    (condition.is_glued() ? "glued" :
+                     condition.role == BoundaryRole::clamped ?
+                                            "clamped" :
+                                            "prescribed displacement") +
+                    ") touches boundary " + std::to_string(other_id) +
+                    (other.has_friction() ? " (friction)" : " (contact)") +
+                    "; the theory keeps the closures of Gamma_1 "
+                    "and Gamma_3 apart, and stresses may be singular where "
+                    "they meet.");
+                  break;
+                }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::make_materials(const std::set<types::material_id> &ids)
+  {
+    materials.clear();
+    entries.clear();
+    if (parameters.materials.empty())
+      {
+        materials.push_back(
+          std::make_unique<const Material<dim>>("Material",
+                                                parameters.material,
+                                                parameters.handler,
+                                                parameters.laws));
+        for (const types::material_id id : ids)
+          entries[id] = {materials[0].get()};
+        return;
+      }
+
+    const MaterialParameters &plain = parameters.material, defaults;
+    AssertThrow(plain.youngs_modulus == defaults.youngs_modulus &&
+                  plain.poissons_ratio == defaults.poissons_ratio &&
+                  plain.voigt_matrix == defaults.voigt_matrix &&
+                  plain.law == defaults.law,
+                ExcMessage("'Material' gives elasticity or a law beside "
+                           "numbered materials, but no cell would have it; "
+                           "give it to `Material <id>', or leave the numbers "
+                           "out."));
+    for (const types::material_id id : ids)
+      {
+        const auto section = "Material " + std::to_string(id);
+        const auto given   = parameters.materials.find(id);
+        AssertThrow(given != parameters.materials.end(),
+                    ExcMessage("Cells of the mesh have the material id " +
+                               std::to_string(id) +
+                               ", but there is no `subsection " + section +
+                               "'; the mesh has the material ids " + list(ids) +
+                               "."));
+        materials.push_back(std::make_unique<const Material<dim>>(
+          section, given->second, parameters.handler, parameters.laws));
+        entries[id] = {materials.back().get()};
+      }
+    for (const auto &pair : parameters.materials)
+      if (ids.count(pair.first) == 0)
+        warnings.push_back("'Material " + std::to_string(pair.first) +
+                           "' is not used: the mesh has the material ids " +
+                           list(ids) + ".");
+  }
+
+
+
+  template void
+  Scene<2>::inspect(const parallel::distributed::Triangulation<2> &);
+  template void
+  Scene<3>::inspect(const parallel::distributed::Triangulation<3> &);
+} // namespace Viscoplastic

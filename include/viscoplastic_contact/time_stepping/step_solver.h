@@ -113,9 +113,11 @@ namespace Viscoplastic
                       ContactState            &contact,
                       const CoulombLaw        *law = nullptr);
 
-    /// The same with the matrix of the linear solver.
+    /// The same with the matrix of the linear solver, and for a displacement
+    /// @p old_u of the step before.
     ContactReport
     solve_regular(const StepProblem<dim>  &problem,
+                  const DistributedVector &old_u,
                   const DistributedVector &right_side,
                   const double             tolerance,
                   DistributedVector       &u,

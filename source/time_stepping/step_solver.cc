@@ -166,6 +166,32 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  StepSolver<dim>::add_rounding(const Data        &data,
+                                DistributedVector &u,
+                                ContactReport     &report)
+  {
+    // By how much the matrix is larger than the energy of u says: about the
+    // root of its condition number, and rounding makes of residuals up to its
+    // square.
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    const double     size    = bulk_solver->energy_norm();
+    const double     ratio = rounding_error(data, u) / (100. * epsilon * size);
+    if (!(epsilon * ratio * ratio > report.tolerance))
+      return;
+    bulk_solver->begin(data.right_side, u);
+    const double rounding = bulk_solver->rounding_of_residual();
+    if (!(rounding > std::max(report.error, report.tolerance * size)))
+      return;
+    report.error          = rounding;
+    report.relative_error = rounding / size;
+    bulk_solver->set_rounding_error(
+      std::max(bulk_solver->rounding_error(), rounding));
+  }
+
+
+
+  template <int dim>
   double
   StepSolver<dim>::size_of(const Data &data, const DistributedVector &u) const
   {
@@ -455,6 +481,7 @@ namespace Viscoplastic
         report.seconds = timer.wall_time();
         report.plain_seconds =
           std::min(report.seconds, seconds_to_begin + report.plain_seconds);
+        add_rounding(data, u, report);
         return report;
       }
     report.linear_iterations =

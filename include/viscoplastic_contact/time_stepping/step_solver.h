@@ -133,6 +133,13 @@ namespace Viscoplastic
                   ContactState      &contact,
                   const CoulombLaw  *law);
 
+    /// Count what rounding of residuals may leave of the error of a solution
+    /// @p u with contact, where that is more than the tolerance: as dear as
+    /// some solves, so it is asked for only where stiffness differs much within
+    /// the body. Collective.
+    void
+    add_rounding(const Data &data, DistributedVector &u, ContactReport &report);
+
     /// The largest of what the data contribute to the energy norm, without
     /// squares. Collective.
     double

@@ -207,11 +207,8 @@ namespace Viscoplastic
         unknowns.push_back(i);
     const unsigned int n_interior = unknowns.size();
     unknowns.insert(unknowns.end(), face_dofs.begin(), face_dofs.end());
-    AssertThrow(!unknowns.empty(),
-                ExcMessage(
-                  "The boundary conditions prescribe the "
-                  "displacement at every node, and nothing is left to "
-                  "solve for; refine the mesh or release a boundary."));
+    if (unknowns.empty())
+      return; // every displacement is prescribed
 
     // A fill reducing ordering of the interior; the face stays last. AMD is
     // better in 2D, nested dissection in 3D.
@@ -247,6 +244,8 @@ namespace Viscoplastic
   void
   SchurSolver::factorize()
   {
+    if (unknowns.empty())
+      return;
     cholmod_sparse *A =
       factor->to_cholmod(matrix, unknowns, unknowns.size(), true);
     cholmod_l_factorize(A, factor->L, &factor->common);

@@ -30,10 +30,17 @@ namespace Viscoplastic
     : discretization(discretization)
     , motions(discretization.space.motions_held_by_contact())
   {
-    // Elimination with pivots: the component that moves most in what those
-    // before have left free.
     if (motions.empty())
       return;
+    for (DistributedVector motion : motions) // a copy
+      {
+        for (const DistributedVector &other : orthonormal_motions)
+          motion.add(-(motion * other), other);
+        motion /= motion.l2_norm();
+        orthonormal_motions.push_back(motion);
+      }
+    // Elimination with pivots: the component that moves most in what those
+    // before have left free.
     const ContactLayout &face = discretization.face->layout();
     const auto &positions     = discretization.face_restriction().positions();
     std::vector<Vector<double>> left;
@@ -157,6 +164,18 @@ namespace Viscoplastic
 
 
   template <int dim>
+  DistributedVector
+  ProximalSprings<dim>::rigid_part(const DistributedVector &u) const
+  {
+    DistributedVector result = discretization.space.owned_vector();
+    for (const DistributedVector &motion : orthonormal_motions)
+      result.add(u * motion, motion);
+    return result;
+  }
+
+
+
+  template <int dim>
   HeldBody
   ProximalSprings<dim>::held_body(const StepProblem<dim> &problem) const
   {
@@ -261,11 +280,20 @@ namespace Viscoplastic
     double            inner_tolerance = tolerance, left_by_rounding = 0.;
     const HeldBody    body = held_body(problem);
     DistributedVector center(u), right(u), change(u);
+    // How far the body has gone as a whole makes no strain, but rounding of
+    // it would make forces, which soft ground does not tell from loads: all
+    // displacements are those relative to a rigid motion.
+    DistributedVector old_u(problem.old_u()),
+      rigid_motion = discretization.space.owned_vector();
     for (unsigned int n = 0; n < max_proximal_steps; ++n)
       {
+        change = rigid_part(u);
+        rigid_motion += change;
+        for (DistributedVector *vector : {&u, &center, &old_u})
+          *vector -= change;
         right = right_side;
         add_load(center, right);
-        ContactReport again = solve(right, inner_tolerance);
+        ContactReport again = solve(old_u, right, inner_tolerance);
         again.add_earlier(report);
         report           = again;
         left_by_rounding = report.relative_error > 1.01 * inner_tolerance ?
@@ -281,17 +309,23 @@ namespace Viscoplastic
         // forces that balance leave nothing in the springs.
         const double force_in_springs = right.l1_norm();
         singular_matrix->vmult(right, u);
-        const double size = std::sqrt(std::max(0., u * right));
-        const bool   in_balance =
+        const double      size = std::sqrt(std::max(0., u * right));
+        DistributedVector whole(center);
+        whole += rigid_motion;
+        const bool in_balance =
           force_in_springs <=
             0.01 * std::max(right.l1_norm(), right_side.l1_norm()) ||
-          in_springs <= rounding * norm(center);
+          in_springs <= rounding * norm(whole);
         report.error += in_springs;
         report.relative_error = size > 0. ? report.error / size : 0.;
         report.tolerance      = tolerance;
-        if (in_balance &&
-            report.error <= std::max(tolerance * size, bulk.rounding_error()))
-          return report;
+        // What rounding leaves of a solve may be left in the springs, too.
+        if (in_balance && report.error <= std::max(tolerance * size,
+                                                   2. * bulk.rounding_error()))
+          {
+            u += rigid_motion;
+            return report;
+          }
         if (in_springs < 0.5 * report.error)
           inner_tolerance *=
             std::clamp(0.3 * tolerance * size / report.error, 1e-3, 0.5);
@@ -311,7 +345,7 @@ namespace Viscoplastic
         if (discretization.face->gives_way())
           {
             change = center;
-            change -= problem.old_u();
+            change -= old_u;
             const std::vector<double> way =
               settle(body,
                      contact,

@@ -166,6 +166,32 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  StepSolver<dim>::add_rounding(const Data        &data,
+                                DistributedVector &u,
+                                ContactReport     &report)
+  {
+    // By how much the matrix is larger than the energy of u says: about the
+    // root of its condition number, and rounding makes of residuals up to its
+    // square.
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    const double     size    = bulk_solver->energy_norm();
+    const double     ratio = rounding_error(data, u) / (100. * epsilon * size);
+    if (!(epsilon * ratio * ratio > report.tolerance))
+      return;
+    bulk_solver->begin(data.right_side, u);
+    const double rounding = bulk_solver->rounding_of_residual();
+    if (!(rounding > std::max(report.error, report.tolerance * size)))
+      return;
+    report.error          = rounding;
+    report.relative_error = rounding / size;
+    bulk_solver->set_rounding_error(
+      std::max(bulk_solver->rounding_error(), rounding));
+  }
+
+
+
+  template <int dim>
   double
   StepSolver<dim>::size_of(const Data &data, const DistributedVector &u) const
   {
@@ -327,14 +353,18 @@ namespace Viscoplastic
                                      const CoulombLaw        *law)
   {
     if (!springs)
-      return solve_regular(problem, right_side, tolerance, u, contact, law);
+      return solve_regular(
+        problem, problem.old_u(), right_side, tolerance, u, contact, law);
     return springs->solve(
       problem,
       right_side,
       tolerance,
       *bulk_solver,
-      [&](const DistributedVector &right, const double inner_tolerance) {
-        return solve_regular(problem, right, inner_tolerance, u, contact, law);
+      [&](const DistributedVector &old_u,
+          const DistributedVector &right,
+          const double             inner_tolerance) {
+        return solve_regular(
+          problem, old_u, right, inner_tolerance, u, contact, law);
       },
       u,
       contact);
@@ -345,6 +375,7 @@ namespace Viscoplastic
   template <int dim>
   ContactReport
   StepSolver<dim>::solve_regular(const StepProblem<dim>  &problem,
+                                 const DistributedVector &old_u,
                                  const DistributedVector &right_side,
                                  const double             tolerance,
                                  DistributedVector       &u,
@@ -359,10 +390,7 @@ namespace Viscoplastic
     if (problem.foundation_step.size() > 0)
       foundation_step =
         face_motion(discretization.face->layout(), problem.foundation_step);
-    const Data   data{problem.old_u(),
-                    problem.load.values,
-                    right_side,
-                    foundation_step};
+    const Data   data{old_u, problem.load.values, right_side, foundation_step};
     const double size = size_of(data, u);
     AssertThrow(!(size > largest_size),
                 ExcMessage(out_of_range("the size of loads and displacements "
@@ -395,7 +423,7 @@ namespace Viscoplastic
           contact.multiplier[p] *= factor;
         }
     };
-    const DistributedVector old_u            = in_unit(data.old_u),
+    const DistributedVector other_old_u      = in_unit(old_u),
                             load             = in_unit(data.load),
                             other_right_side = in_unit(right_side);
     const std::vector<double> bounds         = contact.bound;
@@ -410,7 +438,7 @@ namespace Viscoplastic
           bound /= unit;
       }
     ContactReport report =
-      solve_in_unit({old_u, load, other_right_side, foundation_step},
+      solve_in_unit({other_old_u, load, other_right_side, foundation_step},
                     tolerance,
                     u,
                     contact,
@@ -453,6 +481,7 @@ namespace Viscoplastic
         report.seconds = timer.wall_time();
         report.plain_seconds =
           std::min(report.seconds, seconds_to_begin + report.plain_seconds);
+        add_rounding(data, u, report);
         return report;
       }
     report.linear_iterations =
@@ -513,12 +542,19 @@ namespace Viscoplastic
       springs->add_load(u, right);
     bulk_solver->begin(right, u);
     bulk_solver->set_truncation(make_truncation(face, contact, {}));
-    // As a rule the change is less than a hundredth of u.
-    bulk_solver->correct(force,
-                         std::clamp(100. * tolerance, 1e-10, 1e-4),
-                         change);
-    bulk_solver->search_terms(change);
-    bulk_solver->take_step(1.);
+    // As a rule the change is less than a hundredth of u. But next to
+    // incompressible a new mesh may bring much more energy than there is.
+    const double first   = std::clamp(100. * tolerance, 1e-10, 1e-4);
+    const auto   correct = [&](const double reduction) {
+      bulk_solver->correct(force, reduction, change);
+      const double curvature = bulk_solver->search_terms(change).curvature;
+      bulk_solver->take_step(1.);
+      return std::sqrt(std::max(0., curvature));
+    };
+    const double error   = first * correct(first),
+                 allowed = tolerance * bulk_solver->energy_norm();
+    if (!bulk_solver->is_exact() && error > allowed)
+      correct(std::max(allowed / error, first));
     bulk_solver->finish();
   }
 

@@ -122,6 +122,49 @@ class ByHand(TestCase):
                         relative=1e-4,
                     )
 
+    def test_slab_that_sinks_far(self):
+        """Two materials on ground that is 1e-7 times as stiff, or less: the way
+        of the slab is that of its weight, and rounding of what its stiffness
+        makes of the way is no force."""
+        weight, exponent = 0.002135 * 0.189 + 0.0004237, 1.5
+        for compliance, solver, ranks in (
+            (2.065e-4, "direct", 1),
+            (2.065e-4, "multigrid", 2),
+            (2e-10, "direct", 1),
+        ):
+            scene = {
+                "Dimension": 2,
+                "Geometry/Generator": "subdivided_hyper_rectangle",
+                "Geometry/Arguments": "2, 1 : 0, 0 : 1, 0.189 : true",
+                "Geometry/Global refinements": 3,
+                "Material/Young's modulus": "if(x < 0.5, 0.4447, 222.2)",
+                "Material/Poisson's ratio": "if(x < 0.5, 0, 0.3)",
+                "Loads/Body force": "0; -0.002135*(1 + t)",
+                "Boundary 0/Role": "symmetry",
+                "Boundary 1/Role": "free",
+                "Boundary 2/Role": "contact",
+                "Boundary 2/Contact law": "normal compliance",
+                "Boundary 2/Compliance": compliance,
+                "Boundary 2/Compliance exponent": exponent,
+                "Boundary 2/Friction law": "none",
+                "Boundary 3/Role": "traction",
+                "Boundary 3/Traction": "0; -0.0004237*(1 + t)",
+                "Initial state/Equilibrate": "true",
+                "Time/Phases": "1: 2",
+                "Solver/Linear solver": solver,
+            }
+            with self.subTest(compliance=compliance, solver=solver):
+                result = run("slab", scene, ranks, text="")
+                for row, load in (0, weight), (-1, 2 * weight):
+                    self.assertClose(
+                        -result["contact_force_y"][row], load, relative=1e-7
+                    )
+                    self.assertClose(
+                        result["max_penetration"][row],
+                        (load / compliance) ** (1 / exponent),
+                        relative=1e-4,
+                    )
+
 
 class Limit(TestCase):
     def test_rigid_foundation(self):

@@ -296,6 +296,39 @@ class Strip(TestCase):
                 self.assertGreater(ratio, 1.2)
                 self.assertLess(ratio, 2.1)
 
+    def test_open_end(self):
+        """Where springs begin, tractions are large, and so are residuals: the
+        estimate keeps its ratio to the error from soft springs to those that are
+        a plane of symmetry."""
+
+        def strip(level, more):
+            changes = {
+                "Error control/Error bar": "true",
+                "Geometry/Global refinements": level,
+            }
+            return run("springs_strip_2d", {**changes, **more})
+
+        for k_n in 1.0, 100.0, 1e4:
+            springs = {"Boundary 2/Normal stiffness": f"if(x > 1, {k_n}, 0)"}
+            coarse, fine = strip(2, springs), strip(5, springs)
+            # Of the loads' work the error lacks its own energy.
+            lost = fine["stored_energy"][-1] - coarse["stored_energy"][-1]
+            ratio = coarse["estimate_space"][-1] / np.sqrt(2 * lost)
+            self.assertGreater(ratio, 1.0, f"{k_n}")
+            self.assertLess(ratio, 2.0, f"{k_n}")
+        stiff = strip(2, {"Boundary 2/Normal stiffness": "if(x > 1, 1e8, 0)"})
+        plane = {
+            "Geometry/Boundary ids": "if(id == 2 && x > 1, 4, id)",
+            "Boundary 2/Normal stiffness": "",
+            "Boundary 2/Role": "free",
+            "Boundary 4/Role": "symmetry",
+        }
+        self.assertClose(
+            stiff["estimate_space"][-1],
+            strip(2, plane)["estimate_space"][-1],
+            relative=1e-6,
+        )
+
 
 class Beam(TestCase):
     def test_hetenyi(self):

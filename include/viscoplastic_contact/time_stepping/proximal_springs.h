@@ -42,10 +42,11 @@ namespace Viscoplastic
     bounds_that_hold(const StepProblem<dim>    &problem,
                      const std::vector<double> &bounds) const;
 
-    /// Solves the step with the springs from u and contact, for a right side
-    /// and a tolerance.
-    using Solve =
-      std::function<ContactReport(const DistributedVector &, const double)>;
+    /// Solves the step with the springs from u and contact, for a displacement
+    /// of the step before, a right side and a tolerance.
+    using Solve = std::function<ContactReport(const DistributedVector &,
+                                              const DistributedVector &,
+                                              const double)>;
 
     /**
      * Solve the step of @p problem by repeated calls of @p solve, which change
@@ -76,9 +77,15 @@ namespace Viscoplastic
     double
     norm(const DistributedVector &u) const;
 
+    /// The rigid motion, of those that only contact can prevent, nearest to a
+    /// displacement. Collective.
+    DistributedVector
+    rigid_part(const DistributedVector &u) const;
+
     const Discretization<dim> &discretization;
     /// The rigid motions that only contact can prevent.
     const std::vector<DistributedVector> motions;
+    std::vector<DistributedVector>       orthonormal_motions;
     /// As many components of contact nodes as that, which can hold the body:
     /// positions among the owned degrees of freedom.
     std::vector<unsigned int> supports;

@@ -113,9 +113,11 @@ namespace Viscoplastic
                       ContactState            &contact,
                       const CoulombLaw        *law = nullptr);
 
-    /// The same with the matrix of the linear solver.
+    /// The same with the matrix of the linear solver, and for a displacement
+    /// @p old_u of the step before.
     ContactReport
     solve_regular(const StepProblem<dim>  &problem,
+                  const DistributedVector &old_u,
                   const DistributedVector &right_side,
                   const double             tolerance,
                   DistributedVector       &u,
@@ -130,6 +132,13 @@ namespace Viscoplastic
                   DistributedVector &u,
                   ContactState      &contact,
                   const CoulombLaw  *law);
+
+    /// Count what rounding of residuals may leave of the error of a solution
+    /// @p u with contact, where that is more than the tolerance: as dear as
+    /// some solves, so it is asked for only where stiffness differs much within
+    /// the body. Collective.
+    void
+    add_rounding(const Data &data, DistributedVector &u, ContactReport &report);
 
     /// The largest of what the data contribute to the energy norm, without
     /// squares. Collective.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
-#include <vector>
 
 namespace Viscoplastic
 {
@@ -20,83 +19,47 @@ namespace Viscoplastic
 
 
 
-    /// What there is to tell of a step beside its time, each part with the
-    /// order of its omission.
-    std::vector<std::pair<unsigned int, std::string>>
-    state_of(const StepProgress &step,
-             const std::string  &time_unit,
-             const bool          brief)
+    /// What there is to tell of a step beside its number and time.
+    std::string
+    state_of(const StepProgress &step, const std::string &time_unit)
     {
-      std::vector<std::pair<unsigned int, std::string>> parts{
-        {2, "k = " + number(step.k, brief ? 2 : 3) + time_unit},
-        {3, "cells " + number(step.n_cells, 18)}};
-      const std::string error = brief ? "error " : "error estimate ";
+      std::string text = "k = " + number(step.k, 3) + time_unit + "  cells " +
+                         number(step.n_cells, 18);
       if (step.contact_iterations)
-        parts.emplace_back(4,
-                           (brief ? "its " : "contact iterations ") +
-                             std::to_string(*step.contact_iterations));
+        text +=
+          "  contact iterations " + std::to_string(*step.contact_iterations);
       if (step.slipping)
-        parts.emplace_back(
-          5,
-          (brief ? "slip " : "slipping ") +
-            std::to_string(std::lround(100. * *step.slipping)) + " %");
+        text += "  slipping " +
+                std::to_string(std::lround(100. * *step.slipping)) + " %";
       if (step.error_estimate)
-        parts.emplace_back(5,
-                           error + number(*step.error_estimate, brief ? 2 : 3));
+        text += "  error estimate " + number(*step.error_estimate, 3);
       if (step.relative_error)
-        parts.emplace_back(5,
-                           error + number(100. * *step.relative_error, 2) +
-                             " %");
-      return parts;
+        text +=
+          "  error estimate " + number(100. * *step.relative_error, 2) + " %";
+      return text;
     }
 
 
 
-    /// The step in words, or, if @p width is not 0, in that many characters:
-    /// what matters least is left out first.
+    /// The number of a step among those of the run, as far as they are known,
+    /// and its time.
     std::string
-    description(const StepProgress &step,
-                const unsigned int  n_steps,
-                const std::string  &time_unit,
-                const double        elapsed,
-                const double        left,
-                const std::size_t   width)
+    place_of(const StepProgress &step,
+             const unsigned int  n_steps,
+             const std::string  &time_unit)
     {
-      const bool        brief = width > 0;
       const std::string all =
         step.expected_steps ?
           "~" + number(std::floor(*step.expected_steps), 18) :
           std::to_string(n_steps);
-      const bool         is_known = !step.done || step.expected_steps;
-      std::ostringstream count;
-      count << "Step ";
-      if (is_known)
-        count << std::setw(static_cast<int>(all.size())) << step.n << '/'
-              << all;
+      std::ostringstream text;
+      text << "Step ";
+      if (!step.done || step.expected_steps)
+        text << std::setw(static_cast<int>(all.size())) << step.n << '/' << all;
       else
-        count << step.n;
-
-      // In the order of appearance, with the order of omission.
-      std::vector<std::pair<unsigned int, std::string>> parts{
-        {8, count.str()},
-        {6, "t = " + number(step.t, brief ? 4 : 5) + time_unit}};
-      const auto state = state_of(step, time_unit, brief);
-      parts.insert(parts.end(), state.begin(), state.end());
-      parts.emplace_back(1, "elapsed " + duration(elapsed));
-      if (is_known)
-        parts.emplace_back(7, "left " + duration(left));
-
-      std::string line;
-      for (unsigned int omitted = 0; omitted < 8; ++omitted)
-        {
-          line.clear();
-          for (const auto &[order, text] : parts)
-            if (order > omitted)
-              line += (line.empty() ? "" : "  ") + text;
-          if (!brief || line.size() <= width)
-            break;
-        }
-      return line;
+        text << step.n;
+      text << "  t = " << number(step.t, 5) << time_unit;
+      return text.str();
     }
   } // namespace
 
@@ -111,40 +74,37 @@ namespace Viscoplastic
     if (step.n == 0)
       return;
     const double all     = step.expected_steps.value_or(n_steps);
-    const double left    = remaining.seconds(all - step.n, step.n_cells);
     const bool   is_last = step.done ? *step.done >= 1. : step.n == n_steps;
-
-    std::string text;
-    for (const auto &part : state_of(step, time_unit, /* brief = */ false))
-      text += part.second + "  ";
     const double done =
       is_last ? 1. : step.done.value_or(static_cast<double>(step.n) / n_steps);
+    const std::string place = place_of(step, n_steps, time_unit),
+                      state = state_of(step, time_unit),
+                      left  = !step.done || step.expected_steps ?
+                                "  left " +
+                                 duration(remaining.seconds(all - step.n,
+                                                            step.n_cells)) :
+                                "";
     // Asked in each step: it keeps count.
-    if (is_worth_a_line(step, text, done) || is_last || console.is_verbose())
+    if (is_worth_a_line(step, done) || is_last || console.is_verbose())
       {
         std::ostream &out =
           console.has_status() && !is_last ? console.log() : console.stream();
-        out << description(step, n_steps, time_unit, elapsed, left, 0);
+        out << place << "  " << state << "  elapsed " << duration(elapsed)
+            << left;
         if (n_left_out > 0)
           out << "  (" << n_left_out << (n_left_out == 1 ? " step" : " steps")
-              << (n_left_out_alike == n_left_out ? " like the line above" : "")
               << " left out)";
         out << std::endl;
-        last_text        = text;
-        done_at_line     = done;
-        n_left_out       = 0;
-        n_left_out_alike = 0;
+        done_at_line = done;
+        n_left_out   = 0;
       }
     else
-      {
-        ++n_left_out;
-        n_left_out_alike += text == last_text;
-      }
-    // Ten changes a second are enough.
+      ++n_left_out;
+    // Ten changes a second are enough; what matters most comes first, since a
+    // terminal may be narrow.
     if (console.has_status() && !is_last && elapsed - last_shown >= 0.1)
       {
-        console.show_status(description(
-          step, n_steps, time_unit, elapsed, left, console.width() - 1));
+        console.show_status(place + left + "  " + state);
         last_shown = elapsed;
       }
   }
@@ -152,12 +112,10 @@ namespace Viscoplastic
 
 
   bool
-  Progress::is_worth_a_line(const StepProgress &step,
-                            const std::string  &text,
-                            const double        done)
+  Progress::is_worth_a_line(const StepProgress &step, const double done)
   {
-    constexpr double rounding         = 1e-9;
-    const auto       is_in_later_part = [done](const double than) {
+    const auto is_in_later_part = [done](const double than) {
+      constexpr double rounding = 1e-9;
       return std::floor(max_lines * (done + rounding)) >
              std::floor(max_lines * (than + rounding));
     };
@@ -171,23 +129,7 @@ namespace Viscoplastic
     last_slip  = slip;
     if (is_event)
       done_at_event = done;
-
-    const bool repeats = text == last_text;
-    const bool is_due  = !repeats || n_left_out + 1 >= next_distance ||
-                        done >= done_at_line + 0.1 - rounding;
-    if (!is_first && !is_event && !(is_due && is_in_later_part(done_at_line)))
-      return false;
-    // 1, 2, 5, 10, 20, 50, ...
-    if (!repeats)
-      next_distance = 1;
-    else
-      {
-        unsigned int digit = next_distance;
-        while (digit >= 10)
-          digit /= 10;
-        next_distance = digit == 2 ? next_distance / 2 * 5 : 2 * next_distance;
-      }
-    return true;
+    return is_first || is_event || is_in_later_part(done_at_line);
   }
 
 

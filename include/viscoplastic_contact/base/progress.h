@@ -107,12 +107,10 @@ namespace Viscoplastic
 
   /**
    * Tells how a run proceeds. A terminal shows the present step in a line that
-   * changes. Otherwise, and in the log, steps are lines. Where steps differ
-   * from the line above in nothing but their time, lines come at growing
-   * distances of 1, 2, 5, 10, 20, ... steps, at most a tenth of the run. Of 200
-   * equal parts of the run each has at most one line, and another one if the
-   * mesh changes or slip begins or ends in it. Lines tell how many steps have
-   * been left out before them. statistics.csv has all steps.
+   * changes. Otherwise, and in the log, steps are lines: of 200 equal parts of
+   * the run each has at most one, and another one if the mesh changes or slip
+   * begins or ends in it. Lines tell how many steps have been left out before
+   * them. statistics.csv has all steps.
    */
   class Progress
   {
@@ -135,12 +133,10 @@ namespace Viscoplastic
   private:
     static constexpr unsigned int max_lines = 200;
 
-    /// Whether a step other than the last one gets a line. @p text is what it
-    /// has to tell beside its time, @p done the part of the run.
+    /// Whether a step other than the last one gets a line; @p done is the part
+    /// of the run that has been made.
     bool
-    is_worth_a_line(const StepProgress &step,
-                    const std::string  &text,
-                    const double        done);
+    is_worth_a_line(const StepProgress &step, const double done);
 
     Console           &console;
     const unsigned int n_steps;
@@ -148,12 +144,8 @@ namespace Viscoplastic
     RemainingTime      remaining;
     double             last_elapsed = 0., last_shown = -1.;
 
-    /// What the last line has told, and at which distance of it there is
-    /// another one that tells the same.
-    std::string  last_text;
-    unsigned int next_distance = 1;
-    /// Steps without a line since then, those like it among them.
-    unsigned int n_left_out = 0, n_left_out_alike = 0;
+    /// Steps without a line since the last one with a line.
+    unsigned int n_left_out = 0;
     /// Of the step before the present one: the number of cells, and whether
     /// none (0), some (1) or all (2) of the face slips.
     double last_cells = 0.;

@@ -10,8 +10,12 @@ namespace Viscoplastic
   namespace
   {
     /**
-     * G = -(1/lambda) E (sigma - P_K sigma) with the elastic range
-     * K = {|dev sigma| <= R}. The projection P_K shortens the deviator to the
+     * Perzyna's viscoplasticity (Adv. Appl. Mech. 9, 1966) with the elastic
+     * range K = {|dev sigma| <= R},
+     *
+     *     G = -(1/lambda) E (sigma - P_K sigma).
+     *
+     * The projection P_K shortens the deviator to the
      * length R and leaves the pressure alone, so that with s = dev sigma
      *
      *     sigma - P_K sigma = (1 - R/|s|)_+ s.

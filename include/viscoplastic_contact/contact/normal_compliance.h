@@ -6,8 +6,9 @@
 namespace Viscoplastic
 {
   /**
-   * How a foundation gives way at a node: the force p(w), the sum of k w_+^m
-   * over the pieces that meet there, at the penetration w = u_n - g.
+   * Normal compliance at a node (Oden and Martins, Comput. Methods Appl. Mech.
+   * Eng. 52, 1985): the force p(w), the sum of k w_+^m over the pieces that
+   * meet there, at the penetration w = u_n - g.
    */
   class NormalCompliance
   {

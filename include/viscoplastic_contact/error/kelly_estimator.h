@@ -7,8 +7,9 @@
 
 namespace Viscoplastic
 {
-  /// Squared jumps of the displacement gradient after Kelly, weighted by the
-  /// cell size; the layout of ResidualEstimator::estimate().
+  /// Squared jumps of the displacement gradient, weighted by the cell size
+  /// (Kelly, Gago, Zienkiewicz and Babuska, Int. J. Numer. Methods Eng. 19,
+  /// 1983); the layout of ResidualEstimator::estimate().
   template <int dim>
   Vector<double>
   kelly_estimate(const AdmissibleSpace<dim> &space,

@@ -13,7 +13,8 @@
 namespace Viscoplastic
 {
   /**
-   * The residual estimator for the inequality of one step,
+   * The residual estimator (Verfuerth, A Review of A Posteriori Error
+   * Estimation, 1996) for the inequality of one step,
    *
    *     eta_K^2 = ( h_K^2 |b + div E eps(u_h)|^2
    *                 + sum_e 1/2 h_e |[sigma_h nu]|^2     interior faces

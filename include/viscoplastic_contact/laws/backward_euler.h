@@ -114,7 +114,8 @@ namespace Viscoplastic
                                const SymmetricTensor<2, 3> &start);
 
   /**
-   * The algorithmic tangent, the derivative of sigma = E eps + z(eps):
+   * The algorithmic (consistent) tangent of Simo and Taylor, Comput. Methods
+   * Appl. Mech. Eng. 48, 1985: the derivative of sigma = E eps + z(eps),
    *
    *     C = (I - k dG/dsigma)^-1 (E + k dG/deps).
    *

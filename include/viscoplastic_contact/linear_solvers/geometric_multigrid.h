@@ -22,7 +22,9 @@ namespace Viscoplastic
    *
    * The matrices of coarser meshes are those of the same bilinear form on their
    * spaces (Galerkin products), whatever the material. They know nothing of the
-   * truncation: LevelMasks do, and another truncation costs little.
+   * truncation: LevelMasks do, and another truncation costs little. Multigrid
+   * on truncated spaces is that of Graeser and Kornhuber, J. Comput. Math. 27,
+   * 2009.
    *
    * The levels are in single precision, which is enough for a preconditioner.
    */

@@ -14,10 +14,10 @@ namespace dealii::TrilinosWrappers
 namespace Viscoplastic
 {
   /**
-   * A cycle of smoothed aggregation (ML) for a symmetric positive definite
-   * matrix of elasticity: Chebyshev smoothers, a direct solver on the last
-   * level. The same matrix gives the same cycle, however many there were
-   * before.
+   * A cycle of smoothed aggregation (Vanek, Mandel and Brezina, Computing 56,
+   * 1996; Trilinos' ML) for a symmetric positive definite matrix of elasticity:
+   * Chebyshev smoothers, a direct solver on the last level. The same matrix
+   * gives the same cycle, however many there were before.
    */
   class SmoothedAggregation
   {

@@ -77,7 +77,7 @@ namespace Viscoplastic
       }
     stiffness += face.sum(springs);
     Vector<double> tilted(response);
-    truncation.apply_tilt(face, tilted);
+    truncation.tilt_equations(face, tilted);
     const double lost = face.dot(w, response) - face.dot(w, tilted);
     return stiffness > 0. ? lost / stiffness : 0.;
   }

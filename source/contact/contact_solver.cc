@@ -338,7 +338,11 @@ namespace Viscoplastic
     const Timer timer;
     report.linear_iterations += bulk.finish();
     if (bounds)
-      report.bound_iterations = bounds->n_moves();
+      {
+        report.bound_iterations = bounds->n_moves();
+        report.contraction      = bounds->largest_loss();
+        report.doubt            = bounds->doubt();
+      }
     report.plain_seconds = plain_seconds(timer.wall_time());
     return report;
   }
@@ -588,9 +592,7 @@ namespace Viscoplastic
     correction_seconds += timer.wall_time();
     decades -= std::log10(reduction);
     if (bounds && bounds->follow())
-      report.contraction =
-        std::max(report.contraction,
-                 bounds->predict(bulk, truncation, residual, w, state));
+      bounds->predict(bulk, truncation, residual, w, state);
   }
 
 

@@ -189,9 +189,22 @@ namespace Viscoplastic
 
 
   void
-  FaceTruncation::apply_tilt(const ContactLayout &face, Vector<double> &x) const
+  FaceTruncation::tilt_equations(const ContactLayout &face,
+                                 Vector<double>      &x) const
   {
-    for (unsigned int n = 0; n < tilt.size(); ++n)
-      face.set_node_values(tilt[n] * face.node_values(x, n), n, x);
+    if (!transposed)
+      for (unsigned int n = 0; n < tilt.size(); ++n)
+        face.set_node_values(tilt[n] * face.node_values(x, n), n, x);
+  }
+
+
+
+  void
+  FaceTruncation::tilt_motions(const ContactLayout &face,
+                               Vector<double>      &x) const
+  {
+    if (transposed)
+      for (unsigned int n = 0; n < tilt.size(); ++n)
+        face.set_node_values(face.node_values(x, n) * tilt[n], n, x);
   }
 } // namespace Viscoplastic

@@ -56,12 +56,12 @@ namespace Viscoplastic
 
 
 
-  double
+  void
   CoulombBounds::predict(BulkSolver           &bulk,
                          const FaceTruncation &truncation,
                          const Vector<double> &residual,
                          const Vector<double> &w,
-                         ContactState         &state) const
+                         ContactState         &state)
   {
     double         stiffness = bulk.search_terms(w).curvature;
     Vector<double> response(w.size()), after(residual);
@@ -77,9 +77,24 @@ namespace Viscoplastic
       }
     stiffness += face.sum(springs);
     Vector<double> tilted(response);
-    truncation.apply_tilt(face, tilted);
+    truncation.tilt_equations(face, tilted);
     const double lost = face.dot(w, response) - face.dot(w, tilted);
-    return stiffness > 0. ? lost / stiffness : 0.;
+    if (!(stiffness > 0.) || lost <= loss * stiffness)
+      return;
+    loss = lost / stiffness;
+    if (loss < 1.)
+      return;
+    std::vector<double> of_nodes;
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      of_nodes.push_back(
+        face.node_values(w, node) *
+        (face.node_values(response, node) - face.node_values(tilted, node)));
+    std::ostringstream text;
+    text << "slip loses " << loss
+         << " of its stiffness to the pressure that it changes, most at "
+         << place_of_largest(of_nodes)
+         << " (friction coefficient: " << largest_coefficient << " at most)";
+    doubts = text.str();
   }
 
 
@@ -146,28 +161,41 @@ namespace Viscoplastic
 
 
   std::string
+  CoulombBounds::place_of_largest(const std::vector<double> &of_nodes) const
+  {
+    const auto largest = std::max_element(of_nodes.begin(), of_nodes.end());
+    const auto of_ranks =
+      Utilities::MPI::all_gather(face.communicator,
+                                 of_nodes.empty() ?
+                                   std::numeric_limits<double>::lowest() :
+                                   *largest);
+    std::string place;
+    if (law.place && !of_nodes.empty())
+      place = law.place(largest - of_nodes.begin());
+    return Utilities::MPI::broadcast(face.communicator,
+                                     place,
+                                     std::max_element(of_ranks.begin(),
+                                                      of_ranks.end()) -
+                                       of_ranks.begin());
+  }
+
+
+
+  std::string
   CoulombBounds::failure() const
   {
-    unsigned int worst = 0;
-    for (unsigned int p = 1; p < missing.size(); ++p)
-      if (std::abs(missing[p]) > std::abs(missing[worst]))
-        worst = p;
-    const auto of_ranks = Utilities::MPI::all_gather(
-      face.communicator, missing.empty() ? -1. : std::abs(missing[worst]));
-    std::string place;
-    if (law.place && !missing.empty())
-      place = law.place(face.points[worst].node);
-    place = Utilities::MPI::broadcast(face.communicator,
-                                      place,
-                                      std::max_element(of_ranks.begin(),
-                                                       of_ranks.end()) -
-                                        of_ranks.begin());
+    std::vector<double> of_nodes(face.n_nodes(), 0.);
+    for (unsigned int p = 0; p < missing.size(); ++p)
+      {
+        double &here = of_nodes[face.points[p].node];
+        here         = std::max(here, std::abs(missing[p]));
+      }
     std::ostringstream message;
     message << "Coulomb's law with the pressure of the step itself may have no "
                "solution near the last step, or several, where the friction "
                "coefficient is large (here up to "
             << largest_coefficient << "); friction and pressure fit worst at "
-            << place
+            << place_of_largest(of_nodes)
             << ". Smaller steps may follow a solution; 'Solver/Coulomb "
                "pressure' = lagged takes the pressure of the step before.";
     return message.str();

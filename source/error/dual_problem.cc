@@ -189,7 +189,9 @@ namespace Viscoplastic
 
   template <int dim>
   DualSolution<dim>
-  DualProblem<dim>::solve(BulkSolver &solver, const ContactState &contact) const
+  DualProblem<dim>::solve(BulkSolver         &solver,
+                          const ContactState &contact,
+                          const CoulombLaw   *law) const
   {
     const Discretization<dim>  &d     = discretization;
     const AdmissibleSpace<dim> &space = d.space;
@@ -218,9 +220,12 @@ namespace Viscoplastic
         const Vector<double> no_force(face.n_dofs());
         Vector<double>       change(face.n_dofs());
         solver.begin(load, dual.w);
-        solver.set_truncation(
-          make_truncation(face, linear, inverse_diagonal, stiffest_spring),
-          /* may_rebuild = */ false);
+        FaceTruncation truncation =
+          make_truncation(face, linear, inverse_diagonal, stiffest_spring);
+        if (law != nullptr)
+          law->tilt(face, linear, truncation);
+        truncation.transposed = true;
+        solver.set_truncation(truncation, /* may_rebuild = */ false);
         solver.correct(no_force, dual_tolerance, change);
         solver.search_terms(change);
         solver.take_step(1.);

@@ -57,6 +57,23 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::optional<CoulombLaw>
+  QuantityEstimator<dim>::law_of_step(const State<dim> &old,
+                                      const State<dim> &state) const
+  {
+    const Discretization<dim> &d = discretization;
+    if (!d.slipping_face() || !d.face->has_computed_pressure() ||
+        d.scene().parameters.solver.coulomb_pressure == CoulombPressure::lagged)
+      return {};
+    CoulombLaw law;
+    law.of_pressure = d.face->bounds_of_pressure(
+      state.t, d.face->slip_rates(old.velocity, old.t - old.k, old.t));
+    return law;
+  }
+
+
+
+  template <int dim>
   void
   QuantityEstimator<dim>::settle(const EvaluatedState<dim> &accepted,
                                  const ContactState        &contact,
@@ -99,6 +116,7 @@ namespace Viscoplastic
   QuantityEstimator<dim>::add_slip_defects(BulkSolver              &solver,
                                            const SlipDefects       &defects,
                                            const ContactState      &contact,
+                                           const CoulombLaw        *law,
                                            const DualSolution<dim> &dual,
                                            QuantityEstimate &estimate) const
   {
@@ -108,9 +126,10 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       if (defects.resting[p].norm_square() > 0.)
         is_held = held.sticks[p] = true;
-    const Vector<double> force =
-      face.any(is_held) ? dual_problem.solve(solver, held).force : dual.force;
-    double turning = 0., resting = 0.;
+    const Vector<double> force   = face.any(is_held) ?
+                                     dual_problem.solve(solver, held, law).force :
+                                     dual.force;
+    double               turning = 0., resting = 0.;
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
         const ContactLayout::Point &point = face.points[p];
@@ -149,8 +168,11 @@ namespace Viscoplastic
         settle(accepted, state.contact, estimate);
       }
 
-    const DualSolution<dim> dual = dual_problem.solve(solver, state.contact);
-    double                  mesh = 0., time = 0.;
+    const std::optional<CoulombLaw> law = law_of_step(accepted.state, state);
+    const CoulombLaw *const         linearised = law ? &*law : nullptr;
+    const DualSolution<dim>         dual =
+      dual_problem.solve(solver, state.contact, linearised);
+    double mesh = 0., time = 0.;
     if (dual.norm > 0.)
       {
         const double memory   = quantity.is_force() && end.rate ?
@@ -216,7 +238,7 @@ namespace Viscoplastic
         estimate.resting = before.resting;
         if (slip_defects != nullptr && slip_defects->work > 0.)
           add_slip_defects(
-            solver, *slip_defects, state.contact, dual, estimate);
+            solver, *slip_defects, state.contact, linearised, dual, estimate);
         estimate.friction =
           std::min(estimate.turning, bound) + estimate.resting;
         estimate.friction_indicator =

@@ -79,13 +79,26 @@ namespace Viscoplastic
 
 
   void
-  FaceRestriction::apply_tilt(const FaceTruncation &truncation,
-                              DistributedVector    &v) const
+  FaceRestriction::tilt_equations(const FaceTruncation &truncation,
+                                  DistributedVector    &v) const
   {
     if (truncation.tilt.empty())
       return;
     Vector<double> on_face = gather(v);
-    truncation.apply_tilt(contact_layout, on_face);
+    truncation.tilt_equations(contact_layout, on_face);
+    set(on_face, v);
+  }
+
+
+
+  void
+  FaceRestriction::tilt_motions(const FaceTruncation &truncation,
+                                DistributedVector    &v) const
+  {
+    if (truncation.tilt.empty())
+      return;
+    Vector<double> on_face = gather(v);
+    truncation.tilt_motions(contact_layout, on_face);
     set(on_face, v);
   }
 

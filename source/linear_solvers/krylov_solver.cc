@@ -35,16 +35,30 @@ namespace Viscoplastic
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
-      // The residuals that decide are those of the matrix itself.
-      if (!solver.preconditioner->vmult_matrix(y, x))
-        solver.matrix.vmult(y, x);
+      if (is_truncated && solver.truncation.transposed)
+        {
+          DistributedVector motion(x);
+          solver.restriction.tilt_motions(solver.truncation, motion);
+          multiply(y, motion);
+        }
+      else
+        multiply(y, x);
       if (is_truncated)
-        solver.restriction.apply_tilt(solver.truncation, y);
+        solver.restriction.tilt_equations(solver.truncation, y);
       if (is_truncated && solver.has_springs)
         solver.restriction.add_springs(solver.truncation, x, y);
       solver.restrict_to_unknowns(y);
       if (is_truncated)
         solver.restriction.project(solver.truncation, y);
+    }
+
+  private:
+    void
+    multiply(DistributedVector &y, const DistributedVector &x) const
+    {
+      // The residuals that decide are those of the matrix itself.
+      if (!solver.preconditioner->vmult_matrix(y, x))
+        solver.matrix.vmult(y, x);
     }
   };
 
@@ -368,7 +382,7 @@ namespace Viscoplastic
   {
     product = residual;
     restriction.add(-1., force, product);
-    restriction.apply_tilt(truncation, product);
+    restriction.tilt_equations(truncation, product);
     restriction.project(truncation, product);
     w                 = 0.;
     const double size = product.l2_norm();
@@ -404,6 +418,7 @@ namespace Viscoplastic
                       "converge; for nearly incompressible bodies use "
                       "'Solver/Linear solver' = direct, on one rank."));
       }
+    restriction.tilt_motions(truncation, w);
     face_part = restriction.gather(w);
 
     preconditioner->learn(control.last_step(),

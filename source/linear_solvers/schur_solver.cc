@@ -25,9 +25,16 @@ namespace Viscoplastic
       void
       vmult(Vector<double> &y, const Vector<double> &x) const
       {
-        // x lies in the truncated space, where CG keeps it.
-        S.vmult(y, x);
-        truncation.apply_tilt(face, y);
+        // x lies in the truncated space, where the iteration keeps it.
+        if (truncation.transposed)
+          {
+            Vector<double> motion(x);
+            truncation.tilt_motions(face, motion);
+            S.vmult(y, motion);
+          }
+        else
+          S.vmult(y, x);
+        truncation.tilt_equations(face, y);
         for (unsigned int n = 0; n < face.n_nodes(); ++n)
           face.set_node_values(truncation.projector[n] *
                                  (face.node_values(y, n) +
@@ -469,7 +476,7 @@ namespace Viscoplastic
   {
     face_residual(product);
     product -= force;
-    truncation.apply_tilt(face, product);
+    truncation.tilt_equations(face, product);
     truncation.project(face, product);
     w                 = 0.;
     const double size = product.l2_norm();
@@ -513,6 +520,7 @@ namespace Viscoplastic
         // Rounding stopped it; the line search and the error bound judge what
         // came out.
       }
+    truncation.tilt_motions(face, w);
     return 0;
   }
 

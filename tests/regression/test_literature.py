@@ -3,6 +3,8 @@
 values that others give, found with the settings that one writes down first."""
 
 import numpy as np
+from scipy.optimize import brentq
+from scipy.special import ellipk
 
 from harness import TestCase, main, run
 
@@ -48,6 +50,96 @@ class Published(TestCase):
         self.assertClose(slab["contact_area"][-1], np.pi / 2 / wave, relative=0.03)
         depth = load * wave / 2 / bed * (1 + np.cosh(np.pi)) / np.sinh(np.pi)
         self.assertClose(slab["max_penetration"][-1], depth, relative=0.05)
+
+    def test_punch_with_friction(self):
+        """Spence: between two points of friction, and what the closed form leaves
+        out (0.006)."""
+        nu = 0.45
+        coupling = (1 - 2 * nu) / (2 * (1 - nu))
+        for friction in 0.07, 0.1:
+            with self.subTest(friction=friction):
+                punch = run(
+                    "literature/punch_with_friction",
+                    {"Boundary 4/Friction coefficient": friction},
+                )
+                stuck = brentq(
+                    lambda c: ellipk(1 - c**2) / ellipk(c**2) - coupling / friction,
+                    1e-6,
+                    1 - 1e-6,
+                )
+                area = punch["stick_area"]
+                self.assertClose(area[-1], stuck, absolute=0.02)
+                self.assertClose(area[1], area[-1], relative=1e-12)
+                self.assertClose(
+                    punch["friction_force_x"][-1] / punch["friction_force_x"][1],
+                    2,
+                    relative=1e-4,
+                )
+
+    def test_slip_zone(self):
+        """Weertman: all slips are less by the half cell at each end that the bond
+        holds, 1.5 %; pressures are right to 2e-4 in the middle."""
+        zone = run("literature/slip_zone")
+        nu, friction, excess = 0.2, 1, 0.05e-3
+        stiffness = 4 / (2 * (1 + nu)) * (1 - nu) / (3 - 4 * nu)
+        coupling = (1 - 2 * nu) / (2 * (1 - nu))
+        a = np.arctan2(1, friction * coupling) / np.pi
+        table = np.genfromtxt(zone.directory / "line_0.csv", delimiter=",", names=True)
+        table = table[(table["t"] == 2) & (abs(table["x"]) < 0.6)]
+        x = table["x"]
+        slip = excess / stiffness * np.sin(np.pi * a) * (1 - x) ** a
+        slip *= (1 + x) ** (1 - a)
+        ratio = table["displacement_x"] / slip
+        self.assertClose(ratio, 0.982, absolute=0.004)
+        slope = slip * ((1 - a) / (1 + x) - a / (1 - x))
+        self.assertClose(
+            table["contact_pressure"],
+            1e-3 + coupling * stiffness * slope,
+            relative=1e-3,
+        )
+
+    def test_leaning_bar(self):
+        """Klarbring: where slip cannot balance, the run says that the body jumps,
+        when and where."""
+        warning = "may have several solutions, and the body may jump in it: slip loses"
+        for friction in 0.2, 1:
+            with self.subTest(friction=friction):
+                bar = run(
+                    "literature/leaning_bar",
+                    {"Boundary 2/Friction coefficient": friction},
+                )
+                p, q = -bar["contact_force_y"], abs(bar["friction_force_x"])
+                pushed = slice(bar.row(1) + 1, bar.row(2) + 1)
+                last = np.flatnonzero(p > 1e-12)[-1]
+                fall = p[last] / p[pushed][-1]
+                if friction < 0.5:
+                    self.assertLess(bar["contraction"].max(), 1)
+                    self.assertNotIn(warning, bar.stdout)
+                    self.assertLess(p[last] - p[last + 1], 2.1 * (p[last - 1] - p[last]))
+                    continue
+                critical = np.diff(q[pushed]) / np.diff(p[pushed])
+                self.assertClose(critical, 0.5, absolute=0.1)
+                self.assertGreater(q[last] / p[last], 0.8 * friction)
+                self.assertGreater(p[last] - p[last + 1], 3 * (p[last - 1] - p[last]))
+                self.assertGreater(bar["contraction"][last + 1], 1)
+                t = f"{bar['t'][last + 1]:.6g}"
+                self.assertIn(f"the step to t = {t} {warning}", bar.stdout)
+                self.assertRegex(
+                    bar.stdout,
+                    r"most at \([0-9.]+ 0\) \(friction coefficient: 1 at most\)",
+                )
+
+    def test_jump_that_is_not_found(self):
+        """With too few iterations for it, the run ends where the bar would jump."""
+        bar = run(
+            "literature/leaning_bar", {"Solver/Maximal contact iterations": 5}, check=False
+        )
+        self.assertRefused(
+            bar,
+            "t = 2.9",
+            "Coulomb's law with the pressure of the step itself may have no solution",
+            "friction and pressure fit worst at (",
+        )
 
 
 if __name__ == "__main__":

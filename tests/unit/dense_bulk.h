@@ -265,7 +265,7 @@ namespace Viscoplastic::Testing
     tilt(Vector<double> &v) const
     {
       Vector<double> c = problem.on_face(v);
-      truncation.apply_tilt(problem.face, c);
+      truncation.tilt_equations(problem.face, c);
       for (unsigned int i = 0; i < c.size(); ++i)
         v[problem.first() + i] = c[i];
     }

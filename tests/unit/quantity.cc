@@ -43,17 +43,14 @@ namespace
 
 
 
-  /// A change of z by dz is a residual -(dz, eps(.)).
-  TYPED_TEST(Quantity, DualTellsWhatAResidualDoes)
+  /// A change of z by dz is a residual -(dz, eps(.)). Of the body of
+  /// SteppingBody with other friction.
+  template <int dim>
+  void
+  expect_dual_to_tell(const std::string              &friction,
+                      const std::vector<std::string> &columns)
   {
-    constexpr int                  dim = TypeParam::value;
-    const std::vector<std::string> columns{
-      "friction_force_x",
-      "friction_dissipation",
-      "reaction_" + std::to_string(2 * dim - 1) + "_x",
-      "reaction_" + std::to_string(2 * dim - 2) + "_" + "xyz"[dim - 1],
-      "point0_x",
-      "point0_y"};
+    double frozen = 0.;
     for (const std::string &column : columns)
       for (const std::string linear_solver : {"direct", "multigrid"})
         {
@@ -61,9 +58,15 @@ namespace
               Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
             continue;
           SCOPED_TRACE(column + ", " + linear_solver);
-          SteppingBody<dim> body(maxwell + time("forward Euler", "1: 8") +
-                                 solver(linear_solver) + quantity(column) +
-                                 output_point<dim>());
+          std::string text = SteppingBody<dim>::scene_text(
+            maxwell + time("forward Euler", "1: 8") + solver(linear_solver) +
+              quantity(column) + output_point<dim>(),
+            "0.03");
+          const std::string given =
+            "set Friction law = tresca\nset Friction bound = 0.03";
+          text.replace(text.find(given), given.size(), friction);
+          SteppingBody<dim> body(
+            typename SteppingBody<dim>::WholeScene{std::move(text)});
           // Some points stick, others slip.
           const unsigned int n = dim == 2 ? 2 : 5;
           body.advance(n);
@@ -80,9 +83,12 @@ namespace
                     0u);
 
           const DualProblem<dim> dual(d, *body.scene.quantity);
-          const auto             w =
-            dual.solve(body.stepper->method().elastic_solver()->bulk(),
-                       state.contact);
+          BulkSolver &bulk = body.stepper->method().elastic_solver()->bulk();
+          CoulombLaw  law;
+          law.of_pressure   = d.face->bounds_of_pressure(state.t);
+          const bool follow = d.face->has_computed_pressure();
+          const auto w =
+            dual.solve(bulk, state.contact, follow ? &law : nullptr);
           // Not the same everywhere, or nothing would move.
           IrreversibleStress dz(state.z.size());
           std::size_t        i = 0;
@@ -108,7 +114,51 @@ namespace
                       seen,
                       (linear_solver == "direct" ? 1e-3 : 3e-3) *
                         (std::abs(seen) + 1e-7));
+          if (follow)
+            frozen = std::max(frozen,
+                              std::abs(dual.sign() *
+                                         (residual *
+                                          dual.solve(bulk, state.contact).w) -
+                                       seen) /
+                                std::abs(seen));
         }
+    // What bounds at rest would tell is wrong.
+    if (frozen > 0.)
+      {
+        EXPECT_GT(frozen, 0.05);
+      }
+  }
+
+
+
+  TYPED_TEST(Quantity, DualTellsWhatAResidualDoes)
+  {
+    constexpr int dim = TypeParam::value;
+    expect_dual_to_tell<dim>(
+      "set Friction law = tresca\nset Friction bound = 0.03",
+      {"friction_force_x",
+       "friction_dissipation",
+       "reaction_" + std::to_string(2 * dim - 1) + "_x",
+       "reaction_" + std::to_string(2 * dim - 2) + "_" + "xyz"[dim - 1],
+       "point0_x",
+       "point0_y"});
+  }
+
+
+
+  /// With the friction of the pressure of the step itself: a residual changes
+  /// the bounds of points that slip.
+  TYPED_TEST(Quantity, DualKnowsThatBoundsFollowThePressure)
+  {
+    constexpr int dim = TypeParam::value;
+    expect_dual_to_tell<dim>(
+      "set Friction law = coulomb\nset Friction coefficient = 0.6\n"
+      "set Contact law = unilateral\nset Foundation displacement = -0.1*t",
+      {"friction_force_x",
+       std::string("contact_force_") + "xyz"[dim - 1],
+       "reaction_" + std::to_string(2 * dim - 1) + "_x",
+       "point0_x",
+       "point0_y"});
   }
 
 

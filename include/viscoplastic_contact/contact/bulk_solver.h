@@ -160,7 +160,8 @@ namespace Viscoplastic
     /**
      * Solve (tilt A + springs) w = tilt (l - A u - force) on the truncated
      * space to the relative accuracy @p tolerance; returns the face part in @p
-     * w and the number of linear iterations.
+     * w and the number of linear iterations. Of a transposed truncation, w =
+     * tilt^T v with (A tilt^T + springs) v = l - A u - force.
      */
     virtual unsigned int
     correct(const Vector<double> &force,

@@ -234,6 +234,9 @@ namespace Viscoplastic
     /// where friction follows the pressure of the same system (CoulombLaw);
     /// empty where none does. The system is not symmetric then.
     std::vector<Tensor<2, 3>> tilt;
+    /// Whether the transposed system is meant: motions are multiplied by the
+    /// transposed tilts then, and equations are not.
+    bool transposed = false;
 
     /// Whether another one blocks the same. Collective, as the next.
     bool
@@ -253,8 +256,12 @@ namespace Viscoplastic
     void
     project(const ContactLayout &face, Vector<double> &x) const;
 
-    /// x := tilt x, likewise.
+    /// x := tilt x of equations x, and x := tilt^T x of motions if the system
+    /// is transposed.
     void
-    apply_tilt(const ContactLayout &face, Vector<double> &x) const;
+    tilt_equations(const ContactLayout &face, Vector<double> &x) const;
+
+    void
+    tilt_motions(const ContactLayout &face, Vector<double> &x) const;
   };
 } // namespace Viscoplastic

@@ -22,6 +22,9 @@ namespace Viscoplastic
     /// change of its own bounds.
     unsigned int bound_iterations = 0;
     double       contraction      = 0.;
+    /// What makes it doubtful that the solution is the only one; empty where
+    /// nothing does.
+    std::string doubt;
     /// Primal minus dual energy, a bound on half the squared energy error.
     double duality_gap = 0.;
     /// The bound on the energy error that follows from the duality gap, over
@@ -43,6 +46,8 @@ namespace Viscoplastic
       linear_iterations += earlier.linear_iterations;
       bound_iterations += earlier.bound_iterations;
       contraction = std::max(contraction, earlier.contraction);
+      if (doubt.empty())
+        doubt = earlier.doubt;
       seconds += earlier.seconds;
       plain_seconds += earlier.plain_seconds;
     }

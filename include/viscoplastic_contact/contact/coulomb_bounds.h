@@ -51,14 +51,30 @@ namespace Viscoplastic
            Vector<double>       &force);
 
     /// Let bounds be those to which the correction @p w of the face leads.
-    /// Returns the part of the stiffness against it that slip loses to the
-    /// change of its own bounds. From 1 on the step may have several solutions.
-    double
+    void
     predict(BulkSolver           &bulk,
             const FaceTruncation &truncation,
             const Vector<double> &residual,
             const Vector<double> &w,
-            ContactState         &state) const;
+            ContactState         &state);
+
+    /// The largest part of the stiffness against a correction so far that slip
+    /// has lost to the change of its own bounds. A solution at which this is
+    /// less than 1 for all corrections that its sets leave free is the only one
+    /// near it.
+    double
+    largest_loss() const
+    {
+      return loss;
+    }
+
+    /// Where the loss is 1 or more, the friction and the place of the most of
+    /// it, for messages.
+    const std::string &
+    doubt() const
+    {
+      return doubts;
+    }
 
     /**
      * The error of a step whose error for the present bounds is at most @p
@@ -94,6 +110,10 @@ namespace Viscoplastic
     failure() const;
 
   private:
+    /// The place of the node with the largest of these values. Collective.
+    std::string
+    place_of_largest(const std::vector<double> &of_nodes) const;
+
     const CoulombLaw                &law;
     const ContactLayout             &face;
     const std::vector<Tensor<2, 3>> &inverse_diagonal;
@@ -102,6 +122,9 @@ namespace Viscoplastic
     /// What bounds miss, point by point and as an error.
     std::vector<double> missing;
     double              missed = 0.;
+
+    double      loss = 0.;
+    std::string doubts;
 
     bool         rest     = false;
     unsigned int n_stalls = 0, moves = 0;

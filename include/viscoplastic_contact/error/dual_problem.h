@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/contact/coulomb_law.h>
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 #include <viscoplastic_contact/discretization/point_probe.h>
@@ -51,6 +52,13 @@ namespace Viscoplastic
    *   with K the slope of the pressure where a foundation gives way: sign = 1;
    * - of the work of friction in all steps, as long as what slips goes on in
    * the same direction, l(v) = sum_slipping lambda_c . v_c: sign = 1.
+   *
+   * With Coulomb's law of the step's own pressure, lambda_c of a slipping point
+   * changes with its pressure, too, and the equations of such a point are those
+   * of its tilt (CoulombLaw::tilt()). The dual system is the transposed one: v
+   * still is zero across the foundation there, but w moves into it by mu times
+   * its part along the slip. (Of the work of friction, what the pressure makes
+   * of past slip is left out.)
    */
   template <int dim>
   class DualProblem
@@ -65,10 +73,13 @@ namespace Viscoplastic
     double
     value(const State<dim> &state, const Forces<dim> &forces) const;
 
-    /// Solve with a solver for the matrix of a(.,.). Zero for the work of
-    /// friction where nothing slips. Collective. Throws ExcMessage.
+    /// Solve with a solver for the matrix of a(.,.), with the law of bounds
+    /// that follow the pressure of the step itself, if they do. Zero for the
+    /// work of friction where nothing slips. Collective. Throws ExcMessage.
     DualSolution<dim>
-    solve(BulkSolver &solver, const ContactState &contact) const;
+    solve(BulkSolver         &solver,
+          const ContactState &contact,
+          const CoulombLaw   *law = nullptr) const;
 
     double
     sign() const

@@ -62,12 +62,18 @@ namespace Viscoplastic
            EvaluatedState<dim>       &end) const;
 
   private:
+    /// Coulomb's law of the pressure of the step to @p state, whose slip rates
+    /// are those of @p old; none if bounds are given. Collective.
+    std::optional<CoulombLaw>
+    law_of_step(const State<dim> &old, const State<dim> &state) const;
+
     /// Add what a step has wrong of slip to the sums of the estimate. Points
     /// that come to rest in it are held in the dual problem. Collective.
     void
     add_slip_defects(BulkSolver              &solver,
                      const SlipDefects       &defects,
                      const ContactState      &contact,
+                     const CoulombLaw        *law,
                      const DualSolution<dim> &dual,
                      QuantityEstimate        &estimate) const;
 

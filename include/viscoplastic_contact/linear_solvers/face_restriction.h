@@ -90,9 +90,13 @@ namespace Viscoplastic
     void
     project(const FaceTruncation &truncation, DistributedVector &v) const;
 
-    /// Multiply the equations of the face's nodes by the tilts of a truncation.
+    /// The tilts of a truncation, as FaceTruncation applies them.
     void
-    apply_tilt(const FaceTruncation &truncation, DistributedVector &v) const;
+    tilt_equations(const FaceTruncation &truncation,
+                   DistributedVector    &v) const;
+
+    void
+    tilt_motions(const FaceTruncation &truncation, DistributedVector &v) const;
 
     /// y := y + R^T springs R x.
     void

@@ -104,6 +104,16 @@ namespace Viscoplastic
       const Vector<double>    &foundation_step; // on the face
     };
 
+    /// solve() with Coulomb's law of the pressure of the step itself, by
+    /// Newton's method. Where its linear systems make it doubtful that there is
+    /// one solution, other starts are tried, and the report says so.
+    ContactReport
+    solve_with_own_pressure(const StepProblem<dim>  &problem,
+                            const DistributedVector &right_side,
+                            const double             tolerance,
+                            DistributedVector       &u,
+                            ContactState            &contact);
+
     /// solve() with the bounds of @p contact, or with a law that gives them.
     ContactReport
     solve_with_bounds(const StepProblem<dim>  &problem,

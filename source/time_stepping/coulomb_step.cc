@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/time_stepping/step_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+// The pressure of the step itself in Coulomb's law: solved for with the step,
+// or a fixed point of steps with given bounds.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// By how much of the largest displacement solutions differ that are
+    /// several, and not one to the tolerance of the solver.
+    constexpr double several_solutions = 1e-2;
+  } // namespace
+
+
+
+  template <int dim>
+  ContactReport
+  StepSolver<dim>::solve(const StepProblem<dim>  &problem,
+                         const DistributedVector &right_side,
+                         const double             tolerance,
+                         DistributedVector       &u,
+                         ContactState            &contact)
+  {
+    const SolverParameters &parameters =
+      discretization.scene().parameters.solver;
+    if (springs)
+      contact.bound = springs->bounds_that_hold(problem, contact.bound);
+    if (problem.bounds_follow_pressure &&
+        parameters.coulomb_pressure == CoulombPressure::newton &&
+        discretization.slipping_face())
+      return solve_with_own_pressure(
+        problem, right_side, tolerance, u, contact);
+    ContactReport report =
+      solve_with_bounds(problem, right_side, tolerance, u, contact);
+    if (!problem.bounds_follow_pressure || !discretization.slipping_face())
+      return report;
+
+    const ContactFace<dim> &face        = *discretization.face;
+    double                  last_change = 0.;
+    // How far bounds follow the pressure, once they swing; by how much they
+    // have missed it before that.
+    double              share = 1.;
+    std::vector<double> last_missing;
+    for (;;)
+      {
+        std::vector<double> bounds = problem.given_bounds;
+        face.add_computed_bounds(problem.time_step.t,
+                                 contact,
+                                 bounds,
+                                 problem.slip_rates);
+        std::vector<double> missing(bounds.size(), 0.);
+        double              change = 0., sum = 0.;
+        for (unsigned int p = 0; p < bounds.size(); ++p)
+          if (!face.layout().points[p].is_obstacle)
+            {
+              missing[p] = bounds[p] - contact.bound[p];
+              change += std::abs(missing[p]);
+              // Both may be zero in turn.
+              sum += std::isfinite(contact.bound[p]) ?
+                       std::max(bounds[p], contact.bound[p]) :
+                       bounds[p];
+            }
+        change = face.layout().sum(change);
+        sum    = face.layout().sum(sum);
+        // Beside the error of the solves, ratios mean nothing.
+        if (report.bound_iterations > 0 && std::isfinite(last_change) &&
+            last_change > 1e3 * tolerance * sum)
+          report.contraction =
+            std::max(report.contraction, change / last_change);
+        if (change <= parameters.coulomb_tolerance * sum)
+          return report;
+        std::ostringstream message;
+        message << "The fixed point of Coulomb's law is not found in "
+                << report.bound_iterations
+                << " solves of the step: the friction bounds still change by "
+                << change / sum
+                << " of their sum, and the last solve has reduced the change "
+                   "by the factor "
+                << change / last_change
+                << ". For a large friction coefficient, and where pieces with "
+                   "friction meet at an edge, the problem itself may have no "
+                   "unique solution; 'Solver/Coulomb pressure' = lagged takes "
+                   "the pressure of the step before.";
+        if (change < 1e-3 * sum)
+          message << " Where stiffness differs much, or cells are flat, "
+                     "rounding of forces may allow no less: a larger "
+                     "'Solver/Coulomb tolerance' accepts that.";
+        AssertThrow(report.bound_iterations < parameters.maximal_iterations,
+                    ExcMessage(message.str()));
+        // Friction may hold what would press, and where pieces meet, each holds
+        // the node against the others: pressures may swing between two states.
+        // Then bounds follow as far as two changes tell (Aitken).
+        const bool swings = share < 1. || (report.bound_iterations > 0 &&
+                                           change >= 0.999 * last_change &&
+                                           std::isfinite(last_change));
+        if (swings && std::isfinite(change))
+          {
+            double product = 0., square = 0.;
+            for (unsigned int p = 0; p < missing.size(); ++p)
+              {
+                const double difference = missing[p] - last_missing[p];
+                product += last_missing[p] * difference;
+                square += difference * difference;
+              }
+            product = face.layout().sum(product);
+            square  = face.layout().sum(square);
+            share   = square > 0. ?
+                        std::clamp(-share * product / square, 1e-3, 0.9) :
+                        0.5;
+            for (unsigned int p = 0; p < bounds.size(); ++p)
+              bounds[p] -= (1. - share) * missing[p];
+          }
+        last_missing = missing;
+        last_change  = change;
+        contact.bound =
+          springs ? springs->bounds_that_hold(problem, bounds) : bounds;
+        ContactReport again =
+          solve_with_bounds(problem, right_side, tolerance, u, contact);
+        ++again.bound_iterations;
+        again.add_earlier(report);
+        report = again;
+      }
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  StepSolver<dim>::solve_with_own_pressure(const StepProblem<dim>  &problem,
+                                           const DistributedVector &right_side,
+                                           const double             tolerance,
+                                           DistributedVector       &u,
+                                           ContactState            &contact)
+  {
+    const ContactFace<dim> &face = *discretization.face;
+    const CoulombLaw        law{problem.given_bounds,
+                         face.bounds_of_pressure(problem.time_step.t,
+                                                 problem.slip_rates),
+                         [&face](const unsigned int node) {
+                           std::ostringstream place;
+                           place << '(' << face.position(node) << ')';
+                           return place.str();
+                         }};
+    const DistributedVector first_u(u);
+    const ContactState      first(contact);
+    ContactReport           report =
+      solve_with_bounds(problem, right_side, tolerance, u, contact, &law);
+    if (report.doubt.empty())
+      return report;
+
+    // The same from the solutions without friction and without slip: if one of
+    // them ends elsewhere, there are several solutions.
+    double difference = 0.;
+    for (const double bound : {0., std::numeric_limits<double>::infinity()})
+      {
+        DistributedVector other_u(first_u);
+        ContactState      other(first);
+        for (unsigned int p = 0; p < other.n_points(); ++p)
+          if (face.layout().has_plain_friction(face.layout().points[p].node) &&
+              !face.layout().points[p].is_obstacle)
+            other.bound[p] = bound;
+        try
+          {
+            for (const CoulombLaw *const given_or_law :
+                 {static_cast<const CoulombLaw *>(nullptr), &law})
+              report.linear_iterations +=
+                solve_with_bounds(
+                  problem, right_side, tolerance, other_u, other, given_or_law)
+                  .linear_iterations;
+            other_u -= u;
+            difference = std::max(difference, other_u.linfty_norm());
+          }
+        catch (const ExceptionBase &)
+          {
+            // That there is one solution is all that is known then.
+          }
+      }
+    difference /= u.linfty_norm();
+    std::ostringstream text;
+    text << report.doubt;
+    if (difference > several_solutions)
+      text << "; from another start there is another solution, whose "
+              "displacement differs by "
+           << difference << " of the largest";
+    else
+      text << "; the starts without friction and without slip end in no other "
+              "solution";
+    report.doubt = text.str();
+    return report;
+  }
+
+
+
+  template ContactReport
+  StepSolver<2>::solve(const StepProblem<2> &,
+                       const DistributedVector &,
+                       const double,
+                       DistributedVector &,
+                       ContactState &);
+  template ContactReport
+  StepSolver<3>::solve(const StepProblem<3> &,
+                       const DistributedVector &,
+                       const double,
+                       DistributedVector &,
+                       ContactState &);
+} // namespace Viscoplastic

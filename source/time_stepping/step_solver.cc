@@ -543,18 +543,22 @@ namespace Viscoplastic
     bulk_solver->begin(right, u);
     bulk_solver->set_truncation(make_truncation(face, contact, {}));
     // As a rule the change is less than a hundredth of u. But next to
-    // incompressible a new mesh may bring much more energy than there is.
-    const double first   = std::clamp(100. * tolerance, 1e-10, 1e-4);
-    const auto   correct = [&](const double reduction) {
-      bulk_solver->correct(force, reduction, change);
-      const double curvature = bulk_solver->search_terms(change).curvature;
-      bulk_solver->take_step(1.);
-      return std::sqrt(std::max(0., curvature));
-    };
-    const double error   = first * correct(first),
-                 allowed = tolerance * bulk_solver->energy_norm();
-    if (!bulk_solver->is_exact() && error > allowed)
-      correct(std::max(allowed / error, first));
+    // incompressible a new mesh may bring much more energy than there is, and
+    // of thin bodies residuals do not tell how they bend: until corrections are
+    // small.
+    constexpr unsigned int max_corrections = 5;
+    for (unsigned int n = 0; n < max_corrections; ++n)
+      {
+        bulk_solver->correct(force,
+                             std::clamp(100. * tolerance, 1e-10, 1e-4),
+                             change);
+        const double curvature = bulk_solver->search_terms(change).curvature;
+        bulk_solver->take_step(1.);
+        if (bulk_solver->is_exact() ||
+            curvature <=
+              Utilities::fixed_power<2>(tolerance * bulk_solver->energy_norm()))
+          break;
+      }
     bulk_solver->finish();
   }
 

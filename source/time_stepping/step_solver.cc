@@ -13,6 +13,15 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// What rounding may make of the error, relative to the solution, before no
+    /// number means anything.
+    constexpr double largest_rounding = 1e-3;
+  } // namespace
+
+
+
   void
   StepOutcome::note(const FlowRate &rate)
   {
@@ -177,10 +186,19 @@ namespace Viscoplastic
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const double     size    = bulk_solver->energy_norm();
     const double     ratio = rounding_error(data, u) / (100. * epsilon * size);
-    if (!(epsilon * ratio * ratio > report.tolerance))
+    // Of a body that moves without strain nothing but rounding is left.
+    if (!(epsilon * ratio * ratio > report.tolerance) ||
+        size <= bulk_solver->rounding_error())
       return;
     bulk_solver->begin(data.right_side, u);
     const double rounding = bulk_solver->rounding_of_residual();
+    AssertThrow(rounding <= largest_rounding * size,
+                ExcMessage(
+                  "Rounding alone makes " +
+                  Utilities::to_string(rounding / size) +
+                  " or more of the solution. Cells that are less flat, "
+                  "stiffness that differs less or Poisson's ratio farther from "
+                  "1/2 mend that."));
     if (!(rounding > std::max(report.error, report.tolerance * size)))
       return;
     report.error          = rounding;
@@ -543,20 +561,20 @@ namespace Viscoplastic
     bulk_solver->begin(right, u);
     bulk_solver->set_truncation(make_truncation(face, contact, {}));
     // As a rule the change is less than a hundredth of u. But next to
-    // incompressible a new mesh may bring much more energy than there is, and
-    // of thin bodies residuals do not tell how they bend: until corrections are
-    // small.
+    // incompressible a new mesh may bring much more energy than there is.
+    // Errors in the energy norm may be so many times larger than in the
+    // residual.
     constexpr unsigned int max_corrections = 5;
+    constexpr double       margin          = 10.;
+    const double reduction = std::clamp(100. * tolerance, 1e-10, 1e-4);
     for (unsigned int n = 0; n < max_corrections; ++n)
       {
-        bulk_solver->correct(force,
-                             std::clamp(100. * tolerance, 1e-10, 1e-4),
-                             change);
+        bulk_solver->correct(force, reduction, change);
         const double curvature = bulk_solver->search_terms(change).curvature;
         bulk_solver->take_step(1.);
         if (bulk_solver->is_exact() ||
-            curvature <=
-              Utilities::fixed_power<2>(tolerance * bulk_solver->energy_norm()))
+            margin * reduction * std::sqrt(std::max(0., curvature)) <=
+              tolerance * bulk_solver->energy_norm())
           break;
       }
     bulk_solver->finish();

@@ -559,7 +559,8 @@ namespace Viscoplastic
       // From where the body is, springs carry nothing.
       springs->add_load(u, right);
     bulk_solver->begin(right, u);
-    bulk_solver->set_truncation(make_truncation(face, contact, {}));
+    const FaceTruncation truncation = make_truncation(face, contact, {});
+    bulk_solver->set_truncation(truncation);
     // As a rule the change is less than a hundredth of u. But next to
     // incompressible a new mesh may bring much more energy than there is.
     // Errors in the energy norm may be so many times larger than in the
@@ -572,6 +573,13 @@ namespace Viscoplastic
         bulk_solver->correct(force, reduction, change);
         const double curvature = bulk_solver->search_terms(change).curvature;
         bulk_solver->take_step(1.);
+        // What gives way presses more or less then.
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          face.set_node_values(face.node_values(force, node) +
+                                 truncation.spring[node] *
+                                   face.node_values(change, node),
+                               node,
+                               force);
         if (bulk_solver->is_exact() ||
             margin * reduction * std::sqrt(std::max(0., curvature)) <=
               tolerance * bulk_solver->energy_norm())

@@ -152,7 +152,14 @@ namespace Viscoplastic
           on_face[i] = in_frame[node.components[i]];
         result[p] = slip(face.points[p], on_face) * point_weights[p];
         if (face.points[p].is_obstacle)
-          result[p] /= face.points[p].map[0].norm_square();
+          {
+            // Across an oblique obstacle, rounding of friction is no pressure.
+            const Tensor<1, 3> &normal = face.points[p].map[0];
+            if (std::abs(normal * on_face) <=
+                1e-12 * normal.norm() * on_face.norm())
+              result[p] = Tensor<1, 2>();
+            result[p] /= normal.norm_square();
+          }
       }
     return result;
   }

@@ -13,6 +13,15 @@
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// What rounding may make of the error, relative to the solution, before no
+    /// number means anything.
+    constexpr double largest_rounding = 1e-3;
+  } // namespace
+
+
+
   void
   StepOutcome::note(const FlowRate &rate)
   {
@@ -177,10 +186,19 @@ namespace Viscoplastic
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const double     size    = bulk_solver->energy_norm();
     const double     ratio = rounding_error(data, u) / (100. * epsilon * size);
-    if (!(epsilon * ratio * ratio > report.tolerance))
+    // Of a body that moves without strain nothing but rounding is left.
+    if (!(epsilon * ratio * ratio > report.tolerance) ||
+        size <= bulk_solver->rounding_error())
       return;
     bulk_solver->begin(data.right_side, u);
     const double rounding = bulk_solver->rounding_of_residual();
+    AssertThrow(rounding <= largest_rounding * size,
+                ExcMessage(
+                  "Rounding alone makes " +
+                  Utilities::to_string(rounding / size) +
+                  " or more of the solution. Cells that are less flat, "
+                  "stiffness that differs less or Poisson's ratio farther from "
+                  "1/2 mend that."));
     if (!(rounding > std::max(report.error, report.tolerance * size)))
       return;
     report.error          = rounding;
@@ -419,20 +437,32 @@ namespace Viscoplastic
       // From where the body is, springs carry nothing.
       springs->add_load(u, right);
     bulk_solver->begin(right, u);
-    bulk_solver->set_truncation(make_truncation(face, contact, {}));
+    const FaceTruncation truncation = make_truncation(face, contact, {});
+    bulk_solver->set_truncation(truncation);
     // As a rule the change is less than a hundredth of u. But next to
     // incompressible a new mesh may bring much more energy than there is.
-    const double first   = std::clamp(100. * tolerance, 1e-10, 1e-4);
-    const auto   correct = [&](const double reduction) {
-      bulk_solver->correct(force, reduction, change);
-      const double curvature = bulk_solver->search_terms(change).curvature;
-      bulk_solver->take_step(1.);
-      return std::sqrt(std::max(0., curvature));
-    };
-    const double error   = first * correct(first),
-                 allowed = tolerance * bulk_solver->energy_norm();
-    if (!bulk_solver->is_exact() && error > allowed)
-      correct(std::max(allowed / error, first));
+    // Errors in the energy norm may be so many times larger than in the
+    // residual.
+    constexpr unsigned int max_corrections = 5;
+    constexpr double       margin          = 10.;
+    const double reduction = std::clamp(100. * tolerance, 1e-10, 1e-4);
+    for (unsigned int n = 0; n < max_corrections; ++n)
+      {
+        bulk_solver->correct(force, reduction, change);
+        const double curvature = bulk_solver->search_terms(change).curvature;
+        bulk_solver->take_step(1.);
+        // What gives way presses more or less then.
+        for (unsigned int node = 0; node < face.n_nodes(); ++node)
+          face.set_node_values(face.node_values(force, node) +
+                                 truncation.spring[node] *
+                                   face.node_values(change, node),
+                               node,
+                               force);
+        if (bulk_solver->is_exact() ||
+            margin * reduction * std::sqrt(std::max(0., curvature)) <=
+              tolerance * bulk_solver->energy_norm())
+          break;
+      }
     bulk_solver->finish();
   }
 

@@ -59,11 +59,11 @@ class Report:
         """A number and where it must lie; without bounds it is only shown."""
         self.figures.append(Figure(name, float(value), least, largest))
 
-    def identities(self, run, tolerance):
+    def identities(self, run, tolerance, balance=None):
         """The discrete identities of every step (regression/harness.py)."""
         from harness import TestCase
 
-        TestCase().check_identities(run, tolerance)
+        TestCase().check_identities(run, tolerance, balance)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -275,6 +275,54 @@ class Held(TestCase):
             for name in "adaptation_energy", "energy_balance_defect":
                 self.assertLess(np.abs(result[name]).max(), 3e-3 * work, name)
 
+    def test_friction_before_an_oblique_foundation(self):
+        """Tresca's friction acts before the plate touches; across the normal it
+        is no pressure, not even by rounding, which would hold nodes of new
+        meshes that another solver leaves free."""
+        plate = {
+            "Dimension": 3,
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "2, 1, 1 : 0, 0, 0 : 1, 1, 0.0269 : true",
+            "Geometry/Global refinements": 1,
+            "Material/Young's modulus": "if(y > 0.4, 1.3, 0.43)",
+            "Material/Poisson's ratio": 0.25,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 0.2,
+            "Boundary 0/Role": "contact",
+            "Boundary 0/Contact law": "unilateral",
+            "Boundary 0/Gap": 0.005,
+            "Boundary 0/Foundation normal": "-1.3, 0, -0.3",
+            "Boundary 0/Friction law": "tresca",
+            "Boundary 0/Friction bound": "0.00025*t",
+            **{f"Boundary {id}/Role": "free" for id in (1, 3, 4)},
+            "Boundary 2/Role": "displacement",
+            "Boundary 2/Displacement": "0; 0.015*t; 0.005*sin(4*t)",
+            "Boundary 5/Role": "traction",
+            "Boundary 5/Traction": "0; -0.013*min(t, 0.5); 0",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Every n steps": 2,
+            "Mesh refinement/Maximal level": 2,
+            "Mesh refinement/Refinement fraction": 0.1,
+            "Mesh refinement/Cell budget": 60,
+            "Time/Phases": "0.5: 10",
+        }
+        results = [
+            run(
+                "plate",
+                {
+                    **plate,
+                    "Solver/Linear solver": solver,
+                    "Solver/Contact tolerance": tolerance,
+                },
+                text="",
+            )
+            for solver in ("direct", "multigrid")
+            for tolerance in (1e-7, 1e-9)
+        ]
+        self.assertGreater(results[0]["cells"][-1], 50)
+        ways = [result["max_displacement"][-1] for result in results]
+        self.assertLess(np.ptp(ways), 1e-6 * max(ways))
+
 
 class Reports(TestCase):
     """What is said at the end of a run whose mesh has changed."""

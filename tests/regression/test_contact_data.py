@@ -389,7 +389,7 @@ class Glued(TestCase):
 class Passenger(TestCase):
     """A body that is carried along without strain: exact on any mesh."""
 
-    def check(self, pressure=0.01, speed=0.1, ranks=1, **more):
+    def check(self, pressure=0.01, speed=0.1, ranks=1, algebraic=1e-10, **more):
         result = run("passenger_2d", more, ranks=ranks)
         path = speed * result["t"]
         for point in ("point0_x", "point1_x", "point2_x"):
@@ -399,7 +399,7 @@ class Passenger(TestCase):
         self.assertClose(
             result["max_von_mises"], pressure, absolute=1e-9 * max(1, path[-1])
         )
-        self.assertLessEqual(result["algebraic_error"].max(), 1e-10)
+        self.assertLessEqual(result["algebraic_error"].max(), algebraic)
         return result
 
     def test_wall_without_friction_does_not_hold_the_corner(self):
@@ -457,9 +457,11 @@ class Passenger(TestCase):
         self.assertClose(result["point0_x"], 0.1 * result["t"], absolute=1e-12)
 
     def test_far_away(self):
-        """Displacements of a million lengths; rounding of 1e-16 of them."""
+        """Displacements of a million lengths; rounding of 1e-16 of them, which
+        beside the strain is told."""
         self.check(
             speed=1e6,
+            algebraic=1e-6,
             **{
                 "Boundary 1/Role": "free",
                 "Boundary 2/Foundation motion": "1e6*t; 0",

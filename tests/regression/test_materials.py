@@ -113,6 +113,22 @@ class UniformStrain(TestCase):
             with self.subTest(name):
                 self.check(name, 2, **{"Material/Stress history": "quadrature points"})
 
+    def test_no_unknown(self):
+        """A single cell: every displacement is prescribed, and nothing is left to
+        solve for, whatever the solver."""
+        for solver in "direct", "multigrid":
+            for scheme in "forward Euler", "backward Euler":
+                more = {
+                    "Geometry/Arguments": "1, 1 : 0, 0 : 1, 1 : false",
+                    "Solver/Linear solver": solver,
+                    "Time/Scheme": scheme,
+                }
+                with self.subTest(**{"solver": solver, "scheme": scheme}):
+                    if scheme == "forward Euler":
+                        self.check("maxwell", 2, **more)
+                    else:
+                        run("uniform_strain", {"Material/Law": "maxwell", **more})
+
     def test_zener_stores_energy_in_both_branches(self):
         """1/2 E_inf eps:eps + 1/2 (E - E_inf)^-1 q:q with
         q = sigma - E_inf eps."""

@@ -296,6 +296,33 @@ namespace
 
 
 
+  TEST(ContactSolver, TwoPlanesWithBoundsBeyondTheLoads)
+  {
+    // Much more than the body can bring to bear; slip is left to a part of the
+    // points whose bounds are not.
+    constexpr double tolerance = 1e-10;
+    for (const double degrees : {90., 60., 30., 150., 120.})
+      for (unsigned int seed = 600; seed < 636; ++seed)
+        {
+          Problem problem = corner_problem(seed, 3, degrees);
+          Random  random(seed);
+          for (double &bound : problem.bounds)
+            bound *= random.integer(0, 3) > 0 ? 1e3 : 1.;
+          for (const bool condensed : {true, false})
+            {
+              SCOPED_TRACE("seed " + std::to_string(seed) + ", degrees " +
+                           std::to_string(degrees));
+              const Result result = solve(problem, condensed, tolerance);
+              EXPECT_LE(result.report.relative_error, tolerance);
+              EXPECT_LE(duality_gap(problem, result),
+                        Utilities::fixed_power<2>(
+                          2. * tolerance * problem.energy_norm(result.u)));
+            }
+        }
+  }
+
+
+
   TEST(ContactSolver, FoundationsThatMove)
   {
     // Each point slips over its own, also where several share a node or, at 0

@@ -146,7 +146,7 @@ namespace Viscoplastic
     /// Count what rounding of residuals may leave of the error of a solution
     /// @p u with contact, where that is more than the tolerance: as dear as
     /// some solves, so it is asked for only where stiffness differs much within
-    /// the body. Collective.
+    /// the body. Throws ExcMessage where it leaves no solution. Collective.
     void
     add_rounding(const Data &data, DistributedVector &u, ContactReport &report);
 

@@ -19,6 +19,7 @@ MODULES = (
     "creep",
     "friction",
     "contact_pieces",
+    "opening",
     "time_steps",
     "step_control",
     "limits",

@@ -132,7 +132,9 @@ class Published(TestCase):
     def test_jump_that_is_not_found(self):
         """With too few iterations for it, the run ends where the bar would jump."""
         bar = run(
-            "literature/leaning_bar", {"Solver/Maximal contact iterations": 5}, check=False
+            "literature/leaning_bar",
+            {"Solver/Maximal contact iterations": 5},
+            check=False,
         )
         self.assertRefused(
             bar,

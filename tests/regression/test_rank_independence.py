@@ -123,7 +123,15 @@ SCENES = {
     },
     "literature": {
         "verification/literature/greco_plate": Scene(cells(16, 16, to="0.04, 0.04")),
+        # with the jump
+        "verification/literature/leaning_bar": Scene(),
+        "verification/literature/punch_with_friction": Scene(
+            {"Geometry/Boundary refinements": "4: 3"}
+        ),
         "verification/literature/salt_cavity": Scene(phases("5: 2, 40: 4")),
+        "verification/literature/slip_zone": Scene(
+            {"Geometry/Boundary refinements": "4: 2"}
+        ),
         "verification/literature/slab_on_bed": Scene(cells(40, 2, to="10, 0.25")),
         "verification/literature/thick_cylinder_creep": Scene(
             {**refined(2), **phases("1: 4, 2: 2")}

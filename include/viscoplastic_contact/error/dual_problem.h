@@ -68,7 +68,16 @@ namespace Viscoplastic
     /// Solve with a solver for the matrix of a(.,.). Zero for the work of
     /// friction where nothing slips. Collective. Throws ExcMessage.
     DualSolution<dim>
-    solve(BulkSolver &solver, const ContactState &contact) const;
+    solve(BulkSolver &solver, const ContactState &contact) const
+    {
+      return solve(solver, discretization.matrix, contact);
+    }
+
+    /// The same with another matrix in the place of a(.,.).
+    DualSolution<dim>
+    solve(BulkSolver              &solver,
+          const DistributedMatrix &matrix,
+          const ContactState      &contact) const;
 
     double
     sign() const

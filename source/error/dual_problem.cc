@@ -189,9 +189,10 @@ namespace Viscoplastic
 
   template <int dim>
   DualSolution<dim>
-  DualProblem<dim>::solve(BulkSolver         &solver,
-                          const ContactState &contact,
-                          const CoulombLaw   *law) const
+  DualProblem<dim>::solve(BulkSolver              &solver,
+                          const DistributedMatrix &matrix,
+                          const ContactState      &contact,
+                          const CoulombLaw        *law) const
   {
     const Discretization<dim>  &d     = discretization;
     const AdmissibleSpace<dim> &space = d.space;
@@ -233,7 +234,7 @@ namespace Viscoplastic
       }
 
     DistributedVector elastic = space.owned_vector();
-    d.matrix.vmult(elastic, dual.w);
+    matrix.vmult(elastic, dual.w);
     dual.norm      = std::sqrt(std::max(0., dual.w * elastic));
     dual.cartesian = space.ghosted_vector();
     space.to_cartesian(dual.w, dual.cartesian);

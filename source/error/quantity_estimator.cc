@@ -48,11 +48,43 @@ namespace Viscoplastic
   template <int dim>
   QuantityEstimator<dim>::QuantityEstimator(
     const Discretization<dim> &discretization,
-    const SpaceEstimator<dim> &space_estimator)
+    const SpaceEstimator<dim> &space_estimator,
+    const TangentSolver       &solver_of_tangents)
     : discretization(discretization)
     , space_estimator(space_estimator)
+    , solver_of_tangents(solver_of_tangents)
     , dual_problem(discretization, *discretization.scene().quantity)
-  {}
+  {
+    const Scene<dim> &scene = discretization.scene();
+    if (scene.has_viscosity() &&
+        scene.quantity->kind == QuantityOfInterest::Kind::displacement)
+      tangent = std::make_unique<TangentMatrix<dim>>(discretization.laws,
+                                                     discretization.matrix);
+  }
+
+
+
+  template <int dim>
+  Vector<double>
+  QuantityEstimator<dim>::products_of_creep(const State<dim> &state,
+                                            const double      relaxation_rate,
+                                            const CoulombLaw *law) const
+  {
+    // After a thousand relaxation times the body is as good as incompressible.
+    // To half a power of two, so that linear laws have few matrices.
+    const double k = std::exp2(
+      0.5 *
+      std::floor(2. * std::log2(std::min(state.t, 1e3 / relaxation_rate))));
+    const bool is_new = tangent->linearize(state.u, state.z, state.t, k);
+    const DualSolution<dim> dual =
+      dual_problem.solve(solver_of_tangents(*tangent, is_new),
+                         tangent->matrix(),
+                         state.contact,
+                         law);
+    return space_estimator.multiply_recovered(state,
+                                              dual,
+                                              tangent->at_samples());
+  }
 
 
 
@@ -169,46 +201,54 @@ namespace Viscoplastic
       }
 
     const std::optional<CoulombLaw> law = law_of_step(accepted.state, state);
-    const CoulombLaw *const         linearised = law ? &*law : nullptr;
+    const CoulombLaw *const         linearized = law ? &*law : nullptr;
     const DualSolution<dim>         dual =
-      dual_problem.solve(solver, state.contact, linearised);
+      dual_problem.solve(solver, state.contact, linearized);
     double mesh = 0., time = 0.;
     if (dual.norm > 0.)
       {
-        const double memory   = quantity.is_force() && end.rate ?
-                                  nonlinearity(d.stress_space, state, *end.rate) :
-                                  0.;
-        const auto   products = space_estimator.multiply(state, dual, memory);
-        std::vector<double> sums(4, 0.);
-        Vector<double>      indicators(products.of_both);
-        // Rates that are wrong for long have moved the point, which residuals
-        // of the present stress do not know. Forces forget them, but nothing is
-        // known of the signs.
-        const double creep =
-          errors.energy_norm > 0. ?
-            std::min(1., errors.creep_path / errors.energy_norm) :
-            0.;
-        const bool moves =
-          creep > 0. && quantity.kind == QuantityOfInterest::Kind::displacement;
-        Vector<double> of_creep(indicators.size());
-        if (moves)
-          of_creep = space_estimator.multiply_recovered(state, dual);
-        for (unsigned int c = 0; c < indicators.size(); ++c)
+        const bool   forgets = end.rate && (quantity.is_force() || tangent);
+        const double memory =
+          forgets ? nonlinearity(d.stress_space, state, *end.rate) : 0.;
+        const auto     products = space_estimator.multiply(state, dual, memory);
+        Vector<double> indicators(products.of_both);
+        std::vector<double> sums(3, 0.);
+        const auto          add_up = [&] {
+          sums.assign(3, 0.);
+          for (unsigned int c = 0; c < indicators.size(); ++c)
+            {
+              sums[0] += indicators[c];
+              sums[1] += products.of_dual[c];
+              sums[2] += safety * std::abs(indicators[c]);
+            }
+          Utilities::MPI::sum(sums, d.space.communicator, sums);
+        };
+        add_up();
+        double least = 0.;
+        if (tangent && end.rate && end.rate->relaxation_rate > 0.)
           {
-            sums[0] += products.of_both[c];
-            sums[1] += products.of_dual[c];
-            sums[2] += std::abs(products.of_both[c]);
-            sums[3] += creep * std::abs(of_creep[c]);
-            indicators[c] = std::max(safety * std::abs(products.of_both[c]),
-                                     creep * std::abs(of_creep[c]));
+            const double of_residuals = sums[0];
+            indicators =
+              products_of_creep(state, end.rate->relaxation_rate, linearized);
+            add_up();
+            least = least_share * sums[2];
+            if (std::abs(of_residuals) > std::abs(sums[0]))
+              {
+                indicators = products.of_both;
+                add_up();
+              }
           }
-        Utilities::MPI::sum(sums, d.space.communicator, sums);
+        for (double &indicator : indicators)
+          indicator = safety * std::abs(indicator);
         mesh                = dual_problem.sign() * sums[0];
         estimate.dual_norm  = dual.norm;
         estimate.dual_error = std::sqrt(sums[1]);
-        estimate.space_of_creep =
-          quantity.is_force() ? creep * safety * sums[2] : sums[3];
-        estimate.unsigned_space = std::max(safety * sums[2], sums[3]);
+        // Forces forget what has crept, but nothing is known of the signs then.
+        estimate.space_of_creep = least;
+        if (quantity.is_force() && errors.energy_norm > 0.)
+          estimate.space_of_creep =
+            std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
+        estimate.unsigned_space = sums[2];
         if (d.scene().has_viscosity()) // collective
           {
             DistributedVector load = d.space.owned_vector();
@@ -238,7 +278,7 @@ namespace Viscoplastic
         estimate.resting = before.resting;
         if (slip_defects != nullptr && slip_defects->work > 0.)
           add_slip_defects(
-            solver, *slip_defects, state.contact, linearised, dual, estimate);
+            solver, *slip_defects, state.contact, linearized, dual, estimate);
         estimate.friction =
           std::min(estimate.turning, bound) + estimate.resting;
         estimate.friction_indicator =

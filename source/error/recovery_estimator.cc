@@ -11,6 +11,15 @@
 namespace Viscoplastic
 {
   template <int dim>
+  unsigned int
+  RecoveryEstimator<dim>::opposite(const unsigned int vertex)
+  {
+    return n_vertices - 1 - vertex;
+  }
+
+
+
+  template <int dim>
   RecoveryEstimator<dim>::RecoveryEstimator(const LocalCells<dim> &cells)
     : local(cells)
     , fe(FE_Q<dim>(1), n_components)
@@ -38,7 +47,10 @@ namespace Viscoplastic
         part_of.emplace(cell->material_id(), part_of.size());
     parts.resize(part_of.size());
     for (Part &part : parts)
-      part.inverse_volume.reinit(values);
+      {
+        part.inverse_volume.reinit(values);
+        part.inverse_inner_volume.reinit(values);
+      }
 
     std::vector<std::map<types::global_dof_index, unsigned int>> hanging(
       parts.size());
@@ -50,11 +62,27 @@ namespace Viscoplastic
           space.cells[c]->index(),
           &dof_handler);
         nodes.emplace_back();
+        ends.emplace_back();
         for (unsigned int v = 0; v < n_vertices; ++v)
           nodes[c][v] = place(cell->vertex_dof_index(v, 0));
         if (!cells.cells[c].is_present)
           continue;
-        const unsigned int p = part_of.at(cells.cells[c].material_id);
+        const unsigned int           p = part_of.at(cells.cells[c].material_id);
+        std::array<bool, n_vertices> is_at_end{};
+        for (const unsigned int face : cell->face_indices())
+          if (cell->at_boundary(face) ||
+              cell->neighbor(face)->material_id() != cell->material_id())
+            for (unsigned int v = 0; v < n_vertices / 2; ++v)
+              is_at_end[GeometryInfo<dim>::face_to_cell_vertices(face, v)] =
+                true;
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          if (is_at_end[v] && !is_at_end[opposite(v)])
+            {
+              ends[c].push_back(v);
+              for (unsigned int i = 0; i < n_components; ++i)
+                parts[p].inverse_inner_volume.local_element(nodes[c][v] + i) +=
+                  cells.stress_space.volume(c);
+            }
         parts[p].cells.push_back(c);
         for (unsigned int v = 0; v < n_vertices; ++v)
           {
@@ -69,9 +97,12 @@ namespace Viscoplastic
     for (unsigned int p = 0; p < parts.size(); ++p)
       {
         NodalVector &volume = parts[p].inverse_volume;
-        volume.compress(VectorOperation::add);
-        for (double &value : volume)
-          value = value > 0. ? 1. / value : 0.;
+        for (NodalVector *inverse : {&volume, &parts[p].inverse_inner_volume})
+          {
+            inverse->compress(VectorOperation::add);
+            for (double &value : *inverse)
+              value = value > 0. ? 1. / value : 0.;
+          }
         volume.update_ghost_values();
         for (const auto &[dof, node] : hanging[p])
           {
@@ -101,19 +132,15 @@ namespace Viscoplastic
   template <int dim>
   void
   RecoveryEstimator<dim>::recover(const Part              &part,
-                                  const DistributedVector &u) const
+                                  const DistributedVector &u,
+                                  const bool               from_inside) const
   {
     values              = 0.;
     double *const nodal = values.begin();
     for (const unsigned int c : part.cells)
       {
-        const Cell &cell  = local.cells[c];
-        const auto &shape = local.shapes[cell.shape];
-
         const SymmetricTensor<2, dim> integral =
-          shape.volume *
-          symmetrize(local.gradient(local.displacements(cell, u.begin()),
-                                    shape.mean_gradients));
+          local.stress_space.volume(c) * mean_strain(c, u);
         for (const unsigned int node : nodes[c])
           for (unsigned int i = 0; i < n_components; ++i)
             nodal[node + i] += integral.access_raw_entry(i);
@@ -121,6 +148,21 @@ namespace Viscoplastic
     values.compress(VectorOperation::add);
     values.scale(part.inverse_volume);
     values.update_ghost_values();
+    interpolate_hanging_nodes(part);
+    if (from_inside)
+      {
+        extrapolate(part, u);
+        interpolate_hanging_nodes(part);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  RecoveryEstimator<dim>::interpolate_hanging_nodes(const Part &part) const
+  {
+    double *const nodal = values.begin();
     for (const HangingNode &hanging : part.hanging_nodes)
       for (unsigned int i = 0; i < n_components; ++i)
         {
@@ -128,6 +170,69 @@ namespace Viscoplastic
           for (const auto &[parent, factor] : hanging.parents)
             nodal[hanging.node + i] += factor * nodal[parent + i];
         }
+  }
+
+
+
+  template <int dim>
+  void
+  RecoveryEstimator<dim>::extrapolate(const Part              &part,
+                                      const DistributedVector &u) const
+  {
+    NodalVector change;
+    change.reinit(values);
+    const double *const nodal = values.begin();
+    for (const unsigned int c : part.cells)
+      {
+        if (ends[c].empty())
+          continue;
+        // Half of the nodes make all of what the mean misses.
+        SymmetricTensor<2, dim> missed = mean_strain(c, u);
+        for (const unsigned int node : nodes[c])
+          for (unsigned int i = 0; i < n_components; ++i)
+            missed.access_raw_entry(i) -= nodal[node + i] / n_vertices;
+        missed *= 2. * local.stress_space.volume(c);
+        for (const unsigned int v : ends[c])
+          for (unsigned int i = 0; i < n_components; ++i)
+            change.local_element(nodes[c][v] + i) += missed.access_raw_entry(i);
+      }
+    change.compress(VectorOperation::add);
+    change.scale(part.inverse_inner_volume);
+    values.zero_out_ghost_values();
+    values += change;
+    values.update_ghost_values();
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, dim>
+  RecoveryEstimator<dim>::mean_strain(const unsigned int       c,
+                                      const DistributedVector &u) const
+  {
+    const Cell &cell = local.cells[c];
+    return symmetrize(local.gradient(local.displacements(cell, u.begin()),
+                                     local.shapes[cell.shape].mean_gradients));
+  }
+
+
+
+  template <int dim>
+  std::array<SymmetricTensor<2, 3>, RecoveryEstimator<dim>::n_points>
+  RecoveryEstimator<dim>::dilatations(const unsigned int       c,
+                                      const DistributedVector &u) const
+  {
+    std::array<SymmetricTensor<2, 3>, n_points> result;
+    if (!local.stress_space.mean_dilatation)
+      return result;
+    const Cell  &cell   = local.cells[c];
+    const auto   nodal  = local.displacements(cell, u.begin());
+    const double mean   = trace(mean_strain(c, u));
+    const auto  &shapes = local.shapes[cell.shape].gradients;
+    for (unsigned int q = 0; q < n_points; ++q)
+      result[q] = (trace(local.gradient(nodal, shapes[q])) - mean) / 3. *
+                  unit_symmetric_tensor<3>();
+    return result;
   }
 
 
@@ -161,37 +266,55 @@ namespace Viscoplastic
   Vector<double>
   RecoveryEstimator<dim>::estimate(const DistributedVector &u) const
   {
-    return multiply(u, u);
+    std::vector<double> squares(local.cells.size());
+    for (const Part &part : parts)
+      {
+        recover(part, u, /* from_inside = */ false);
+        for (const unsigned int c : part.cells)
+          {
+            const Cell &cell    = local.cells[c];
+            const auto &weights = local.shapes[cell.shape].weights;
+            const auto  e       = defects(c, u);
+            for (unsigned int q = 0; q < n_points; ++q)
+              squares[c] += weights[q] * (cell.stiffness.stress(e[q]) * e[q]);
+          }
+      }
+    return local.by_active_index(squares);
   }
 
 
 
   template <int dim>
   Vector<double>
-  RecoveryEstimator<dim>::multiply(const DistributedVector &u,
-                                   const DistributedVector &w) const
+  RecoveryEstimator<dim>::multiply(
+    const DistributedVector                  &u,
+    const DistributedVector                  &w,
+    const std::vector<SymmetricTensor<4, 3>> &tangents) const
   {
+    const unsigned int  n_samples = local.stress_space.n_samples;
     std::vector<double> products(local.cells.size());
     std::vector<std::array<SymmetricTensor<2, 3>, n_points>> of_u;
     for (const Part &part : parts)
       {
-        recover(part, u);
-        if (&u != &w)
-          {
-            of_u.clear();
-            for (const unsigned int c : part.cells)
-              of_u.push_back(defects(c, u));
-            recover(part, w);
-          }
+        recover(part, u, /* from_inside = */ true);
+        of_u.clear();
+        for (const unsigned int c : part.cells)
+          of_u.push_back(defects(c, u));
+        recover(part, w, /* from_inside = */ true);
         for (unsigned int i = 0; i < part.cells.size(); ++i)
           {
-            const unsigned int c       = part.cells[i];
-            const Cell        &cell    = local.cells[c];
-            const auto        &weights = local.shapes[cell.shape].weights;
-            const auto         of_w    = defects(c, w);
+            const unsigned int c = part.cells[i];
+            const auto &weights  = local.shapes[local.cells[c].shape].weights;
+            const auto  of_w     = defects(c, w);
+            const auto delta_u = dilatations(c, u), delta_w = dilatations(c, w);
             for (unsigned int q = 0; q < n_points; ++q)
-              products[c] += weights[q] * (cell.stiffness.stress(of_w[q]) *
-                                           (of_u.empty() ? of_w : of_u[i])[q]);
+              {
+                const SymmetricTensor<4, 3> &C =
+                  tangents[c * n_samples + (n_samples == 1 ? 0 : q)];
+                products[c] +=
+                  weights[q] * ((of_u[i][q] - delta_u[q]) * (C * of_w[q]) -
+                                of_u[i][q] * (C * delta_w[q]));
+              }
           }
       }
     return local.by_active_index(products);

@@ -102,10 +102,12 @@ namespace Viscoplastic
 
   template <int dim>
   Vector<double>
-  SpaceEstimator<dim>::multiply_recovered(const State<dim>        &state,
-                                          const DualSolution<dim> &dual) const
+  SpaceEstimator<dim>::multiply_recovered(
+    const State<dim>                         &state,
+    const DualSolution<dim>                  &dual,
+    const std::vector<SymmetricTensor<4, 3>> &tangents) const
   {
-    return recovery_estimator->multiply(state.u, dual.cartesian);
+    return recovery_estimator->multiply(state.u, dual.cartesian, tangents);
   }
 
 

@@ -55,11 +55,15 @@ namespace Viscoplastic
     , estimate_is_of_state_alone(scene.has_constant_loads_and_bounds() &&
                                  !scene.quantity)
     , step_method(make_step_method(discretization, timer))
-    , quantity_estimator(
-        scene.quantity ?
-          std::make_unique<QuantityEstimator<dim>>(discretization,
-                                                   *space_estimator) :
-          nullptr)
+    , quantity_estimator(scene.quantity ?
+                           std::make_unique<QuantityEstimator<dim>>(
+                             discretization,
+                             *space_estimator,
+                             [this](const TangentMatrix<dim> &tangent,
+                                    const bool is_new) -> BulkSolver & {
+                               return solver_of(tangent, is_new);
+                             }) :
+                           nullptr)
   {}
 
 
@@ -397,6 +401,23 @@ namespace Viscoplastic
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
       throw StepFailure(state.n, state.t, "the solution is not finite.");
     return errors;
+  }
+
+
+
+  template <int dim>
+  BulkSolver &
+  TimeStepper<dim>::solver_of(const TangentMatrix<dim> &tangent,
+                              const bool                is_new)
+  {
+    if (!tangent_solver)
+      tangent_solver = std::make_unique<StepSolver<dim>>(discretization);
+    // A preconditioner that has seen other solves is no function of the state.
+    if (is_new || !tangent_solver->is_ready() ||
+        !tangent_solver->bulk().is_exact())
+      tangent_solver->set_matrix(tangent.matrix(),
+                                 tangent.max_poissons_ratio());
+    return tangent_solver->bulk();
   }
 
 

@@ -43,6 +43,13 @@ namespace Viscoplastic
       return tangent_matrix;
     }
 
+    /// C at the samples.
+    const std::vector<SymmetricTensor<4, 3>> &
+    at_samples() const
+    {
+      return tangents;
+    }
+
     /// The largest Poisson's ratio of the isotropic tensors next to the
     /// tangents.
     double

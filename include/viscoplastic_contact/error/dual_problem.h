@@ -79,7 +79,17 @@ namespace Viscoplastic
     DualSolution<dim>
     solve(BulkSolver         &solver,
           const ContactState &contact,
-          const CoulombLaw   *law = nullptr) const;
+          const CoulombLaw   *law = nullptr) const
+    {
+      return solve(solver, discretization.matrix, contact, law);
+    }
+
+    /// The same with another matrix in the place of a(.,.).
+    DualSolution<dim>
+    solve(BulkSolver              &solver,
+          const DistributedMatrix &matrix,
+          const ContactState      &contact,
+          const CoulombLaw        *law) const;
 
     double
     sign() const

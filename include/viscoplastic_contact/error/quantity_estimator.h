@@ -2,8 +2,12 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/contact_event.h>
+#include <viscoplastic_contact/discretization/tangent_matrix.h>
 #include <viscoplastic_contact/error/dual_problem.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
+
+#include <functional>
+#include <memory>
 
 namespace Viscoplastic
 {
@@ -20,6 +24,13 @@ namespace Viscoplastic
    *   which ResidualEstimator::multiply() tells the part of each cell. Their
    *   sum is the estimate, safety times that is what counts as error, and their
    *   sizes are the indicators by which meshes are refined.
+   * - mesh, in what has crept: rates that have been wrong for long have moved
+   *   the body, which the residual of its present stress does not know. For
+   *   displacements the larger of a(e_u, e_w) and of the product C e_u : e_w of
+   *   recovered strains counts (RecoveryEstimator::multiply()), with the
+   *   tangents C of one step of backward Euler from the beginning to now and
+   *   the dual solution w of their matrix. Forces forget strain that has
+   *   relaxed.
    * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
    *   steps (see ErrorEstimator).
    * - slip that turns or comes to rest within a step is wrong by defects d_c
@@ -46,10 +57,19 @@ namespace Viscoplastic
     /// knows nothing of what the meshes before have done to z, or of fronts of
     /// slip between nodes. How large that may be: doc/method.md, section 12.
     static constexpr double safety = 2.;
+    /// What counts at least of the sum without signs where creep moves a point:
+    /// contributions that cancel more are no more accurate than that.
+    static constexpr double least_share = 0.25;
+
+    /// A solver for the matrix of tangents, until the next one is asked for,
+    /// and whether that is another matrix than the last time.
+    using TangentSolver =
+      std::function<BulkSolver &(const TangentMatrix<dim> &, const bool)>;
 
     /// All arguments stay in use. Collective.
     QuantityEstimator(const Discretization<dim> &discretization,
-                      const SpaceEstimator<dim> &space_estimator);
+                      const SpaceEstimator<dim> &space_estimator,
+                      const TangentSolver       &solver_of_tangents);
 
     /// Add the quantity, its errors and the indicators to the state at the end
     /// of a step, whose estimate in the energy norm is complete. @p solver: for
@@ -77,6 +97,13 @@ namespace Viscoplastic
                      const DualSolution<dim> &dual,
                      QuantityEstimate        &estimate) const;
 
+    /// What the errors of rates have done to a displacement by the end of a
+    /// step, by active cell. Collective.
+    Vector<double>
+    products_of_creep(const State<dim> &state,
+                      const double      relaxation_rate,
+                      const CoulombLaw *law) const;
+
     /// Settle what later steps will not change in the error of a sum.
     void
     settle(const EvaluatedState<dim> &accepted,
@@ -85,6 +112,9 @@ namespace Viscoplastic
 
     const Discretization<dim> &discretization;
     const SpaceEstimator<dim> &space_estimator;
+    const TangentSolver        solver_of_tangents;
     const DualProblem<dim>     dual_problem;
+    /// Of creep; null if the quantity is no displacement.
+    std::unique_ptr<TangentMatrix<dim>> tangent;
   };
 } // namespace Viscoplastic

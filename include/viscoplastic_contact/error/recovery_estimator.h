@@ -35,10 +35,26 @@ namespace Viscoplastic
     Vector<double>
     estimate(const DistributedVector &u) const;
 
-    /// a(e_u, e_w) by active cell, of the errors of two displacements with
-    /// their signs; arguments and result as of estimate(). Collective.
+    /**
+     * int e_u : C e_w by active cell, of the strain errors of two displacements
+     * with their signs and a tensor C at each sample; arguments and result as
+     * of estimate().
+     *
+     * Signs leave little of the sum, so that two things count here that do not
+     * in squares. Means at a boundary miss half of what a strain varies by in a
+     * cell: eps* is extrapolated there, so that linear strains on boxes are met
+     * everywhere. And under mean dilatation pressures do work on what div u_h
+     * and div w_h vary by in cells, delta:
+     *
+     *     - int e_u : C I delta_w/3 - int e_w : C I delta_u/3,
+     *
+     * from the mixed form of displacement and pressure, which that method is.
+     * Collective.
+     */
     Vector<double>
-    multiply(const DistributedVector &u, const DistributedVector &w) const;
+    multiply(const DistributedVector                  &u,
+             const DistributedVector                  &w,
+             const std::vector<SymmetricTensor<4, 3>> &tangents) const;
 
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
@@ -62,14 +78,41 @@ namespace Viscoplastic
     {
       std::vector<unsigned int> cells;
       NodalVector               inverse_volume; // of the cells around
+      /// Of those around a node at the boundary with a vertex inside opposite
+      /// to it.
+      NodalVector inverse_inner_volume;
       /// Those that have the material at all of their parents take what is
       /// between them.
       std::vector<HangingNode> hanging_nodes;
     };
 
-    /// Set the strains at the nodes of a part. Collective.
+    /// The vertex of a cell that is farthest from this one.
+    static unsigned int
+    opposite(const unsigned int vertex);
+
+    /// Set the strains at the nodes of a part; at its boundary, means of its
+    /// cells or @p from_inside. Collective.
     void
-    recover(const Part &part, const DistributedVector &u) const;
+    recover(const Part              &part,
+            const DistributedVector &u,
+            const bool               from_inside) const;
+
+    /// Add to the strains at the boundary what the cell means of eps* miss.
+    void
+    extrapolate(const Part &part, const DistributedVector &u) const;
+
+    /// Set the strains at hanging nodes to what is between their parents.
+    void
+    interpolate_hanging_nodes(const Part &part) const;
+
+    /// The mean strain of an owned cell.
+    SymmetricTensor<2, dim>
+    mean_strain(const unsigned int cell, const DistributedVector &u) const;
+
+    /// How much div u_h is larger than its mean, at the points of an owned cell
+    /// and as a tensor: zero without mean dilatation.
+    std::array<SymmetricTensor<2, 3>, n_points>
+    dilatations(const unsigned int cell, const DistributedVector &u) const;
 
     /// eps* - eps_h at the points of an owned cell, from what is recovered.
     std::array<SymmetricTensor<2, 3>, n_points>
@@ -80,6 +123,9 @@ namespace Viscoplastic
     DoFHandler<dim>        dof_handler;
     /// Local places of the first component at the vertices of owned cells.
     std::vector<std::array<unsigned int, n_vertices>> nodes;
+    /// The vertices of owned cells on faces where the part ends, as far as the
+    /// opposite one is not on such a face.
+    std::vector<std::vector<unsigned char>> ends;
     /// Shape functions at the points of a cell.
     std::array<std::array<double, n_vertices>, n_points> shape_values;
     std::vector<Part>                                    parts;

@@ -72,10 +72,12 @@ namespace Viscoplastic
              const double             memory) const;
 
     /// The same by RecoveryEstimator, which sees what creep has made of errors
-    /// of the rates. Collective.
+    /// of the rates, with a tangent at each sample. Collective.
     Vector<double>
-    multiply_recovered(const State<dim>        &state,
-                       const DualSolution<dim> &dual) const;
+    multiply_recovered(
+      const State<dim>                         &state,
+      const DualSolution<dim>                  &dual,
+      const std::vector<SymmetricTensor<4, 3>> &tangents) const;
 
   private:
     const Discretization<dim> &discretization;

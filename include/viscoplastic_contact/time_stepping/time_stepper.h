@@ -130,6 +130,10 @@ namespace Viscoplastic
     StepSolver<dim> &
     solver_of_elasticity();
 
+    /// A solver for other matrices; @p is_new: than the last one. Collective.
+    BulkSolver &
+    solver_of(const TangentMatrix<dim> &tangent, const bool is_new);
+
     const Discretization<dim> &discretization;
     const Scene<dim>          &scene;
     const ErrorEstimator<dim> *error_estimator;
@@ -144,5 +148,7 @@ namespace Viscoplastic
     std::unique_ptr<QuantityEstimator<dim>> quantity_estimator;
     /// If the steps have other matrices; made when it is needed.
     std::unique_ptr<StepSolver<dim>> elastic_solver;
+    /// Of the matrices that the estimate of a displacement asks for.
+    std::unique_ptr<StepSolver<dim>> tangent_solver;
   };
 } // namespace Viscoplastic

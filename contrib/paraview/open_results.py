@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""ParaView opens a directory of results, ready coloured.
+"""ParaView opens a directory of results, ready colored.
 
-The body is warped by its displacement and coloured by the von Mises stress;
-on the contact face slip, stick and places without friction have the colours
+The body is warped by its displacement and colored by the von Mises stress;
+on the contact face slip, stick and places without friction have the colors
 of contrib/plot.  In three dimensions a second view shows that face from the
 foundation, with arrows for the slip.  The time is that of the last output.
 
@@ -80,12 +80,12 @@ def magnification(largest, size):
 
 
 class Box:
-    """Centre of mass and extents of what a source shows."""
+    """Center of mass and extents of what a source shows."""
 
     def __init__(self, source):
         bounds = source.GetDataInformation().GetBounds()
         integral = pv.IntegrateVariables(Input=source)
-        self.centre = list(pv.servermanager.Fetch(integral).GetPoint(0))
+        self.center = list(pv.servermanager.Fetch(integral).GetPoint(0))
         pv.Delete(integral)
         self.extent = [bounds[2 * d + 1] - bounds[2 * d] for d in range(3)]
         self.size = max(self.extent)
@@ -178,13 +178,13 @@ def add_state(contact):
     return state
 
 
-def state_colours(source):
+def state_colors(source):
     """A map of three steps, and what they mean."""
     lut = pv.GetColorTransferFunction("state")
     lut.AutomaticRescaleRangeMode = "Never"
     lut.ColorSpace = "Step"
     lut.Discretize = 0
-    steps = (  # a colour holds up to its value
+    steps = (  # a color holds up to its value
         (-0.5, NO_FRICTION, "no friction"),
         (0.5, STICK, "stick"),
         (1.5, SLIP, "slip"),
@@ -218,7 +218,7 @@ def show_state(source, view, size, flat, shift=None):
         display.Position = [2e-3 * size * d for d in shift]
     else:
         display.SetScalarBarVisibility(view, True)
-    lut, names = state_colours(source)  # last: what is before rescales the map
+    lut, names = state_colors(source)  # last: what is before rescales the map
     if not flat and shift:
         return  # the other view has the bar
     bar = show_bar(lut, view, names, (0.57 if flat else 0.32, 0.1), 0.35)
@@ -263,7 +263,7 @@ def show_time(reader, view, unit):
 
 def outwards(body, face):
     """From the body towards the foundation: a normal of the face, or so."""
-    away = [face.centre[d] - body.centre[d] for d in range(3)]
+    away = [face.center[d] - body.center[d] for d in range(3)]
     for d in range(3):
         if face.extent[d] <= 1e-6 * face.size:
             return [math.copysign(1.0, away[d]) if i == d else 0.0 for i in range(3)]
@@ -283,9 +283,9 @@ def look_from_foundation(view, body, face):
             for d in range(3)
         ]
     view.CameraParallelProjection = 1
-    view.CameraFocalPoint = face.centre
+    view.CameraFocalPoint = face.center
     away = 3.0 * face.size
-    view.CameraPosition = [face.centre[d] + away * normal[d] for d in range(3)]
+    view.CameraPosition = [face.center[d] + away * normal[d] for d in range(3)]
     view.CameraViewUp = up
     view.CameraParallelScale = max(0.8 * face.size, 0.58 * math.hypot(*face.extent))
 
@@ -300,7 +300,7 @@ def look_at_body(view, flat):
     view.CameraParallelProjection = 1
     pv.ResetCamera(view)
     view.CameraParallelScale *= 1.0 if flat else 1.25
-    # Up a little: the colour bars are below.
+    # Up a little: the color bars are below.
     shift = 0.1 * view.CameraParallelScale
     for name in ("CameraPosition", "CameraFocalPoint"):
         place = list(getattr(view, name))

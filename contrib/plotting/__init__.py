@@ -6,7 +6,7 @@ geometry    welding, boundary faces, edges: meshes without physics
 faces       the contact boundary in flat pieces with coordinates of their own
 units       units on axes, in handy multiples
 quantities  words and kinds of units of fields and columns
-style       colours, titles and keys, the same in all pictures
+style       colors, titles and keys, the same in all pictures
 supports    what the scene prescribes on the boundary
 body_base, body, body_3d
             a field on the deformed body, in two and in three dimensions

@@ -63,13 +63,13 @@ class Body2D(Body):
         for side in ("left", "bottom"):
             axes.spines[side].set_position(("outward", 10))
         style.legend_above(axes, handles)
-        self.colour_bar(axes, is_flat(self.aspect()))
+        self.color_bar(axes, is_flat(self.aspect()))
 
     def draw_contact(self, axes, states):
         contact = self.contact
         place = self.moved(contact)[:, :2]
         # A state belongs to a node and to half the edges beside it.
-        pieces, runs, colours = [], [], []
+        pieces, runs, colors = [], [], []
         for line in lines(contact):
             corners = place[line.nodes]
             pieces.append(corners)
@@ -78,15 +78,15 @@ class Body2D(Body):
             for state, first, last in state_runs(states[line.nodes]):
                 inner = corners[first : last + 1]
                 runs.append(np.concatenate([ends[[first]], inner, ends[[last + 1]]]))
-                colours.append(style.STATE_COLOURS[state])
-        for paths, width, colour, cap, order in (
+                colors.append(style.STATE_COLORS[state])
+        for paths, width, color, cap, order in (
             (pieces, 7.5, "black", "projecting", 4),
-            (runs, 5.0, colours, "butt", 5),
+            (runs, 5.0, colors, "butt", 5),
         ):
             axes.add_collection(
                 LineCollection(
                     paths,
-                    colors=colour,
+                    colors=color,
                     linewidths=width,
                     capstyle=cap,
                     zorder=order,
@@ -112,31 +112,31 @@ class Body2D(Body):
         return float(np.clip(width * self.aspect(), 0.4, 7.5))
 
 
-def tiles(axes, polygons, **colours):
-    """Polygons without background between neighbours.
+def tiles(axes, polygons, **colors):
+    """Polygons without background between neighbors.
 
-    Each has an edge in its own colour, since two edges that cover a part of
+    Each has an edge in its own color, since two edges that cover a part of
     the same pixels do not hide what is behind; and corners are not rounded to
-    pixels, as matplotlib does with rectangles only, not with their neighbours.
+    pixels, as matplotlib does with rectangles only, not with their neighbors.
     """
     collection = PolyCollection(
-        polygons, edgecolors="face", linewidths=0.8, snap=False, **colours
+        polygons, edgecolors="face", linewidths=0.8, snap=False, **colors
     )
     return axes.add_collection(collection)
 
 
-def draw_mesh(axes, points, cells, vertex, colour=(1, 1, 1, 0.4)):
-    """Mesh lines, where they do not hide the colours."""
+def draw_mesh(axes, points, cells, vertex, color=(1, 1, 1, 0.4)):
+    """Mesh lines, where they do not hide the colors."""
     if len(cells) <= MANY:
         lines = points[unique_edges(cells, vertex)]
         axes.add_collection(
-            LineCollection(lines, colors=[colour], linewidths=0.3, snap=False)
+            LineCollection(lines, colors=[color], linewidths=0.3, snap=False)
         )
 
 
 def shaded(axes, points, cells, values, shade):
-    """Nodal values on quadrilaterals: four triangles about each centre."""
-    centres = points[cells].mean(axis=1)
+    """Nodal values on quadrilaterals: four triangles about each center."""
+    centers = points[cells].mean(axis=1)
     number = len(points) + np.arange(len(cells))
     triangles = np.concatenate(
         [
@@ -145,7 +145,7 @@ def shaded(axes, points, cells, values, shade):
         ]
     )
     image = axes.tripcolor(
-        *np.concatenate([points, centres]).T,
+        *np.concatenate([points, centers]).T,
         triangles,
         np.concatenate([values, values[cells].mean(axis=1)]),
         shading="gouraud",

@@ -30,7 +30,7 @@ class Body3D(Body):
         return text
 
     LABELS = 1.2, 0.6  # inches beside and below the body for labels of axes
-    FLAT = 0.75  # height over width with the colour bar underneath
+    FLAT = 0.75  # height over width with the color bar underneath
 
     def panel_height(self, width, view):
         """Inches that the body needs in a panel so many inches wide."""
@@ -58,7 +58,7 @@ class Body3D(Body):
         panel = figure.add_subplot(cell)
         panel.set_axis_off()
         across, up = self.projected(view)
-        self.colour_bar(panel, up < self.FLAT * across)
+        self.color_bar(panel, up < self.FLAT * across)
         style.legend_above(panel, [undeformed_key()])
         return panel
 
@@ -137,21 +137,21 @@ class Body3D(Body):
             values = self.values[self.owners]
         else:
             values = self.at_points[self.faces].mean(axis=1)
-        colours = self.scale.shade.colours(values[visible])
+        colors = self.scale.shade.colors(values[visible])
         mesh_lines = (
-            np.tile((1.0, 1.0, 1.0, 0.35), (len(colours), 1)) if few else colours
+            np.tile((1.0, 1.0, 1.0, 0.35), (len(colors), 1)) if few else colors
         )
         # The edges of the body are sorted by depth together with its faces,
         # as polygons without area, nearer to the viewer than these faces.
-        edges, neighbours = sharp_edges(self.faces, self.vertex, self.body.points)
-        shown = edges[visible[neighbours].any(axis=1)]
+        edges, neighbors = sharp_edges(self.faces, self.vertex, self.body.points)
+        shown = edges[visible[neighbors].any(axis=1)]
         lines = self.deformed[shown][:, (0, 1, 1, 0)]
         lengths = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
         lines += lengths[:, None, None] * towards_viewer
         black = np.tile((0.0, 0.0, 0.0, 1.0), (len(lines), 1))
         surface = Poly3DCollection(
             np.concatenate([polygons[visible], lines]),
-            facecolors=np.concatenate([colours, black]),
+            facecolors=np.concatenate([colors, black]),
             edgecolors=np.concatenate([mesh_lines, black]),
             linewidths=0.6,  # one for all: it is not sorted with the rest
             zorder=2,
@@ -162,7 +162,7 @@ class Body3D(Body):
         if len(edges):
             undeformed = self.body.points[edges]
             flat = newell_normals(self.body.points[self.faces]) @ towards_viewer
-            in_front = (flat > 0.0)[neighbours].any(axis=1)
+            in_front = (flat > 0.0)[neighbors].any(axis=1)
             for chosen, order, alpha in ((in_front, 4, 0.9), (~in_front, 1, 0.5)):
                 look = {"alpha": alpha, "zorder": order}
                 # White under the dashes, on dark faces.
@@ -207,16 +207,16 @@ class Body3D(Body):
         for number in np.unique(ids):
             faces = self.faces[ids == number]
             places = self.body.points[faces].mean(axis=1)
-            centre = self.deformed[faces].mean(axis=(0, 1))
-            arrow, colour, pushes = supports.arrow(
+            center = self.deformed[faces].mean(axis=(0, 1))
+            arrow, color, pushes = supports.arrow(
                 number, places, normals[ids == number], self.time
             )
             if arrow is not None:
                 arrow = 0.2 * self.scale.size * arrow
                 axes.quiver(
-                    *(centre - arrow if pushes else centre),
+                    *(center - arrow if pushes else center),
                     *arrow,
-                    color=colour,
+                    color=color,
                     lw=2.5,
                     arrow_length_ratio=0.3,
                     zorder=6,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What pictures of the body have in common: a field, its colours, the outline."""
+"""What pictures of the body have in common: a field, its colors, the outline."""
 
 import re
 
@@ -8,13 +8,13 @@ from matplotlib.lines import Line2D
 
 from . import quantities, style
 from .geometry import boundary_faces, corner_volumes
-from .layout import add_colour_bar
+from .layout import add_color_bar
 from .results import NoPicture
 from .supports import Supports
 from .units import Units
 
 DASHES = (0, (5, 3))
-MANY = 3000  # cells beyond which mesh lines would hide the colours
+MANY = 3000  # cells beyond which mesh lines would hide the colors
 
 CELL_DATA = (
     *("stress_", "irreversible_", "strain_", "creep_", "principal_stress_"),
@@ -84,7 +84,7 @@ class Scale:
 
     magnification  of the displacement
     low, high      corners of the box that holds all deformed bodies
-    shade          the colours of the field
+    shade          the colors of the field
     units, length, time, unit
                    units in general, of axes, of times and of the field
     supports       what the scene prescribes on the boundary, or None
@@ -166,12 +166,12 @@ class Body:
             text += f"\nWarning: this factor folds {n_folded} cells over"
         return text
 
-    def colour_bar(self, axes, flat):
+    def color_bar(self, axes, flat):
         shade, unit = self.scale.shade, self.scale.unit
         name, _ = quantities.field(self.scale.name)
         separator = " " if flat else "\n"
         label = style.range_label(shade, name, self.at_points, unit, separator)
-        add_colour_bar(axes, shade.mappable(), label, unit, flat, extend=shade.extend)
+        add_color_bar(axes, shade.mappable(), label, unit, flat, extend=shade.extend)
 
 
 def undeformed_key():

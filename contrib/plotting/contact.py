@@ -21,7 +21,7 @@ from . import style
 from .body import draw_mesh, shaded, tiles
 from .faces import friction_state, is_unilateral, lines, planes, required, state_runs
 from .geometry import thinned
-from .layout import add_colour_bar
+from .layout import add_color_bar
 from .results import UserError
 from .supports import MOTION
 from .units import Unit, Units, show
@@ -230,7 +230,7 @@ def mark_states(axes, contact, line):
             axes.axvspan(
                 ends[first],
                 ends[last + 1],
-                color=style.STATE_COLOURS[state],
+                color=style.STATE_COLORS[state],
                 alpha=SHADES[state].get_alpha(),
                 lw=0,
                 zorder=0,
@@ -297,24 +297,24 @@ def draw_planes(contact, body, scale):
                 plane.prepare(axes, scale.length, length)
                 unit = scale.unit(name)
                 label = unit.label(words[name])
-                add_colour_bar(axes, shade.mappable(), label, unit, plane.is_flat())
+                add_color_bar(axes, shade.mappable(), label, unit, plane.is_flat())
             if i == 0:
                 row[0].set_title(f"{plane.name(scale.length)}, {plane.view()}", pad=10)
     return figure, len(found) - len(shown)
 
 
 def draw_states(axes, plane, contact):
-    """Each node colours the quarters of the faces that it belongs to."""
+    """Each node colors the quarters of the faces that it belongs to."""
     states = friction_state(contact)
     corners = plane.plane[plane.cells]
     middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
-    centres = corners.mean(axis=1)
+    centers = corners.mean(axis=1)
     for i in range(4):
         quarters = np.stack(
-            [corners[:, i], middles[:, i], centres, middles[:, i - 1]], axis=1
+            [corners[:, i], middles[:, i], centers, middles[:, i - 1]], axis=1
         )
-        colours = [style.STATE_COLOURS[state] for state in states[plane.cells[:, i]]]
-        tiles(axes, quarters, facecolors=colours)
+        colors = [style.STATE_COLORS[state] for state in states[plane.cells[:, i]]]
+        tiles(axes, quarters, facecolors=colors)
     draw_mesh(axes, plane.plane, plane.cells, plane.vertex(), (0, 0, 0, 0.5))
     return states[np.unique(plane.cells)]
 
@@ -338,7 +338,7 @@ def length_of_arrows(plane):
 
 def add_arrows(axes, plane, contact, longest, length):
     """Arrows of the slip at some nodes; one of `longest` has that length.  Black
-    with a white border: they lie on dark and on light colours."""
+    with a white border: they lie on dark and on light colors."""
     if longest <= 0.0:
         return None
     chosen, _ = nodes_with_arrows(plane)
@@ -366,7 +366,7 @@ def one_of_each(plane):
     return used[first]
 
 
-# Dark where there is nothing, white at the bound: under dots in the colour of
+# Dark where there is nothing, white at the bound: under dots in the color of
 # slip and under black arrows.
 UTILISATION = ListedColormap(matplotlib.colormaps["bone"](np.linspace(0.25, 1.0, 256)))
 
@@ -415,7 +415,7 @@ def draw_utilisation(axes, plane, body, longest, length):
     draw_foundation_motion(axes, plane, body)
     unit = Unit(0.01, "%")
     label = unit.label("traction over its bound")
-    add_colour_bar(axes, faces, label, unit, plane.is_flat())
+    add_color_bar(axes, faces, label, unit, plane.is_flat())
 
 
 def draw_foundation_motion(axes, plane, body):
@@ -423,11 +423,11 @@ def draw_foundation_motion(axes, plane, body):
     supports = body.scale.supports
     if not supports:
         return
-    centres = plane.contact.points[plane.cells].mean(axis=1)
-    number = supports.of(centres[:1])[0]
-    normals = np.tile(plane.normal, (len(centres), 1))
+    centers = plane.contact.points[plane.cells].mean(axis=1)
+    number = supports.of(centers[:1])[0]
+    normals = np.tile(plane.normal, (len(centers), 1))
     try:
-        velocity = supports.velocity(number, centres, normals, body.time).mean(axis=0)
+        velocity = supports.velocity(number, centers, normals, body.time).mean(axis=0)
     except UserError:  # an expression of more than place and time
         return
     speed = np.linalg.norm(plane.project(velocity))

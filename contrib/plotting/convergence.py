@@ -62,7 +62,7 @@ def draw(study, error, variants=None):
 
 
 def mark_reference(axes, error, side="right"):
-    """Grey where differences to the reference say more of its own error."""
+    """Gray where differences to the reference say more of its own error."""
     low, high = axes.get_ylim()
     if error is None or error <= low:
         return
@@ -117,7 +117,7 @@ def draw_panel(axes, study, error, axis, ladders, variants):
     axes.margins(0.08)
 
 
-def draw_fit(axes, fit, axis, study, rows, colour):
+def draw_fit(axes, fit, axis, study, rows, color):
     """The fit between the coarsest and the finest run, at their h and k."""
     share = np.linspace(0.0, 1.0, 60)
     h, k = (
@@ -127,7 +127,7 @@ def draw_fit(axes, fit, axis, study, rows, colour):
     axes.plot(
         h if axis == "h" else k,
         rates.predicted_error(fit, h, k),
-        color=colour,
+        color=color,
         ls=":",
         lw=2.2,
         alpha=0.65,

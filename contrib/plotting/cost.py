@@ -8,7 +8,7 @@ from . import rates, style
 from .results import NoPicture
 from .study import TOLERANCE
 
-# Columns in the order of a step: what they are, and their colours.  Those that
+# Columns in the order of a step: what they are, and their colors.  Those that
 # are not here are drawn, too, under their own names.
 PHASES = {
     "seconds_set_up": ("set-up", style.SERIES[5]),
@@ -28,7 +28,7 @@ MOST_RUNS = 24
 
 
 def look(name):
-    """Words and colour of a part of the time."""
+    """Words and color of a part of the time."""
     if name == "rest":
         return REST
     if name in PHASES:

@@ -37,12 +37,12 @@ def decisive(effect):
     return found["change"], np.nan if error is None else error
 
 
-def draw_changes(axes, rows, effects, colours):
+def draw_changes(axes, rows, effects, colors):
     changes, errors = np.array([decisive(effect) for effect in effects]).T
     shown = 100 * np.maximum(changes, SMALLEST)
     idle = np.array([effect["verdict"] in NOTHING for effect in effects])
     errors = np.where(idle, np.nan, errors)
-    axes.barh(rows, shown - 100 * SMALLEST, left=100 * SMALLEST, color=colours)
+    axes.barh(rows, shown - 100 * SMALLEST, left=100 * SMALLEST, color=colors)
     axes.plot(
         100 * np.maximum(errors, SMALLEST),
         rows,
@@ -82,7 +82,7 @@ def draw_changes(axes, rows, effects, colours):
     style.numbers_on_logarithmic_axis(axes.xaxis)
 
 
-def draw_costs(axes, rows, effects, colours):
+def draw_costs(axes, rows, effects, colors):
     """The seconds that an effect takes, with what is chance."""
     of_scene = np.array([effect["with"]["seconds"] for effect in effects])
     without = np.array([effect["without"]["seconds"] for effect in effects])
@@ -94,7 +94,7 @@ def draw_costs(axes, rows, effects, colours):
         rows,
         100 * (1 - without / of_scene),
         xerr=100 * chance / of_scene,
-        color=colours,
+        color=colors,
         error_kw={"elinewidth": 1, "capsize": 2},
     )
     axes.axvline(0, color="black", linewidth=0.8)
@@ -115,9 +115,9 @@ def draw(about):
         width_ratios=(2, 1),
         layout="constrained",
     )
-    colours = [VERDICTS[effect["verdict"]] for effect in effects]
-    draw_changes(left, rows, effects, colours)
-    draw_costs(right, rows, effects, colours)
+    colors = [VERDICTS[effect["verdict"]] for effect in effects]
+    draw_changes(left, rows, effects, colors)
+    draw_costs(right, rows, effects, colors)
     right.tick_params(left=False)
     found = {effect["verdict"] for effect in effects}
     labels = [verdict for verdict in VERDICTS if verdict in found - set(NOTHING)]

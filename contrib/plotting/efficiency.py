@@ -23,7 +23,7 @@ def draw(results, options):
     true = of_cells(body, "error_energy")
     figure, axes = plt.subplots(figsize=(6.6, 6.0), layout="constrained")
     values = [true]
-    for name, (label, colour, marker) in ESTIMATES.items():
+    for name, (label, color, marker) in ESTIMATES.items():
         # With a quantity of interest cells are estimated by what they do to it.
         of_quantity = "quantity_total" in results.statistics
         if name not in body or (name == "estimator" and of_quantity):
@@ -39,7 +39,7 @@ def draw(results, options):
             mfc="none",
             mew=0.8,
             alpha=0.6,
-            color=colour,
+            color=color,
             label=f"{label}: {quotient:.3g} times the error of all cells",
         )
     known = np.concatenate(values)

@@ -287,14 +287,14 @@ def lies_on_contact(place, contact, body):
 def planes(contact, body):
     """The planes of the contact boundary, the largest first."""
     polygons = contact.points[contact.cells]
-    centres = polygons.mean(axis=1)
+    centers = polygons.mean(axis=1)
     normals = newell_normals(polygons)
     # Faces are not oriented; the cell behind one says where outside is.
     cells = body.points[body.cells].mean(axis=1)
-    _, nearest = cKDTree(cells).query(centres)
-    inwards = ((centres - cells[nearest]) * normals).sum(axis=1) < 0.0
+    _, nearest = cKDTree(cells).query(centers)
+    inwards = ((centers - cells[nearest]) * normals).sum(axis=1) < 0.0
     normals[inwards] *= -1.0
-    offsets = (centres * normals).sum(axis=1) / contact.size
+    offsets = (centers * normals).sum(axis=1) / contact.size
     parts = groups(normals, offsets)
     if is_unilateral(contact):
         parts = surfaces(contact, normals, polygons, parts)

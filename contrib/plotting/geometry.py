@@ -63,8 +63,8 @@ def boundary_faces(record, size):
 
     where = np.unique(faces.ravel())
     tree = cKDTree(record.points[where])
-    centres = record.points[faces].mean(axis=1)
-    distance, nearest = tree.query(centres)
+    centers = record.points[faces].mean(axis=1)
+    distance, nearest = tree.query(centers)
     extent = np.linalg.norm(
         record.points[faces[:, 0]]
         - record.points[faces[:, diagonals[0][1]]],
@@ -95,19 +95,19 @@ def chains(edges):
     Dashes start afresh with every line: a line for each edge of a fine mesh
     would be a solid one.
     """
-    neighbours = {}
+    neighbors = {}
     for a, b in edges:
-        neighbours.setdefault(a, []).append(b)
-        neighbours.setdefault(b, []).append(a)
+        neighbors.setdefault(a, []).append(b)
+        neighbors.setdefault(b, []).append(a)
     # Open chains from their ends first, then the closed ones.
-    starts = sorted(neighbours, key=lambda vertex: len(neighbours[vertex]) == 2)
+    starts = sorted(neighbors, key=lambda vertex: len(neighbors[vertex]) == 2)
     found = []
     for start in starts:
-        while neighbours[start]:
+        while neighbors[start]:
             chain = [start]
-            while neighbours[chain[-1]]:
-                following = neighbours[chain[-1]].pop()
-                neighbours[following].remove(chain[-1])
+            while neighbors[chain[-1]]:
+                following = neighbors[chain[-1]].pop()
+                neighbors[following].remove(chain[-1])
                 chain.append(following)
             found.append(chain)
     return found
@@ -130,15 +130,15 @@ def sharp_edges(faces, vertex, points, angle=30.0):
         for a, b in zip(face, np.roll(face, -1)):
             key = frozenset((vertex[a], vertex[b]))
             meeting.setdefault(key, []).append((i, (a, b)))
-    edges, neighbours = [], []
+    edges, neighbors = [], []
     limit = math.cos(math.radians(angle))
     for found in meeting.values():
         if len(found) == 2:
             i, j = found[0][0], found[1][0]
             if normals[i] @ normals[j] < limit:
                 edges.append(found[0][1])
-                neighbours.append((i, j))
-    return np.array(edges).reshape(-1, 2), np.array(neighbours).reshape(-1, 2)
+                neighbors.append((i, j))
+    return np.array(edges).reshape(-1, 2), np.array(neighbors).reshape(-1, 2)
 
 
 def thinned(place, nodes, distance):

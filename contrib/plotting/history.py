@@ -273,20 +273,20 @@ def draw_panel(axes, panel, names, statistics, units):
         scale = 100.0 / max(finite(statistics[panel.share_of]).max(), 1e-300)
     for i, name in enumerate(names):
         values = scale * statistics[name].astype(float)
-        colour, dashes = style.SERIES[i % 7], ("-", "--", ":", "-.")[i // 7 % 4]
+        color, dashes = style.SERIES[i % 7], ("-", "--", ":", "-.")[i // 7 % 4]
         if panel.logarithmic:
             values = np.where(np.isfinite(values) & (values > 0.0), values, np.nan)
         if name == "slip_area":
             axes.fill_between(
                 t, values, step="pre", color=style.SLIP, alpha=0.2, lw=0
             )
-            colour = style.SLIP
+            color = style.SLIP
         if name == "stick_area":
-            colour = style.OUTLINE
+            color = style.OUTLINE
         axes.plot(
             t,
             values,
-            color=colour,
+            color=color,
             ls=dashes,
             lw=1.4,
             marker="." if few else None,

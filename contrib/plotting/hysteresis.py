@@ -30,7 +30,7 @@ def last_cycle(displacement, force):
     """The index where the last closed cycle begins, or None.
 
     The path is closed where it comes back to its last point after having left
-    its neighbourhood.
+    its neighborhood.
     """
     points = np.column_stack(
         [

@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sizes of panels and places of colour bars.
+"""Sizes of panels and places of color bars.
 
-What surrounds a panel, its labels, legends and colour bars, has a size in
+What surrounds a panel, its labels, legends and color bars, has a size in
 inches that only matplotlib knows.  Figures are therefore laid out once, and
 then get the height that their panels need.
 """
 from .units import Numbers, Ticks
 
-FLAT = 0.45  # height over width of panels with the colour bar underneath
+FLAT = 0.45  # height over width of panels with the color bar underneath
 
 
 def is_flat(aspect):
-    """Whether the label of a colour bar beside the panel would stick out."""
+    """Whether the label of a color bar beside the panel would stick out."""
     return aspect < FLAT
 
 
-def add_colour_bar(axes, mappable, label, unit, flat, **options):
-    """A colour bar beside the panel, as high as it, or under a flat one."""
+def add_color_bar(axes, mappable, label, unit, flat, **options):
+    """A color bar beside the panel, as high as it, or under a flat one."""
     figure = axes.figure
     if flat:
         axes.set_anchor("S")  # no gap between panel and bar
@@ -32,7 +32,7 @@ def add_colour_bar(axes, mappable, label, unit, flat, **options):
 
 
 def number_bar(bar, label, unit):
-    """Label a colour bar and number it in a unit."""
+    """Label a color bar and number it in a unit."""
     bar.set_ticks(Ticks(unit.size))
     bar.formatter = Numbers(unit.size)
     bar.update_ticks()

@@ -107,12 +107,12 @@ def draw_panel(axes, line, name, units, length):
     time = units.unit("time", line["t"])
     words, kind = quantities.field(name)
     unit = units.unit(kind, line[name][np.isfinite(line[name])])
-    colours = matplotlib.colormaps["viridis"]
+    colors = matplotlib.colormaps["viridis"]
     for i, row in enumerate(times):
         axes.plot(
             line["s"][row] / length.size,
             line[name][row] / unit.size,
-            color=colours(0.9 * i / max(len(times) - 1, 1)),
+            color=colors(0.9 * i / max(len(times) - 1, 1)),
             label=f"$t$ = {time.value(line['t'][row, 0])}",
         )
     axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)

@@ -25,10 +25,10 @@ def columns_for(nodes):
     return int(np.clip(np.ceil(2.0 / smallest), 50, FINEST))
 
 
-def resample(s, values, centres):
-    """Values of nodes at s where each holds half way to its neighbours."""
+def resample(s, values, centers):
+    """Values of nodes at s where each holds half way to its neighbors."""
     ends = node_intervals(s)
-    index = np.searchsorted(ends[1:-1], centres, side="right")
+    index = np.searchsorted(ends[1:-1], centers, side="right")
     return values[index]
 
 
@@ -88,8 +88,8 @@ def draw_maps(results, times, pieces, left_out):
     shade = style.Shade(everything, "the slip rate")
     states_map = ListedColormap(
         [
-            style.STATE_COLOURS[state]
-            for state in sorted(style.STATE_COLOURS)
+            style.STATE_COLORS[state]
+            for state in sorted(style.STATE_COLORS)
         ]
     )
     units = Units.of(results)
@@ -99,10 +99,10 @@ def draw_maps(results, times, pieces, left_out):
     for (line, found), (upper, lower) in zip(pieces, panels.T):
         count = columns_for([s / line.length for s, _, _ in found])
         ends = np.linspace(0.0, line.length, count + 1)
-        centres = 0.5 * (ends[1:] + ends[:-1])
+        centers = 0.5 * (ends[1:] + ends[:-1])
         # A state is that of the step that ends at the time of the output.
-        states = np.array([resample(s, state, centres) for s, state, _ in found])
-        rates = np.array([np.interp(centres, s, rate) for s, _, rate in found])
+        states = np.array([resample(s, state, centers) for s, state, _ in found])
+        rates = np.array([np.interp(centers, s, rate) for s, _, rate in found])
         upper.pcolormesh(
             ends, times, states, cmap=states_map, vmin=-2.5, vmax=1.5, rasterized=True
         )

@@ -176,10 +176,10 @@ class Study:
         return np.inf if cheapest is None else seconds[cheapest]
 
     def looks(self, variants):
-        """{variant: colour and line} in a picture of some of them."""
+        """{variant: color and line} in a picture of some of them."""
         return {
-            variant: {"color": colour, "ls": "-"}
-            for variant, colour in zip(variants, style.SERIES)
+            variant: {"color": color, "ls": "-"}
+            for variant, color in zip(variants, style.SERIES)
         }
 
     def title(self, what, variants):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Colours, labels and numbers, the same in all pictures.
+"""Colors, labels and numbers, the same in all pictures.
 
-Colours are those of Okabe and Ito, which readers with any colour vision can
-tell apart; maps are viridis, whose dark end is next to zero, greys, and a red-blue one for
+Colors are those of Okabe and Ito, which readers with any color vision can
+tell apart; maps are viridis, whose dark end is next to zero, grays, and a red-blue one for
 signed fields.
 """
 
@@ -31,7 +31,7 @@ COMPONENT = {"x": SERIES[0], "y": SERIES[4], "z": SERIES[2]}
 DASHES = {"x": "-", "y": "--", "z": "-."}
 
 SLIPPING, STICKING, NO_FRICTION, NO_CONTACT = 1, 0, -1, -2
-STATE_COLOURS = {
+STATE_COLORS = {
     SLIPPING: SLIP,
     STICKING: STICK,
     NO_FRICTION: FRICTIONLESS,
@@ -83,9 +83,9 @@ def short(value):
 
 
 class Shade:
-    """How values become colours, the same for all frames of an animation.
+    """How values become colors, the same for all frames of an animation.
 
-    Corner singularities must not darken the rest of the body, so the colours
+    Corner singularities must not darken the rest of the body, so the colors
     end at the 99.5 % quantile where a few values lie far beyond.  Fields of
     both signs get a map whose white is zero.
     """
@@ -131,15 +131,15 @@ class Shade:
     def mappable(self):
         return matplotlib.cm.ScalarMappable(self.norm, self.map)
 
-    def colours(self, values):
+    def colors(self, values):
         return self.map(self.norm(values))
 
 
-NEAR_ZERO = 0.3  # of the largest value: colours then begin with zero
+NEAR_ZERO = 0.3  # of the largest value: colors then begin with zero
 
 
 def robust(values):
-    """An upper end for colours, and whether some values lie above it."""
+    """An upper end for colors, and whether some values lie above it."""
     quantile, largest = np.quantile(values, 0.995), values.max()
     if quantile <= 0.0 or largest < 1.15 * quantile:
         return largest, False
@@ -147,7 +147,7 @@ def robust(values):
 
 
 def range_label(shade, label, values, unit, separator=" "):
-    """The label of a colour bar with how far `values` go beyond its ends."""
+    """The label of a color bar with how far `values` go beyond its ends."""
     low, high = (short(end / unit.size) for end in (values.min(), values.max()))
     beyond = {
         "neither": "",
@@ -194,7 +194,7 @@ def state_legend(states):
         Line2D(
             [],
             [],
-            color=STATE_COLOURS[state],
+            color=STATE_COLORS[state],
             lw=4,
             label=STATE_NAMES[state],
             path_effects=[
@@ -217,7 +217,7 @@ LABEL = {
 
 
 def visible_anywhere(width=2.6):
-    """A white border, for lines on dark and on light colours."""
+    """A white border, for lines on dark and on light colors."""
     return [
         matplotlib.patheffects.Stroke(linewidth=width, foreground="white", alpha=0.8),
         matplotlib.patheffects.Normal(),

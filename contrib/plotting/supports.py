@@ -45,22 +45,22 @@ class Supports:
     def __init__(self, results, units):
         boundary = results.boundary()
         corners = boundary.points[boundary.cells]
-        self.centres = corners.mean(axis=1)
+        self.centers = corners.mean(axis=1)
         self.extents = np.ptp(corners, axis=1).max(axis=1)
         self.numbers = boundary["boundary_id"][boundary.cells[:, 0]].astype(int)
-        self.tree = cKDTree(self.centres)
+        self.tree = cKDTree(self.centers)
         self.parameters = results.data
         self.units = units
         self.axes = "xy" if boundary.cells.shape[1] == 2 else "xyz"
 
-    def of(self, centres):
-        """The boundary that each face belongs to, by its centre: that of the face
+    def of(self, centers):
+        """The boundary that each face belongs to, by its center: that of the face
         of the first mesh which holds it; none, -1, where a material has gone."""
-        distance, near = self.tree.query(centres, k=min(8, len(self.centres)))
+        distance, near = self.tree.query(centers, k=min(8, len(self.centers)))
         distance, near = np.atleast_2d(distance), np.atleast_2d(near)
         held = np.argmin(distance / self.extents[near], axis=1)
         row = np.arange(len(near))
-        # A finer face has its centre within, a coarser one at a corner; faces of
+        # A finer face has its center within, a coarser one at a corner; faces of
         # a curved boundary are a little beside.
         reach = 0.6 if len(self.axes) == 2 else 0.75
         is_there = distance[row, held] <= reach * self.extents[near[row, held]]
@@ -148,7 +148,7 @@ class Supports:
         return ("Foundation displacement",)
 
     def arrow(self, number, places, normals, time):
-        """(direction, colour, whether it pushes) of what moves or loads a boundary
+        """(direction, color, whether it pushes) of what moves or loads a boundary
         in the mean; no direction where nothing does."""
         role = self.role(number)
         nothing = None, None, False
@@ -185,12 +185,12 @@ class Supports:
             role = self.role(number)
             if role == "free":
                 continue
-            centres = self.centres[self.numbers == number]
-            flat = np.ptp(centres, axis=0) < 1e-6 * np.ptp(self.centres, axis=0).max()
+            centers = self.centers[self.numbers == number]
+            flat = np.ptp(centers, axis=0) < 1e-6 * np.ptp(self.centers, axis=0).max()
             place = f"boundary {number}"
             if flat.any():
                 d = int(np.argmax(flat))
-                at = centres[0, d] + 0.0
+                at = centers[0, d] + 0.0
                 place = f"${'xyz'[d]}$ = {length.value(at)}"
             what = HATCHED.get(role, role)
             if self.has_springs(number):
@@ -247,8 +247,8 @@ def pieces(body, ids, number):
     place, before = np.empty((n_vertices, 2)), np.empty((n_vertices, 2))
     place[body.vertex] = body.deformed[:, :2]
     before[body.vertex] = body.body.points[:, :2]
-    centres = body.deformed[body.body.cells[owners]].mean(axis=1)[:, :2]
-    inside = dict(zip(map(frozenset, body.vertex[faces]), centres))
+    centers = body.deformed[body.body.cells[owners]].mean(axis=1)[:, :2]
+    inside = dict(zip(map(frozenset, body.vertex[faces]), centers))
     for chain in chains(body.vertex[faces]):
         corners = place[chain]
         along = np.diff(corners, axis=0)
@@ -267,9 +267,9 @@ def reach(supports, scale):
     extent = np.maximum(0.5 * (scale.high - scale.low)[:2], 1e-300)
     for number in np.unique(supports.numbers):
         if supports.role(number) != "free":
-            centres = supports.centres[supports.numbers == number][:, :2]
-            place = ((centres - middle) / extent).mean(axis=0)
-            spread = np.ptp(centres, axis=0) / extent
+            centers = supports.centers[supports.numbers == number][:, :2]
+            place = ((centers - middle) / extent).mean(axis=0)
+            spread = np.ptp(centers, axis=0) / extent
             sticks_out = supports.reach(number) * scale.size
             for d in range(2):
                 # On this side, or all around.
@@ -284,8 +284,8 @@ def reach(supports, scale):
 def draw(axes, body, supports):
     """Symbols outside the body; returns their keys."""
     size, time = body.scale.size, body.time
-    centres = body.body.points[body.faces].mean(axis=1)
-    ids = supports.of(centres)
+    centers = body.body.points[body.faces].mean(axis=1)
+    ids = supports.of(centers)
     hatched, rollers, pushed, lines, springs = [], [], [], [], []
     for number in np.unique(ids):
         role = supports.role(number)

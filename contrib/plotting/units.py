@@ -90,7 +90,7 @@ class Units:
         self.declared = {name: text for name, text in declared.items() if text}
         self.dimension = dimension
         self.duration = duration
-        # How many metres, seconds and pascals one of each is, where known.
+        # How many meters, seconds and pascals one of each is, where known.
         self.known = {
             name: si(name, text)
             for name, text in self.declared.items()
@@ -190,7 +190,7 @@ class Units:
 
 
 def si(name, text):
-    """How many metres, seconds or pascals that unit is, or None."""
+    """How many meters, seconds or pascals that unit is, or None."""
     text = ALIASES.get(text, text).replace("u", "µ", 1 if text[:1] == "u" else 0)
     if name == "time" and text in TIMES:
         return TIMES[text]

@@ -34,7 +34,7 @@ def draw(study, error, variants=None):
         ]
         if not ladders:
             continue
-        colour, dashes = looks[variant]["color"], looks[variant]["ls"]
+        color, dashes = looks[variant]["color"], looks[variant]["ls"]
         # A curve through h and k refined together, which is what one does
         # for a better answer; the other runs show what unbalanced ones cost.
         through = [ladder for ladder in ladders if ladder.name == "both"] or ladders
@@ -45,12 +45,12 @@ def draw(study, error, variants=None):
             axes.plot(
                 seconds[rows],
                 errors[rows],
-                color=colour,
+                color=color,
                 ls=dashes if on_curve else "none",
                 lw=1.6,
                 marker=MARKERS.get(ladder.name, "o"),
                 ms=6 if on_curve else 5,
-                mfc=colour if on_curve else "white",
+                mfc=color if on_curve else "white",
                 zorder=3 if on_curve else 2.5,
             )
             names.append(ladder.name)

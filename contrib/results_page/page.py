@@ -53,7 +53,7 @@ of the error that its ladder leaves alone: where the curve of $h$ alone levels
 out, smaller cells buy nothing before the steps become smaller, too. The dotted
 line is the fit $C_h h^p+C_k k^q$ of all runs of a way to compute, drawn where it is
 within 10 % of the finest runs; prices are read off it, and the tables of fits say
-how far it misses the others. In the grey below, differences say more of the error
+how far it misses the others. In the gray below, differences say more of the error
 that the reference itself is estimated to have than of the run: curves level out
 there, or fall without a reason.
 
@@ -71,7 +71,7 @@ alone, and paid for the wrong one.
 **The efficient frontier**, in yellow, joins the runs drawn that no other one beats
 in both time and error, without those that gain little: an error less than a tenth
 smaller than that of the one before, or more than a fifth above the line between its
-neighbours. Whatever does not touch it is not worth running; which ways to compute
+neighbors. Whatever does not touch it is not worth running; which ways to compute
 do is the answer to "which scheme, which mesh".
 
 **Cost by phase.** The share of each phase in the time of a run, and its total
@@ -159,14 +159,14 @@ need ten times as many, spend a fifth on them and take longer in all.
 
 By default the iterations of a step stop when the bound on their error is a
 fraction (`Error control/Algebraic fraction`, 0.05) of the estimated error of
-discretisation. Against that stands `Solver/Contact tolerance` = {fixed}, on the
+discretization. Against that stands `Solver/Contact tolerance` = {fixed}, on the
 ladder of $h$ and $k$ of the scenes above. Times are sums over its runs; the
 last column is the largest relative change of an error of any of them.
 
 {tolerance}
 ## Reference cases
 
-Values of an independent solver in the same discretisation, at equal mesh and
+Values of an independent solver in the same discretization, at equal mesh and
 steps ([testing.md](testing.md) says more); the shear layer has a closed form,
 from which the second of its rows differs by the error in time.
 

@@ -4,7 +4,7 @@
 
     rod_seal_2d.py [--lip N] [--backing N] [--height N] [--straight] FILE.msh
 
-The section of the seal, in metres, pressure on the left, the rod below:
+The section of the seal, in meters, pressure on the left, the rod below:
 
        5 mm   +-----5-----+--5--+
                \\          |     |       materials: 1 elastomer, 2 backing

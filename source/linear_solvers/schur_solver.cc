@@ -256,7 +256,7 @@ namespace Viscoplastic
     cholmod_sparse *A =
       factor->to_cholmod(matrix, unknowns, unknowns.size(), true);
     cholmod_l_factorize(A, factor->L, &factor->common);
-    factor->check("to factorise the matrix");
+    factor->check("to factorize the matrix");
     cholmod_l_free_sparse(&A, &factor->common);
     if (face.n_dofs() > 0)
       extract_schur_complement();

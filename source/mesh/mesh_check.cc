@@ -110,7 +110,7 @@ namespace Viscoplastic
         return;
       where = Utilities::MPI::broadcast(comm, where, extreme.min_index);
       std::ostringstream message;
-      message << "The cell of the mesh with the centre (" << where
+      message << "The cell of the mesh with the center (" << where
               << ") is inverted or degenerate: the determinant of its "
                  "Jacobian, divided by the lengths of its columns, is "
               << extreme.min
@@ -154,7 +154,7 @@ namespace Viscoplastic
         }
       std::ostringstream message;
       message << "The mesh consists of " << n_parts
-              << " parts that share no faces, e.g. the cells with the centres ("
+              << " parts that share no faces, e.g. the cells with the centers ("
               << first << ") and (" << other
               << ") are not connected; a scene has one body, whose cells have "
                  "their nodes in common (merge nodes that are at the same "

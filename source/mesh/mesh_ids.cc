@@ -50,7 +50,7 @@ namespace Viscoplastic
               continue;
             std::ostringstream message;
             message << "'" << entry << "' gives " << id << " and " << id_here
-                    << " in the " << what << " with the centre (" << center
+                    << " in the " << what << " with the center (" << center
                     << "); an id may change only between " << what
                     << "s of the coarse mesh.";
             AssertThrow(false, ExcMessage(message.str()));

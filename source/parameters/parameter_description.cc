@@ -58,7 +58,7 @@ namespace Viscoplastic
        "um, mm, cm, m, km; ms, s, min, h, day, year (365.25 days); Pa, kPa, "
        "MPa, GPa, bar; N, kN, MN; J; kg; and products of them."},
       {"Material",
-       "The material of all cells, and how stresses are discretised."}};
+       "The material of all cells, and how stresses are discretized."}};
 
 
 

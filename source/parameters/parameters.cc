@@ -53,7 +53,7 @@ namespace Viscoplastic
     prm.add_parameter("Boundary ids",
                       boundary_ids,
                       "The boundary id of each face of the coarse mesh as an "
-                      "expression of its centre x, y, (z) and of `id', what it "
+                      "expression of its center x, y, (z) and of `id', what it "
                       "has from the file or the generator; empty to keep "
                       "these. An id must not change within a face. Unit: 1.");
     prm.add_parameter("Material ids",
@@ -106,12 +106,12 @@ namespace Viscoplastic
   {
     prm.add_parameter("Young's modulus",
                       youngs_modulus,
-                      "E > 0 as an expression of position; taken at the centre "
+                      "E > 0 as an expression of position; taken at the center "
                       "of each cell. Unit: stress.");
     prm.add_parameter("Poisson's ratio",
                       poissons_ratio,
                       "nu in (-1, 1/2) as an expression of position; taken at "
-                      "the centre of each cell. Unit: 1.");
+                      "the center of each cell. Unit: 1.");
     prm.add_parameter("Voigt matrix",
                       voigt_matrix,
                       "Anisotropic elasticity, in place of Young's modulus "

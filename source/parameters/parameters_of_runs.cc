@@ -157,7 +157,7 @@ namespace Viscoplastic
                       algebraic_fraction,
                       "Where `Solver/Contact tolerance' is 0: the iterations "
                       "of a step stop when the bound on their error is this "
-                      "fraction of the estimated discretisation error.",
+                      "fraction of the estimated discretization error.",
                       Patterns::Double(1e-6, 0.5));
     prm.add_parameter("Two-level comparison",
                       two_level_comparison,

@@ -17,7 +17,7 @@ from scenes import as_prm
 
 # Powers of four: a scene in these units has the same bits but for exponents.
 OTHER_UNITS = Units(length=4.0**-5, stress=4.0**9, time=4.0**4)
-# A scene whose numbers are metres, megapascals and days, and say so.
+# A scene whose numbers are meters, megapascals and days, and say so.
 NAMED_UNITS = Units(1e3, 1e3, 24, ("m", "MPa", "day"), ("mm", "kPa", "h"))
 
 

@@ -108,8 +108,8 @@ def long_creep(size, report):
 def viscosity_range(size, report):
     n, steps = size(16, 128), 20
     mu, k = 1 / 2.6, 2 / steps
-    centre = (np.arange(n) + 0.5) / n
-    eta = 10 ** (8 * centre - 4)
+    center = (np.arange(n) + 0.5) / n
+    eta = 10 ** (8 * center - 4)
     tau = 0.1 * np.minimum(k * np.arange(steps + 1), 1)
     shear = tau[-1] / mu + k * tau[1:].sum() / eta
     layers = {
@@ -119,7 +119,7 @@ def viscosity_range(size, report):
         result = run("hard/viscosity_range", {**layers, "Solver/Linear solver": solver})
         report.identities(result, 1e-11)
         for point, y in enumerate((0, 0.25, 0.5, 0.75)):
-            exact = -shear[centre > y].sum() / n
+            exact = -shear[center > y].sum() / n
             report.figure(
                 f"{solver}: relative error at y = {y}, where u = {-exact:.3g}",
                 abs(result[f"point{point}_x"][-1] / exact - 1),

@@ -93,7 +93,7 @@ def as_prm(overrides):
 
 
 def lattice(points):
-    """Points as integers on a fine lattice, to recognise equal ones.
+    """Points as integers on a fine lattice, to recognize equal ones.
 
     VTU coordinates have single precision.  The offset keeps dyadic fractions
     and thirds of the unit, where mesh points lie, away from the jumps.

@@ -5,10 +5,10 @@ A box of uniform Q1 cells, fully integrated, elastic or Maxwell with one history
 value a cell, meets a rigid foundation at y = 0 (z = 0 in space): u_n <= g at
 every node of that face, or p = int c phi (u_n - g)_+^m, with no friction, Tresca friction or Coulomb friction
 whose pressure is that of the step before or that of the step itself.  The
-discretisation is the program's, so equal scenes give equal numbers.
+discretization is the program's, so equal scenes give equal numbers.
 
 The way to them has nothing in common with the program's: the stiffness is
-condensed onto the face, an interior point method minimises the convex energy,
+condensed onto the face, an interior point method minimizes the convex energy,
 a semismooth Newton method takes its result to rounding (and from a rigid
 foundation to softer and softer ones), and the conditions of optimality are
 asserted in the uncondensed system.
@@ -250,7 +250,7 @@ class Body:
 
 
 def interior_point(S, f, gap, before, rho):
-    """Roughly minimise V.SV/2 - f.V + sum of rho |V_t - before| over V_n <= gap.
+    """Roughly minimize V.SV/2 - f.V + sum of rho |V_t - before| over V_n <= gap.
 
     V is (node, component) with the normal one last.  Unknown beside it are the
     gap y left and the pressure p of each node, the friction force rho l with
@@ -285,13 +285,13 @@ def interior_point(S, f, gap, before, rho):
         ball = h + (dot(l, l) - 1) / 2
         target = 0.15 * work
         push = (target + p * (V[:, -1] - gap)) / y
-        centre = (target / rho - k * h + k * ball) / h
+        center = (target / rho - k * h + k * ball) / h
         # the inverse of k (1 + l l^T / h), without cancellation
         turned = l[:, ::-1] * (-1, 1) if dim == 3 else 0 * l
         inverse = h[:, :, None] * np.eye(dim - 1)
         inverse = inverse + turned[:, :, None] * turned[:, None, :]
         inverse /= (k * (h + dot(l, l)))[:, :, None]
-        pull = np.einsum("cij,cj->ci", inverse, beside - l * centre)
+        pull = np.einsum("cij,cj->ci", inverse, beside - l * center)
         H, right = S.copy(), f - q - (S @ V.ravel()).reshape(n, dim)
         H[normal, normal] += p / y
         H[rubbing[:, :, None], rubbing[:, None, :]] += rho[:, :, None] * inverse
@@ -300,7 +300,7 @@ def interior_point(S, f, gap, before, rho):
         dV = np.linalg.solve(H, right.ravel()).reshape(n, dim)
         dl = np.einsum("cij,cj->ci", inverse, dV[rubs, :-1]) + pull
         changes = [gap - y - V[:, -1] - dV[:, -1], push + p / y * dV[:, -1]]
-        changes += [-ball - dot(l, dl), centre + k * dot(l, dl) / h]
+        changes += [-ball - dot(l, dl), center + k * dot(l, dl) / h]
         ends = [-v[c < 0] / c[c < 0] for v, c in zip(positive, changes)]
         step = min(1, 0.99 * min(e.min(initial=2) for e in ends))
         V, l = V + step * dV, l + step * dl
@@ -359,14 +359,14 @@ def newton(S, f, gap, before, rho, V, q, compliance=None, enough=TOLERANCE):
     return result if best < enough else None
 
 
-def minimise(*problem, compliance=None):
+def minimize(*problem, compliance=None):
     """V and (friction, p) to rounding."""
     for V, q in interior_point(*problem):
         result = newton(*problem, V, q)
         if result is not None:
             break
     else:
-        raise AssertionError("the minimisation did not converge")
+        raise AssertionError("the minimization did not converge")
     if compliance:
         c, m = compliance
         softest = newton(*problem, *result, compliance)
@@ -457,7 +457,7 @@ def solve(scene):
                 bound = integral @ evaluate(scene["bound"], points, t)
             elif law != "none":
                 bound = integral @ evaluate(scene["mu"], points, t) / area * p
-            V, q = minimise(S, f, gap, before, bound, compliance=compliance)
+            V, q = minimize(S, f, gap, before, bound, compliance=compliance)
             change, p = abs(q[:, -1] - p).max(), q[:, -1]
             if law != "coupled" or change <= 1e-13 * p.max():
                 break

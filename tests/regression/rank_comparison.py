@@ -98,10 +98,10 @@ def compare_columns(one, other, result):
 
 def corners(fields):
     """Indices of the corners of all cells in an order that does not depend on
-    who wrote them, and their key: neighbours may disagree at a point."""
+    who wrote them, and their key: neighbors may disagree at a point."""
     points = fields.points[fields.cells]
-    centres = np.broadcast_to(points.mean(axis=1)[:, None], points.shape)
-    key = np.concatenate([lattice(centres), lattice(points)], axis=2)
+    centers = np.broadcast_to(points.mean(axis=1)[:, None], points.shape)
+    key = np.concatenate([lattice(centers), lattice(points)], axis=2)
     key = key.reshape(fields.cells.size, -1)
     order = np.lexsort(key.T)
     return order, key[order]

@@ -13,11 +13,11 @@ from runs import rotation
 
 
 class Corners(TestCase):
-    def check_displacement(self, result, constant, gradient, centre=0.0):
-        """u(x,1) = constant + gradient (x - centre), at every node."""
+    def check_displacement(self, result, constant, gradient, center=0.0):
+        """u(x,1) = constant + gradient (x - center), at every node."""
         fields = result.fields()
         dim = len(constant)
-        x = fields.points[:, :dim] - centre
+        x = fields.points[:, :dim] - center
         expected = np.asarray(constant) + x @ np.asarray(gradient).T
         # single precision in VTU
         self.assertClose(

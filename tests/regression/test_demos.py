@@ -323,7 +323,7 @@ class BrakePadPressed(TestCase):
         self.check_identities(self.result, tolerance=COUPLED)
 
     def test_forces_balance(self):
-        """The disc carries the piston; the centre of pressure is ahead by the
+        """The disc carries the piston; the center of pressure is ahead by the
         friction force times the height of the plane that drags."""
         r = self.result
         load = self.FORCE * np.minimum(r["t"] / 0.1, 1)

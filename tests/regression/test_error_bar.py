@@ -342,7 +342,7 @@ class SpacePart(TestCase):
 
 
 class CoupledTolerance(TestCase):
-    """Iterations that stop at a twentieth of the discretisation error."""
+    """Iterations that stop at a twentieth of the discretization error."""
 
     def compare(self, scene, overrides):
         strict = run(scene, {**overrides, "Solver/Contact tolerance": 1e-10})

@@ -111,7 +111,6 @@ class Published(TestCase):
                 p, q = -bar["contact_force_y"], abs(bar["friction_force_x"])
                 pushed = slice(bar.row(1) + 1, bar.row(2) + 1)
                 last = np.flatnonzero(p > 1e-12)[-1]
-                fall = p[last] / p[pushed][-1]
                 if friction < 0.5:
                     self.assertLess(bar["contraction"].max(), 1)
                     self.assertNotIn(warning, bar.stdout)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """PAD against an independent solver: three dimensions, slip that turns.
 
-Same discretisation, equal meshes; 1e-3 is the agreement asked of 3D scenes,
+Same discretization, equal meshes; 1e-3 is the agreement asked of 3D scenes,
 where the direction of slip is found only to the solver's tolerance.
 """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""ParaView opens results ready coloured: pvbatch draws what a user would see.
+"""ParaView opens results ready colored: pvbatch draws what a user would see.
 
 Skipped (exit code 77) without pvbatch, or without a display to draw on.
 """
@@ -27,9 +27,9 @@ def reason_to_skip():
     return None
 
 
-def share(image, colour):
-    """The part of the pixels that have the colour."""
-    return (np.abs(image - colour).max(axis=2) < 0.03).mean()
+def share(image, color):
+    """The part of the pixels that have the color."""
+    return (np.abs(image - color).max(axis=2) < 0.03).mean()
 
 
 class Opens(TestCase):
@@ -100,20 +100,20 @@ class Opens(TestCase):
         self.assertEqual(image.shape[0], 800)
         return image
 
-    def assertColoured(self, image):
-        """The body in many colours of viridis, not one."""
+    def assertColored(self, image):
+        """The body in many colors of viridis, not one."""
         hue = image[:, :, 1] - image[:, :, 0]
-        colourful = image.max(axis=2) - image.min(axis=2) > 0.15
-        self.assertGreater(colourful.mean(), 0.03)
-        self.assertGreater(np.ptp(np.quantile(hue[colourful], (0.1, 0.9))), 0.1)
+        colorful = image.max(axis=2) - image.min(axis=2) > 0.15
+        self.assertGreater(colorful.mean(), 0.03)
+        self.assertGreater(np.ptp(np.quantile(hue[colorful], (0.1, 0.9))), 0.1)
 
     def test_two_dimensions(self):
         result = run("slab")
         image = self.render(result)
-        self.assertColoured(image)
+        self.assertColored(image)
         # a band below the body and a bar in the legend: some of each
-        for colour in SLIP, STICK, NO_FRICTION:
-            self.assertGreater(share(image, colour), 0.002, colour)
+        for color in SLIP, STICK, NO_FRICTION:
+            self.assertGreater(share(image, color), 0.002, color)
         # the state file needs no script
         loader = result.directory / "load.py"
         loader.write_text(
@@ -125,14 +125,14 @@ class Opens(TestCase):
             "layout.SetSize(1200, 800)\n"
             "SaveScreenshot(sys.argv[2], layout=layout)\n"
         )
-        self.assertColoured(self.draw(result, loader))
+        self.assertColored(self.draw(result, loader))
 
     def test_three_dimensions_two_views(self):
         """In a scene with units, which the names of its fields have."""
         units = {"Units/Length": "mm", "Units/Time": "s", "Units/Stress": "MPa"}
         result = run("pad_adaptive", {**units, "Time/Phases": "0.5: 5"}, ranks=2)
         image = self.render(result)
-        self.assertColoured(image)
+        self.assertColored(image)
         middle = image.shape[1] * 55 // 100
         # the right view is the contact face: most of it slips, some sticks
         self.assertGreater(share(image[:, middle:], SLIP), 0.05)
@@ -150,7 +150,7 @@ class Opens(TestCase):
             "cantilever_creep", {"Output/Fields every": 0, "Time/Phases": "0.13: 1"}
         )
         image = self.render(result)
-        self.assertColoured(image)
+        self.assertColored(image)
         self.assertLess(share(image, NO_FRICTION), 0.002)
 
     def test_no_results(self):

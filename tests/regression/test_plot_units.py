@@ -192,12 +192,12 @@ class Supported(TestCase):
     """Supports and loads at their places, by what the program writes."""
 
     def assertIds(self, results, expected):
-        """expected: {id: function of the centres that vanishes on it}"""
+        """expected: {id: function of the centers that vanishes on it}"""
         found = Supports(results, Units.of(results))
         self.assertEqual(set(found.numbers), set(expected))
         for number, zero in expected.items():
-            centres = found.centres[found.numbers == number]
-            self.assertClose(zero(*centres.T), 0, absolute=1e-6)
+            centers = found.centers[found.numbers == number]
+            self.assertClose(zero(*centers.T), 0, absolute=1e-6)
         return found
 
     def test_slab(self):
@@ -245,7 +245,7 @@ class Supported(TestCase):
 
     def test_faces_of_unequal_size(self):
         """A face of a refined mesh belongs to that which holds it, not to a small
-        neighbour whose centre is nearer."""
+        neighbor whose center is nearer."""
         points = np.array([(0, 0, 0), (4, 0, 0), (4, 0, 0), (4.1, 0, 0)], float)
         record = Square(points, {"boundary_id": np.array([3.0, 3.0, 5.0, 5.0])})
         record.cells = np.array([(0, 1), (2, 3)])

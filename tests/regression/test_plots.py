@@ -145,7 +145,7 @@ def sliding_block():
 
 
 def ranges(figure):
-    """What numbers look like in a figure: axes, colours, arrows and their key."""
+    """What numbers look like in a figure: axes, colors, arrows and their key."""
     found = []
     for axes in figure.axes:
         found += [*axes.get_xlim(), *axes.get_ylim()]
@@ -242,7 +242,7 @@ class Figures(TestCase):
                     self.assertEqual(keys, ["slip, at most 360 × $10^{-6}$"], f"frame {i}")
                 plt.close(figure)
 
-    def test_colours_reach_the_extremes_of_nodal_values(self):
+    def test_colors_reach_the_extremes_of_nodal_values(self):
         results = block(1.0, 0.5, displacement=0.1)
         scale = fields.scale(
             results,
@@ -253,7 +253,7 @@ class Figures(TestCase):
         self.assertClose((scale.shade.norm.vmin, scale.shade.norm.vmax), (0, 0.05), 1e-12)
 
     def test_height_of_pictures_in_the_plane(self):
-        """No empty space about flat or tall bodies; labels fit the colour bar."""
+        """No empty space about flat or tall bodies; labels fit the color bar."""
         for height in (0.1, 0.25, 0.46, 0.8):
             figure = self.draw(block(1.0, height))
             body, *bars = figure.axes
@@ -443,8 +443,8 @@ class Numbers(TestCase):
         s = np.array([0, 0.5, 1, 1.125, 1.25, 2])
         slips = np.array([1, 1, 0, 1, 0, 0])
         count = stick_slip.columns_for([s / 2])
-        centres = (np.arange(count) + 0.5) * 2 / count
-        measure = stick_slip.resample(s, slips, centres).mean() * 2
+        centers = (np.arange(count) + 0.5) * 2 / count
+        measure = stick_slip.resample(s, slips, centers).mean() * 2
         self.assertClose(measure, 0.25 + 0.5 + 0.125, absolute=2 * 2 / count)
         self.assertGreaterEqual(count, 2 * 2 / 0.125)
 
@@ -479,7 +479,7 @@ class Numbers(TestCase):
         expected = {(a, b) for a in range(0, 9, 2) for b in range(0, 5, 2)}
         self.assertEqual({tuple(map(int, p)) for p in chosen}, expected)
 
-    def test_colours(self):
+    def test_colors(self):
         """White is zero where signs differ; few huge values do not dim the rest."""
         signed = style.Shade(np.array([-1.0, 0.5, 0.2]), "test")
         self.assertEqual((signed.norm.vmin, signed.norm.vmax), (-1, 1))
@@ -490,7 +490,7 @@ class Numbers(TestCase):
         for values in ([0.1, 1.0], [-1.0, -0.1]):
             shade = style.Shade(np.array(values), "test")
             dark, light = (
-                sum(shade.colours(np.array([value]))[0, :3])
+                sum(shade.colors(np.array([value]))[0, :3])
                 for value in sorted(shade.ends(), key=abs)
             )
             self.assertLess(dark, light)
@@ -607,12 +607,12 @@ SMALL_SLAB = {"Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true"}
 
 class Pictures(TestCase):
     def assertPicture(self, path):
-        """A picture, not a blank page: some ink, several colours."""
+        """A picture, not a blank page: some ink, several colors."""
         image = matplotlib.image.imread(path)
         self.assertGreater(min(image.shape[:2]), 100, path)
-        # one number a colour: unique rows take seconds to find
-        colours = (image[:, :, :3] * 15).astype(int) @ (256, 16, 1)
-        self.assertGreater(len(np.unique(colours)), 8, path)
+        # one number a color: unique rows take seconds to find
+        colors = (image[:, :, :3] * 15).astype(int) @ (256, 16, 1)
+        self.assertGreater(len(np.unique(colors)), 8, path)
         ink = (image[:, :, :3].min(axis=2) < 0.9).mean()
         self.assertGreater(ink, 0.01, path)
 
@@ -706,9 +706,9 @@ class Pictures(TestCase):
             record = results.face(index)
             (line,) = lines(record)
             count = stick_slip.columns_for([line.s / line.length])
-            centres = (np.arange(count) + 0.5) * line.length / count
+            centers = (np.arange(count) + 0.5) * line.length / count
             states = stick_slip.resample(
-                line.s, friction_state(record)[line.nodes], centres
+                line.s, friction_state(record)[line.nodes], centers
             )
             slipping = (states == style.SLIPPING).mean() * line.length
             self.assertClose(slipping, result["slip_area"][index], absolute=1e-6)

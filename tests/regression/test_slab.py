@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """SLAB and HALF-CLAMPED BLOCK against an independent solver.
 
-The independent solver uses the same discretisation with a dense condensed
+The independent solver uses the same discretization with a dense condensed
 contact operator, so equal meshes give equal numbers: the tolerance 1e-4 leaves
 room for the seven decimals of the table and nothing else.
 """

@@ -108,7 +108,7 @@ class Numbers(Folder):
 
     def test_frontier_without_detours(self):
         """The third run gains next to nothing: it is far above the line between its
-        neighbours, the fourth 15 % above its own."""
+        neighbors, the fourth 15 % above its own."""
         seconds = 2.0 ** np.array([0, 1, 2, 3, 6])
         errors = 2.0 ** np.array([0, -3, -3.2, -5.2, -9])
         found = rates.without_detours(seconds, errors, range(5))
@@ -180,8 +180,8 @@ class Numbers(Folder):
         self.assertEqual(list(parts), ["seconds_tangent", "seconds_news", "rest"])
         self.assertClose(parts["rest"], 0.2, absolute=1e-15)
         self.assertEqual(cost.look("seconds_news")[0], "news")
-        colours = [cost.look(name)[1] for name in (*cost.PHASES, "rest")]
-        self.assertEqual(len(set(colours)), len(cost.PHASES) + 1)
+        colors = [cost.look(name)[1] for name in (*cost.PHASES, "rest")]
+        self.assertEqual(len(set(colors)), len(cost.PHASES) + 1)
         rows = synthetic.rows(ladders=("both",))
         new = Study(synthetic.write(self.folder / "new", rows))
         for row in rows:
@@ -403,7 +403,7 @@ class Pictures(Folder):
         self.assertEqual(best, expected)
 
     def test_plateau_of_the_reference(self):
-        """Grey up to the error that the reference is estimated to have."""
+        """Gray up to the error that the reference is estimated to have."""
         rows = synthetic.rows(variants=(UNIFORM,))
         about = {**synthetic.about(rows), "reference_run": "finest"}
         study = Study(synthetic.write(self.folder, rows, about))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Contact that opens and closes, and friction of the pressure that comes out.
 
-Small scenes against an independent solver of the same discretisation
+Small scenes against an independent solver of the same discretization
 (independent_contact.py), which shares no algorithm with the program.
 """
 

@@ -27,7 +27,7 @@ sys.path.insert(0, str(SOURCE / "contrib" / "python"))
 from test_contact_data import WALL
 from viscoplastic_contact.results import Results
 
-# Rock salt that creeps and slips, in metres, days and megapascals.
+# Rock salt that creeps and slips, in meters, days and megapascals.
 SALT = """
 subsection Units
   set Length = m
@@ -135,7 +135,7 @@ SIZES = {
 }
 
 # The units that doc/results.md has in words, in plane strain, and in three
-# dimensions in millimetres, seconds and megapascals.
+# dimensions in millimeters, seconds and megapascals.
 UNITS_OF_WORDS = {
     "": "",
     "1": "",
@@ -196,21 +196,21 @@ class Labels(TestCase):
         short = {"Time/Phases": "0.2: 2"}
         units = {"Units/Length": "mm", "Units/Time": "s", "Units/Force": "N"}
         bare = run("pad_adaptive", short, ranks=2)
-        labelled = run("pad_adaptive", {**short, **units}, ranks=2)
+        labeled = run("pad_adaptive", {**short, **units}, ranks=2)
         documented = documented_units()
-        for column, unit in header(labelled).items():
+        for column, unit in header(labeled).items():
             words = documented[documented_name(column)].removesuffix(" (`residual`)")
             self.assertEqual(unit, UNITS_IN_SPACE[words], column)
             if not column.startswith("wall_"):
-                self.assertTrue(np.array_equal(labelled[column], bare[column]), column)
-        self.assertIn("estimator", labelled.statistics)
+                self.assertTrue(np.array_equal(labeled[column], bare[column]), column)
+        self.assertIn("estimator", labeled.statistics)
         for series in ("solution", "contact"):
-            mine, theirs = labelled.fields(series), bare.fields(series)
+            mine, theirs = labeled.fields(series), bare.fields(series)
             for name, values in theirs.point_data.items():
                 self.assertTrue(np.array_equal(mine.point_data[name], values), name)
             for name, values in theirs.cell_data.items():
                 self.assertTrue(np.array_equal(mine.cell_data[name], values), name)
-        self.assertEqual(labelled.info["units"]["stress"], "MPa")
+        self.assertEqual(labeled.info["units"]["stress"], "MPa")
 
 
 class Same(TestCase):

@@ -114,11 +114,11 @@ TEST(MeshIds, Refused)
   refused("1e9", "ids are whole numbers");
   refused("1/(x-x)", "gives inf");
   refused("if(x < 0.75, 1, 2)",
-          "gives 2 and 1 in the face with the centre (0.75 0); an id may "
+          "gives 2 and 1 in the face with the center (0.75 0); an id may "
           "change only between faces of the coarse mesh");
   GeometryParameters geometry = box;
   geometry.material_ids       = "x > 0.7";
-  expect_mesh_refused<2>(geometry, "in the cell with the centre (0.75 0.25)");
+  expect_mesh_refused<2>(geometry, "in the cell with the center (0.75 0.25)");
 }
 
 
@@ -378,7 +378,7 @@ TEST(MeshChecks, BodyInParts)
                            ".msh");
   expect_mesh_refused<2>(from_file(file.name),
                          "The mesh consists of 2 parts that share no faces, "
-                         "e.g. the cells with the centres (0.5 0.5) and (1.5 "
+                         "e.g. the cells with the centers (0.5 0.5) and (1.5 "
                          "0.5) are not connected");
 }
 

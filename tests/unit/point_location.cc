@@ -157,7 +157,7 @@ namespace
     EXPECT_LT((at(0) - expected_node).norm(), 1e-12);
     EXPECT_LT((at(1) - expected_edge).norm(), 1e-12);
     EXPECT_LT(std::abs(at(2)[0] - 0.4375), 1e-12); // half as wide
-    // A neighbour's center has the larger x, whatever its size.
+    // A neighbor's center has the larger x, whatever its size.
     EXPECT_LT(at(2)[0], hanging[0]);
   }
 

@@ -146,7 +146,7 @@ namespace
     for (const std::string scheme : {"forward Euler", "backward Euler"})
       {
         SCOPED_TRACE(scheme);
-        // Without a judgement there is no estimate to couple a tolerance to.
+        // Without a judgment there is no estimate to couple a tolerance to.
         const std::string text =
           maxwell + time(scheme, "1: 8") +
           subsection("Solver", "set Contact tolerance = 1e-10");
@@ -168,7 +168,7 @@ namespace
               any_slips |= !sticks;
           }
         EXPECT_TRUE(by_hand.discretization->face->layout().any(any_slips));
-        // Error estimates are a matter of the judgement that runs add.
+        // Error estimates are a matter of the judgment that runs add.
         by_hand.accepted.errors           = run.accepted.errors;
         by_hand.accepted.state.time_error = run.accepted.state.time_error;
         expect_same(by_hand.accepted, run.accepted);

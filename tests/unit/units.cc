@@ -25,7 +25,7 @@ namespace
 
 
 
-  /// Without files, in metres, days and megapascals.
+  /// Without files, in meters, days and megapascals.
   std::vector<std::string>
   with_units(std::vector<std::string> overrides)
   {

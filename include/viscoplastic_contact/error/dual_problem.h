@@ -33,7 +33,7 @@ namespace Viscoplastic
    *
    *     a(u, v) + (z, eps(v)) + sum_c lambda_c . v_c = L(v) + R(v),
    *
-   * with the law of friction linearised at a state: points that stick do so,
+   * with the law of friction linearized at a state: points that stick do so,
    * and the multiplier of a point that slips changes with the direction of its
    * slip only, d(lambda) = K d(s) with K = rho/|s| across the slip (none in
    * the plane). The change of J is then

@@ -24,7 +24,7 @@ namespace Viscoplastic
      "pilot run",
      "of the tolerance: the size of the solution, the mesh of a quantity",
      false},
-    {"set-up", "set-up", "spaces, matrix, factorisation or multigrid", false},
+    {"set-up", "set-up", "spaces, matrix, factorization or multigrid", false},
     {"rate", "viscosity", "flow of the law in all cells", true},
     {"tangent",
      "backward Euler",

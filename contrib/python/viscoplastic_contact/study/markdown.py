@@ -40,7 +40,7 @@ def markdown(study, results, about, is_finished):
         if result.tolerance_model:
             text += tolerance_results(study, result)
         elif result.variant.strategy != "tolerance":
-            text += "Observed orders between neighbours:\n\n"
+            text += "Observed orders between neighbors:\n\n"
             text += f"{orders_table(study, result)}\n"
         if result.model:
             text += f"{fits_in_words(study, result)}\n### Price list\n\n"
@@ -267,7 +267,7 @@ def prices_table(study, result):
 
 def tolerance_results(study, result):
     """On runs to a tolerance: exponents, fits, prices."""
-    text = "Observed exponents against 1/error between neighbours:\n\n"
+    text = "Observed exponents against 1/error between neighbors:\n\n"
     text += table_head(["from", "to", "seconds", "cells", "steps"])
     records, reference, measure = result.records, study.reference(), result.measure
     for one, two in zip(records, records[1:]):

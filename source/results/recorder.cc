@@ -181,13 +181,14 @@ namespace Viscoplastic
         console.remark(text.str());
       }
     constexpr unsigned int most_doubts = 3; // that are told
-    if (!step.report.doubt.empty() && ++n_doubtful_steps <= most_doubts)
+    if (!step.report.doubt.empty() && run.doubtful_steps.size() < most_doubts)
       {
         std::ostringstream text;
-        text << "Warning: the step to t = " << step.time_step.t << time_unit
+        text << "the step to t = " << step.time_step.t << time_unit
              << " may have several solutions, and the body may jump in it: "
              << step.report.doubt << '.';
-        console.remark(text.str());
+        run.doubtful_steps.push_back(text.str());
+        console.remark("Warning: " + text.str());
       }
     // Beside the nodal forces of the stress: loads may balance each other.
     if (!scene.supports.empty() && !support_carries && step.time_step.n > 0)

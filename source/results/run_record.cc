@@ -146,6 +146,8 @@ namespace Viscoplastic
           record_of_errors(summary->quantity_errors, "largest_value");
         errors["quantity"] = summary->quantity;
       }
+    if (summary != nullptr && !summary->doubtful_steps.empty())
+      record["doubtful_steps"] = summary->doubtful_steps;
     if (costs != nullptr)
       record["costs"] = record_of_costs(*costs);
     record["date"] = date;

@@ -213,8 +213,6 @@ namespace Viscoplastic
     bool balance_is_doubtful = false;
     /// Whether an error of the solver above its tolerance has been told.
     bool solver_error_is_told = false;
-    /// Steps that may have several solutions.
-    unsigned int n_doubtful_steps = 0;
     /// Whether the user has been told of a support that carries a force.
     bool support_carries = false;
 

@@ -81,6 +81,8 @@ namespace Viscoplastic
     /// With lagged Coulomb friction: sums over the steps of k times what
     /// StepQuantities::friction_bounds has.
     double missed_bounds = 0., computed_bounds = 0.;
+    /// What has been said of the first steps that may have several solutions.
+    std::vector<std::string> doubtful_steps;
     /// The largest k r, and where r was that large.
     Largest    stiffness;
     Point<dim> critical_position;

@@ -3,6 +3,7 @@
 #include <viscoplastic_contact/parameters/parameter_file.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace Viscoplastic
@@ -57,9 +58,13 @@ namespace Viscoplastic
     const double time = has_time_error ? std::max(errors.time + errors.friction,
                                                   time_share * all) :
                                          0.;
-    return std::max(least_space_share * all,
-                    all - time - errors.history - errors.transfer -
-                      errors.initial - errors.algebraic);
+    const double of_meshes =
+      all - time - errors.transfer - errors.initial - errors.algebraic;
+    const double left =
+      of_meshes > errors.history ?
+        std::sqrt((of_meshes - errors.history) * (of_meshes + errors.history)) :
+        0.;
+    return std::max(least_space_share * all, left);
   }
 
 } // namespace Viscoplastic

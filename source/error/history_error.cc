@@ -53,40 +53,6 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  Vector<double>
-  history_if_refined(const StressSpace<dim> &stress_space,
-                     const State<dim>       &state,
-                     const Vector<double>   &squared_error)
-  {
-    const unsigned int                 n = stress_space.n_samples;
-    Vector<double>                     result(squared_error.size());
-    std::vector<SymmetricTensor<2, 3>> strains(n);
-    for (unsigned int c = 0; c < stress_space.n_cells(); ++c)
-      {
-        const Stiffness &stiffness = stress_space.moduli(c);
-        stress_space.strains(c, state.u.begin(), strains.data());
-        double of_z = 0., of_stress = 0.; // squared norms
-        for (unsigned int s = 0; s < n; ++s)
-          {
-            const SymmetricTensor<2, 3> &z = state.z[c * n + s];
-            of_z +=
-              stress_space.weight(c, s) * stiffness.complementary_square(z);
-            of_stress +=
-              stress_space.weight(c, s) *
-              stiffness.complementary_square(stiffness.stress(strains[s]) + z);
-          }
-        const unsigned int i = stress_space.space.cells[c]->active_cell_index();
-        if (of_z > 0.)
-          result[i] =
-            0.75 * squared_error[i] * of_z /
-            Utilities::fixed_power<2>(std::sqrt(of_z) + std::sqrt(of_stress));
-      }
-    return result;
-  }
-
-
-
   template double
   cell_mean_defect<2>(const LocalCells<2> &,
                       const FlowLaws<2> &,
@@ -95,12 +61,4 @@ namespace Viscoplastic
   cell_mean_defect<3>(const LocalCells<3> &,
                       const FlowLaws<3> &,
                       const State<3> &);
-  template Vector<double>
-  history_if_refined<2>(const StressSpace<2> &,
-                        const State<2> &,
-                        const Vector<double> &);
-  template Vector<double>
-  history_if_refined<3>(const StressSpace<3> &,
-                        const State<3> &,
-                        const Vector<double> &);
 } // namespace Viscoplastic

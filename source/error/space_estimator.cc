@@ -69,20 +69,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  Vector<double>
-  SpaceEstimator<dim>::history_if_cells_are_refined(
-    const State<dim> &state) const
-  {
-    if (!discretization.scene().has_viscosity() || !recovery_estimator)
-      return {};
-    return history_if_refined(discretization.stress_space,
-                              state,
-                              recovery_estimator->estimate(state.u));
-  }
-
-
-
-  template <int dim>
   typename ResidualEstimator<dim>::Products
   SpaceEstimator<dim>::multiply(const State<dim>        &state,
                                 const DualSolution<dim> &dual,

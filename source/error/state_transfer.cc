@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/error/history_reconstruction.h>
 #include <viscoplastic_contact/error/state_transfer.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
@@ -36,8 +37,7 @@ namespace Viscoplastic
     parallel::distributed::Triangulation<dim> &triangulation,
     const StressSpace<dim>                    &old_stress_space,
     const State<dim>                          &state,
-    const DistributedVector                   *multiplier_density,
-    const Vector<double>                      &if_refined)
+    const DistributedVector                   *multiplier_density)
     : triangulation(triangulation)
     , n_samples(old_stress_space.n_samples)
     , old_fields{{state.u,
@@ -48,7 +48,6 @@ namespace Viscoplastic
                                        DistributedVector()}}
     , field_transfer(old_stress_space.space.dof_handler)
     , handle(numbers::invalid_unsigned_int)
-    , if_refined(if_refined)
     , n(state.n)
     , t(state.t)
     , k(state.k)
@@ -76,6 +75,9 @@ namespace Viscoplastic
       {
         carried.push_back(stress);
         old_samples.push_back(sampled_stress(old_stress_space, state));
+        // z is the first field.
+        for_children =
+          reconstruct_history(old_stress_space, state.z, old_samples.back());
       }
     old_cell.resize(triangulation.n_active_cells());
     unsigned int index = 0;
@@ -111,13 +113,18 @@ namespace Viscoplastic
     // curved cells, too. On straight ones this is the L2 projection, as the
     // Gauss rule integrates the parent's mass matrix (in 3D: on affine cells)
     // exactly, diagonal as it is.
-    if (status == Triangulation<dim>::CELL_REFINE && if_refined.size() > 0)
-      of_refined_cells += if_refined[cell->active_cell_index()];
+    const bool passes_on =
+      status == Triangulation<dim>::CELL_REFINE && !for_children.z.empty();
+    if (passes_on)
+      of_refined_cells += for_children.squared_error[cell->active_cell_index()];
     IrreversibleStress values(carried.size() * (n_samples + 1));
     for (unsigned int f = 0; f < carried.size(); ++f)
       {
         SymmetricTensor<2, 3>    *packed = &values[f * (n_samples + 1)];
-        const IrreversibleStress &old    = old_samples[f];
+        const IrreversibleStress &old =
+          passes_on && f == 0               ? for_children.z :
+          passes_on && carried[f] == stress ? for_children.stress :
+                                              old_samples[f];
         if (status == Triangulation<dim>::CELL_COARSEN)
           {
             for (unsigned int child = 0; child < cell->n_children(); ++child)

@@ -219,7 +219,8 @@ namespace Viscoplastic
       part("iterations", largest.algebraic);
       if (largest.initial > 0.)
         part("initial data", largest.initial);
-      part("sum", largest.total());
+      part(largest.history > 0. ? "sum, of meshes by squares" : "sum",
+           largest.total());
     }
 
 

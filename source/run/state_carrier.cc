@@ -38,7 +38,6 @@ namespace Viscoplastic
   MeshChange<dim>::MeshChange(
     const ErrorEstimator<dim>                 *error_estimator,
     const Discretization<dim>                 &discretization,
-    const TimeStepper<dim>                    &time_stepper,
     const EvaluatedState<dim>                 &accepted,
     parallel::distributed::Triangulation<dim> &triangulation)
     : StateCarrier<dim>(error_estimator, discretization, accepted)
@@ -49,10 +48,7 @@ namespace Viscoplastic
     , transfer(triangulation,
                discretization.stress_space,
                accepted.state,
-               discretization.face ? &this->density : nullptr,
-               error_estimator != nullptr ?
-                 time_stepper.history_if_cells_are_refined(accepted.state) :
-                 Vector<double>())
+               discretization.face ? &this->density : nullptr)
   {}
 
 
@@ -75,12 +71,13 @@ namespace Viscoplastic
       state.initial_u.size() > 0;
     if (keeps_displacement)
       state.initial_u -= state.u;
-    // Equilibrium keeps the volume, which moves u, which makes z inconsistent.
-    const unsigned int n_rounds = scene.has_viscosity() ? 8 : 1;
+    // u, which has been interpolated, follows z; what it cannot follow becomes
+    // z, which moves u again, since equilibrium keeps the volume.
+    time_stepper.settle(accepted);
+    const unsigned int n_rounds = scene.has_viscosity() ? 8 : 0;
     for (unsigned int round = 0; round < n_rounds; ++round)
       {
-        if (scene.has_viscosity())
-          share_mismatch(discretization.stress_space, result.stress, state);
+        share_mismatch(discretization.stress_space, result.stress, state);
         time_stepper.settle(accepted);
       }
     // What a finer mesh finds of the initial state is no displacement since.

@@ -348,7 +348,6 @@ namespace Viscoplastic
   {
     MeshChange<dim> change(error_estimator.get(),
                            *discretization,
-                           *time_stepper,
                            accepted,
                            triangulation);
     triangulation.execute_coarsening_and_refinement();

@@ -3,6 +3,7 @@
 // The transfer of a state to a new mesh, on any number of ranks.
 
 #include "sampled_body.h"
+#include <viscoplastic_contact/error/history_reconstruction.h>
 #include <viscoplastic_contact/error/memory_loss.h>
 #include <viscoplastic_contact/error/state_transfer.h>
 
@@ -165,6 +166,77 @@ namespace
     state.z.assign(state.z.size(), Stress());
     share_mismatch(*body.stress_space, stress, state);
     EXPECT_EQ(state.z, IrreversibleStress(state.z.size()));
+  }
+
+
+
+  /// Jumps between cells become the slopes that they stand for, next to
+  /// hanging nodes and at boundaries, too; what is left of them is an error.
+  TYPED_TEST(Transfer, ChildrenTakeTheSlopesOfNeighbors)
+  {
+    constexpr int dim = TypeParam::value;
+    for (const bool at_quadrature_points : {true, false})
+      {
+        SampledBody<dim> body(box_with<dim>("set Role = clamped\n"),
+                              at_quadrature_points);
+        body.triangulation.refine_global(1);
+        body.refine_where([](const Point<dim> &x) { return x[0] > 0.7; });
+        body.set_up();
+        const StressSpace<dim> &space = *body.stress_space;
+        // The means of a field, and the error of having no more.
+        const auto jumps_of = [&](const auto &field) {
+          IrreversibleStress z;
+          for (const auto &cell : space.space.cells)
+            z.insert(z.end(), space.n_samples, field(cell->center()));
+          return z;
+        };
+        const auto error = [&](const auto &field, const auto &z) {
+          const QGauss<dim> points(2);
+          FEValues<dim>     values(space.space.dof_handler.get_fe(),
+                               points,
+                               update_quadrature_points | update_JxW_values);
+          double            square = 0.;
+          for (std::size_t c = 0; c < space.n_cells(); ++c)
+            {
+              values.reinit(space.space.cells[c]);
+              for (const unsigned int q : values.quadrature_point_indices())
+                square +=
+                  values.JxW(q) *
+                  space.moduli(c).complementary_square(
+                    z[c * space.n_samples + (space.n_samples > 1 ? q : 0)] -
+                    field(values.quadrature_point(q)));
+            }
+          return std::sqrt(Utilities::MPI::sum(square, MPI_COMM_WORLD));
+        };
+        const auto estimate = [](const HistoryReconstruction &result) {
+          return std::sqrt(Utilities::MPI::sum(result.squared_error.l1_norm(),
+                                               MPI_COMM_WORLD));
+        };
+        const auto   linear = jumps_of(linear_stress<dim>);
+        auto         result = reconstruct_history(space, linear, linear);
+        const double lost   = error(linear_stress<dim>, linear);
+        EXPECT_EQ(result.z, result.stress);
+        if (at_quadrature_points)
+          {
+            EXPECT_LT(error(linear_stress<dim>, result.z), 0.01 * lost);
+            EXPECT_LT(estimate(result), 0.01 * lost);
+          }
+        else
+          {
+            EXPECT_EQ(result.z, linear);
+            EXPECT_NEAR(estimate(result), lost, 0.01 * lost);
+          }
+
+        const auto curved = [](const Point<dim> &x) {
+          return x[0] * x[0] * linear_stress(x);
+        };
+        const auto jumps = jumps_of(curved);
+        result           = reconstruct_history(space, jumps, jumps);
+        EXPECT_LT(error(curved, result.z),
+                  (at_quadrature_points ? 0.25 : 1.0001) *
+                    error(curved, jumps));
+        EXPECT_NEAR(estimate(result) / error(curved, result.z), 1., 0.5);
+      }
   }
 
 

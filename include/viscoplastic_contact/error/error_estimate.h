@@ -31,11 +31,13 @@ namespace Viscoplastic
     /// The error of the initial data.
     double initial = 0.;
 
-    /// The sum, a bound by the triangle inequality.
+    /// The sum, a bound by the triangle inequality; but what is left of former
+    /// meshes is orthogonal to what the present one cannot resolve.
     double
     total() const
     {
-      return space + history + time + friction + transfer + algebraic + initial;
+      return std::hypot(space, history) + time + friction + transfer +
+             algebraic + initial;
     }
 
     /// Write to, or read from, an archive.

@@ -23,18 +23,4 @@ namespace Viscoplastic
   cell_mean_defect(const LocalCells<dim> &cells,
                    const FlowLaws<dim>   &laws,
                    const State<dim>      &state);
-
-  /**
-   * What z keeps of the error of each active cell if it is refined, squared.
-   *
-   * Halved cells have a quarter of the squared error @p squared_error; the rest
-   * goes with them as far as it is one of the present displacement, but what
-   * is in z stays. It is shared between both as z and sigma share E eps, by
-   * their norms in the cell. Zero on cells of other ranks.
-   */
-  template <int dim>
-  Vector<double>
-  history_if_refined(const StressSpace<dim> &stress_space,
-                     const State<dim>       &state,
-                     const Vector<double>   &squared_error);
 } // namespace Viscoplastic

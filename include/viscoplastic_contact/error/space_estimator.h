@@ -58,11 +58,6 @@ namespace Viscoplastic
     SpaceEstimate
     estimate(const State<dim> &state) const;
 
-    /// What z keeps of the error of each cell if it is refined, squared, see
-    /// history_if_refined(); empty without viscosity. Collective.
-    Vector<double>
-    history_if_cells_are_refined(const State<dim> &state) const;
-
     /// How the residuals of a state and of a dual solution go together; there
     /// has to be a residual estimator. @p memory: of the state, see
     /// ResidualEstimator::Fields. Collective.

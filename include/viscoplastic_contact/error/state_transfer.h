@@ -8,6 +8,7 @@
 
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/error/history_reconstruction.h>
 
 #include <array>
 #include <vector>
@@ -22,7 +23,9 @@ namespace Viscoplastic
    * - z and the other fields at samples by an L2 projection that conserves int
    * z over every cell that is refined or coarsened. Samples on the children of
    * a cell are values of the polynomial through the parent's samples: a copy of
-   * cell means, the (bi-, tri-)linear interpolant of quadrature points.
+   * cell means, the (bi-, tri-)linear interpolant of quadrature points. With
+   * viscosity, these samples of z and sigma_h have slopes that fit to their
+   * neighbors' (see HistoryReconstruction).
    *
    * Equilibrium is restored by the next step, which solves for the total
    * displacement.
@@ -35,14 +38,12 @@ namespace Viscoplastic
   class StateTransfer
   {
   public:
-    /// @p multiplier_density is ghosted, and null without contact points; @p
-    /// if_refined: a number of each active cell, to be summed up over those
-    /// that are refined, or none. Collective.
+    /// @p multiplier_density is ghosted, and null without contact points.
+    /// Collective.
     StateTransfer(parallel::distributed::Triangulation<dim> &triangulation,
                   const StressSpace<dim>                    &old_stress_space,
                   const State<dim>                          &state,
-                  const DistributedVector                   *multiplier_density,
-                  const Vector<double>                      &if_refined = {});
+                  const DistributedVector *multiplier_density);
 
     /// The triangulation calls back until unpack().
     StateTransfer(const StateTransfer &) = delete;
@@ -57,8 +58,9 @@ namespace Viscoplastic
       DistributedVector multiplier_density;
       /// sigma_h, carried like z; empty without viscosity.
       IrreversibleStress stress;
-      /// The sum of the numbers of cells that have been refined, which only the
-      /// mesh itself knows: it keeps neighbors within one level.
+      /// What is wrong in z of the cells that have been refined, squared (see
+      /// HistoryReconstruction). Which these are only the mesh itself knows: it
+      /// keeps neighbors within one level.
       double of_refined_cells = 0.;
     };
 
@@ -95,8 +97,9 @@ namespace Viscoplastic
     /// Samples on each child = prolongation * samples on the parent.
     std::vector<FullMatrix<double>> prolongation;
 
-    Vector<double> if_refined;
-    mutable double of_refined_cells = 0.;
+    /// With viscosity: z and sigma_h of cells that are refined.
+    HistoryReconstruction for_children;
+    mutable double        of_refined_cells = 0.;
 
     unsigned int n;
     double       t, k;

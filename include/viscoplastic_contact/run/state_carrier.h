@@ -50,7 +50,6 @@ namespace Viscoplastic
   public:
     MeshChange(const ErrorEstimator<dim>                 *error_estimator,
                const Discretization<dim>                 &discretization,
-               const TimeStepper<dim>                    &time_stepper,
                const EvaluatedState<dim>                 &accepted,
                parallel::distributed::Triangulation<dim> &triangulation);
 

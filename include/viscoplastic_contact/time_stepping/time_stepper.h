@@ -85,13 +85,6 @@ namespace Viscoplastic
     void
     estimate(EvaluatedState<dim> &evaluated) const;
 
-    /// See SpaceEstimator. Collective.
-    Vector<double>
-    history_if_cells_are_refined(const State<dim> &state) const
-    {
-      return space_estimator->history_if_cells_are_refined(state);
-    }
-
     /// Whether steps of this scene ask for G at the state that they start from.
     bool
     needs_rate() const;

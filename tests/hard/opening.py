@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Contact that opens, with Coulomb's friction of the pressure of the step itself."""
 
-import numpy as np
-
 from harness import run
 from suite import case
 

@@ -266,6 +266,8 @@ def of_other_units(run, other, dimension, units, entries):
             scale *= unit**power
         here, there = run[name], other[name] / scale
         size = abs(here).max()
+        if name == "max_gap":  # of what touches everywhere it is rounding
+            size = max(size, 1e-6 * run["max_displacement"].max())
         if name.endswith("dissipation"):
             size = max(size, abs(run["stored_energy"]).max())
         if abs(here - there).max() > bound * size:

@@ -127,6 +127,22 @@ class LongCreep(TestCase):
         self.assertLess(len(result["t"]), 400)
 
 
+    def test_former_meshes_drive_no_refinement(self):
+        """The salt pillar had 15 563 cells for 2 % as long as cells passed on to
+        their children how z jumps between them."""
+        result = run(
+            "salt_pillar_2d",
+            {
+                "Geometry/Arguments": "8, 4 : 0, 0 : 6, 3 : true",
+                "Error control/Tolerance": 0.02,
+                "Output/Fields every": 0,
+            },
+        )
+        self.assertIn("has been kept", result.stdout)
+        # measured: 2429
+        self.assertLess(result["cells"].max(), 5000)
+
+
 class Estimate(TestCase):
     @classmethod
     def setUpClass(cls):

@@ -17,6 +17,24 @@ namespace Viscoplastic
     {
       return std::sqrt(2. * std::max(0., forces.strain_energy));
     }
+
+
+
+    /// (1 + k dG/deps E^-1)^-1, what a step leaves of an error of z that makes
+    /// no stress, since strains make up for it: of linear laws that depend on
+    /// the strain. None of others, whose strain stays.
+    std::optional<SymmetricTensor<4, 3>>
+    fading_with_strain(const ViscoplasticLaw &law,
+                       const double           k,
+                       const Stiffness       &stiffness,
+                       const LawPoint        &point)
+    {
+      if (!law.has_constant_tangents() || law.radial_flow(0., point))
+        return {};
+      const auto tangents = law.tangents({}, {}, stiffness, point);
+      return invert(identity_tensor<3>() +
+                    k * tangents.strain * invert(stiffness.tensor()));
+    }
   } // namespace
 
 
@@ -132,18 +150,20 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ErrorEstimator<dim>::add_defect(const StressSpace<dim> &stress_space,
-                                  const TimeDefect       &defect,
-                                  const bool              has_slope,
-                                  const State<dim>       &accepted,
-                                  const FlowRate         &accepted_rate,
-                                  EvaluatedState<dim>    &end) const
+  ErrorEstimator<dim>::add_defect(const FlowLaws<dim> &laws,
+                                  const TimeDefect    &defect,
+                                  const bool           has_slope,
+                                  const State<dim>    &accepted,
+                                  const FlowRate      &accepted_rate,
+                                  EvaluatedState<dim> &end) const
   {
-    State<dim>    &state     = end.state;
-    ErrorEstimate &estimate  = end.errors;
-    const bool     is_second = n_sample_fields(scene) > 2,
-               relaxes       = n_sample_fields(scene) > 3;
-    const bool is_measured   = scene.parameters.step_control.is_on() ||
+    const StressSpace<dim> &stress_space = laws.stress_space;
+    const auto              now          = laws.at(end.state.t);
+    State<dim>             &state        = end.state;
+    ErrorEstimate          &estimate     = end.errors;
+    const bool              is_second    = n_sample_fields(scene) > 2,
+               relaxes                   = n_sample_fields(scene) > 3;
+    const bool is_measured = scene.parameters.step_control.is_on() ||
                              scene.parameters.error_control.has_tolerance() ||
                              scene.quantity;
     const double k   = state.k;
@@ -158,7 +178,11 @@ namespace Viscoplastic
       {
         if (relaxes)
           stress_space.strains(c, state.u.begin(), strains.data());
-        const Stiffness &stiffness = stress_space.moduli(c);
+        const Stiffness       &stiffness = stress_space.moduli(c);
+        const ViscoplasticLaw *law       = now.law(c);
+        const std::optional<SymmetricTensor<4, 3>> fading =
+          law ? fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
+                std::nullopt;
         for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
           {
             const double                weight = stress_space.weight(c, s);
@@ -174,24 +198,27 @@ namespace Viscoplastic
                           (state.rate_slope[i] - accepted.rate_slope[i]);
               }
             state.time_error[i] += step;
+            if (fading)
+              state.time_error[i] = *fading * state.time_error[i];
             // Steps are chosen with the slope as the change of slope there.
             if (!has_slope)
               step += defect.second * k * change;
             if (relaxes)
               {
-                const double square = stiffness.complementary_square(deviator(
-                               stiffness.stress(strains[s]) + state.z[i])),
-                             decay =
-                               square > 0. ?
-                                 1. +
-                                   k * std::sqrt(stiffness.complementary_square(
-                                                   end.rate->rate[i]) /
-                                                 square) :
-                                 1.;
-                state.remembered_error[i] += step;
-                state.remembered_error[i] /= decay;
-                sums[4] +=
-                  weight * stiffness.complementary_square(step / decay);
+                const SymmetricTensor<4, 3> relaxation =
+                  law ? invert(identity_tensor<3>() -
+                               k * law
+                                     ->tangents(stiffness.stress(strains[s]) +
+                                                  state.z[i],
+                                                strains[s],
+                                                stiffness,
+                                                now.point(c, s))
+                                     .stress) :
+                        identity_tensor<3>();
+                state.remembered_error[i] =
+                  relaxation * (state.remembered_error[i] + step);
+                sums[4] += weight * stiffness.complementary_square(
+                                      SymmetricTensor<2, 3>(relaxation * step));
               }
             sums[0] += weight * stiffness.complementary_square(step);
             sums[1] +=
@@ -217,7 +244,7 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ErrorEstimator<dim>::assess(const StressSpace<dim>    &stress_space,
+  ErrorEstimator<dim>::assess(const FlowLaws<dim>       &laws,
                               const TimeDefect          &defect,
                               const ContactReport       &report,
                               const double               turning,
@@ -227,7 +254,7 @@ namespace Viscoplastic
                               const FlowRate            *accepted_rate,
                               EvaluatedState<dim>       &end) const
   {
-    const AdmissibleSpace<dim> &space    = stress_space.space;
+    const AdmissibleSpace<dim> &space    = laws.stress_space.space;
     const Forces<dim>          &forces   = end.forces;
     const ErrorEstimate        &before   = accepted.errors;
     ErrorEstimate              &estimate = end.errors;
@@ -248,7 +275,7 @@ namespace Viscoplastic
       {
         Assert(accepted_rate != nullptr && end.rate,
                ExcMessage("The rates have not been evaluated."));
-        add_defect(stress_space,
+        add_defect(laws,
                    defect,
                    /* has_slope = */ accepted.state.k > 0. && !is_fresh,
                    accepted.state,

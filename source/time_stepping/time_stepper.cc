@@ -342,7 +342,7 @@ namespace Viscoplastic
           state.k,
           accepted.state.k);
       }
-    error_estimator->assess(discretization.stress_space,
+    error_estimator->assess(discretization.laws,
                             time_defect(step.is_implicit ?
                                           TimeScheme::backward_euler :
                                           scene.parameters.time.scheme),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
 #include <viscoplastic_contact/parameters/choices.h>
 
@@ -38,7 +39,9 @@ namespace Viscoplastic
    * D_n = D_{n-1} + (k_n/2)(G_n - G_{n-1}), and cancel where G returns. Since
    * a(e_u, v) = -(e_z, eps(v)), the norm (int E^-1 D : D)^{1/2} bounds their
    * effect on u. That errors of z relax, too, is left out: where the stress
-   * follows from the loads it does not happen.
+   * follows from the loads it does not happen. In linear laws that depend on
+   * the strain, what makes no stress fades all the same. Forces feel only what
+   * makes stress, and that relaxes with the law's own tangent in them.
    *
    * Friction: slip that turns in a step has the direction of its end. In an
    * elastic body the error of what is linear between the steps satisfies
@@ -111,7 +114,7 @@ namespace Viscoplastic
      * beginning data have a kink, so that G may have one, too. Collective.
      */
     void
-    assess(const StressSpace<dim>    &stress_space,
+    assess(const FlowLaws<dim>       &laws,
            const TimeDefect          &defect,
            const ContactReport       &report,
            const double               turning,
@@ -126,12 +129,12 @@ namespace Viscoplastic
     /// into the estimate. @p has_slope: whether the slope of G before the step
     /// goes on in it. Collective.
     void
-    add_defect(const StressSpace<dim> &stress_space,
-               const TimeDefect       &defect,
-               const bool              has_slope,
-               const State<dim>       &accepted,
-               const FlowRate         &accepted_rate,
-               EvaluatedState<dim>    &end) const;
+    add_defect(const FlowLaws<dim> &laws,
+               const TimeDefect    &defect,
+               const bool           has_slope,
+               const State<dim>    &accepted,
+               const FlowRate      &accepted_rate,
+               EvaluatedState<dim> &end) const;
 
     const Scene<dim>       &scene;
     const SolverParameters &solver;

@@ -11,30 +11,31 @@ namespace
 {
   using namespace Viscoplastic;
 
+  StatisticsRow
+  row_of(const int step, const std::string &column, const double value)
+  {
+    StatisticsRow row;
+    row.add("step", step);
+    row.add(column, value, Quantity::time);
+    return row;
+  }
+
+
+
   /// A table of a scene with units goes on by the names of its columns.
   TEST(Statistics, TablesWithUnitsGoOn)
   {
     const Testing::Folder folder;
     const std::string     file = folder.add("statistics.csv", "");
     {
-      Statistics table(file, [](const std::string &column) {
-        return column == "t" ? " [day]" : "";
-      });
+      Statistics table(file, Units("m", "day", "MPa"), 2);
       for (const int n : {0, 1})
-        {
-          table.add("step", n);
-          table.add("t", 2. * n);
-          table.end_row();
-        }
+        table.write(row_of(n, "t", 2. * n));
     }
     {
       Statistics table(file, /* last_step = */ 1);
-      table.add("step", 2);
-      table.add("t", 5.);
-      table.end_row();
-      table.add("step", 3);
-      table.add("k", 5.);
-      EXPECT_THROW(table.end_row(), std::exception); // another column
+      table.write(row_of(2, "t", 5.));
+      EXPECT_THROW(table.write(row_of(3, "k", 5.)), std::exception);
     }
     std::ifstream     in(file);
     std::stringstream text;

@@ -1,4 +1,4 @@
-// A long cavern in rock salt under its overburden, half of it, in metres: y = 0
+// A long cavern in rock salt under its overburden, half of it, in meters: y = 0
 // is the surface of the ground.
 near = 6;                            // size of the cells at the cavern, at the
 surface = 40;                        // surface and far away, before they are

@@ -1,4 +1,4 @@
-// A machine foot: a trapezoid with a bore, in metres.
+// A machine foot: a trapezoid with a bore, in meters.
 h = 0.01;                        // size of the cells before they are halved
 
 Point(1) = {-0.06, 0.00, 0, h};

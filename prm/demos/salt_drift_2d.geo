@@ -1,4 +1,4 @@
-// A drift in rock salt, half of it, in metres: y from its floor upwards.
+// A drift in rock salt, half of it, in meters: y from its floor upwards.
 near = 1;                          // size of the cells at the drift, and at
 far  = 12;                         // the outside, before they are halved
 
@@ -11,7 +11,7 @@ Point(6) = { 3, 2.5, 0, near};     // springing of the arch
 Point(7) = { 3, 0.5, 0, near/2};   // foot of the rib, rounded
 Point(8) = {2.5,  0, 0, near/2};
 Point(9) = { 0,   0, 0, near};     // middle of the floor
-Point(10) = {0, 0.25, 0};          // centre of the arch, of radius 3.75
+Point(10) = {0, 0.25, 0};          // center of the arch, of radius 3.75
 Point(11) = {2.5, 0.5, 0};
 
 Line(1)   = {1, 2};

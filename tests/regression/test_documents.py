@@ -16,7 +16,7 @@ import textwrap
 import unittest
 from pathlib import Path
 
-from harness import EXECUTABLE, SOURCE, Run, TestCase, main
+from harness import EXECUTABLE, SOURCE, Run, TestCase, main, run
 
 PAGES = sorted(
     [
@@ -231,6 +231,20 @@ class Approximations(unittest.TestCase):
                 self.assertLessEqual(set(counted), columns)
                 if not counted:
                     self.assertRegex(error, "none|not counted|data|counted, and")
+
+
+class Readme(TestCase):
+    def test_its_scene_keeps_its_tolerance(self):
+        _, blocks = prose_and_blocks(SOURCE / "README.md")
+        scene, console = (text for _, _, text in blocks)
+        result = run("block", text=scene)
+        kept = "The tolerance of 5 % has been kept."
+        self.assertIn(kept, result.stdout)
+        self.assertIn(kept, console)
+        force = re.search(r"friction force +([0-9.]+);", console)[1]
+        self.assertClose(
+            result["friction_force_x"][-1], float(force), relative=0.01, what="README"
+        )
 
 
 class Columns(unittest.TestCase):

@@ -61,9 +61,11 @@ namespace Viscoplastic
     const double of_meshes =
       all - time - errors.transfer - errors.initial - errors.algebraic;
     const double left =
-      of_meshes > errors.history ?
-        std::sqrt((of_meshes - errors.history) * (of_meshes + errors.history)) :
-        0.;
+      of_meshes <= errors.history ?
+        0. :
+      errors.history_adds ?
+        of_meshes - errors.history :
+        std::sqrt((of_meshes - errors.history) * (of_meshes + errors.history));
     return std::max(least_space_share * all, left);
   }
 

@@ -262,6 +262,7 @@ namespace Viscoplastic
     estimate.transfer                    = before.transfer;
     estimate.history =
       before.history + end.state.k * end.space_estimate.rate_defect;
+    estimate.history_adds = !scene.keeps_history_at_points();
     estimate.friction =
       std::sqrt(Utilities::fixed_power<2>(before.friction) +
                 Utilities::fixed_power<2>(friction_calibration) * turning +

@@ -63,7 +63,7 @@ namespace Viscoplastic
       exchange(std::vector<Stress> &values) const;
 
       const StressSpace<dim>                &stress_space;
-      std::vector<Point<dim>>                centers;
+      std::vector<Point<dim>>                centers;   // of gravity
       std::vector<std::vector<unsigned int>> neighbors; // of owned cells
 
     private:
@@ -83,12 +83,25 @@ namespace Viscoplastic
       const auto add = [&](const auto &cell) {
         number[cell->active_cell_index()] = centers.size();
         global_index.push_back(cell->global_active_cell_index());
-        centers.push_back(cell->center());
+        centers.emplace_back();
       };
       for (const auto &cell : stress_space.space.cells)
         add(cell);
       for (const auto &cell : ghost_cells(dof_handler))
         add(cell);
+      // Those that means are at, which in cells that are no parallelograms the
+      // mean of the vertices is not: linear fields stay as they are.
+      std::vector<Stress> places(neighbors.size());
+      for (std::size_t c = 0; c < places.size(); ++c)
+        for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+          for (unsigned int d = 0; d < dim; ++d)
+            places[c].access_raw_entry(d) += stress_space.weight(c, s) /
+                                             stress_space.volume(c) *
+                                             stress_space.position(c, s)[d];
+      exchange(places);
+      for (std::size_t c = 0; c < places.size(); ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          centers[c][d] = places[c].access_raw_entry(d);
 
       for (std::size_t c = 0; c < neighbors.size(); ++c)
         {
@@ -154,13 +167,9 @@ namespace Viscoplastic
     std::vector<Tensor<1, dim>>
     Neighborhood<dim>::sample_places(const std::size_t c) const
     {
-      Tensor<1, dim> middle;
-      for (unsigned int s = 0; s < stress_space.n_samples; ++s)
-        middle += stress_space.weight(c, s) / stress_space.volume(c) *
-                  stress_space.position(c, s);
       std::vector<Tensor<1, dim>> result;
       for (unsigned int s = 0; s < stress_space.n_samples; ++s)
-        result.push_back(stress_space.position(c, s) - middle);
+        result.push_back(stress_space.position(c, s) - centers[c]);
       return result;
     }
 
@@ -179,10 +188,12 @@ namespace Viscoplastic
       const auto     places = sample_places(c);
       for (unsigned int s = 0; s < stress_space.n_samples; ++s)
         {
-          const Tensor<1, dim> &x = places[s];
-          moments += outer_product(x, x);
+          const Tensor<1, dim> &x      = places[s];
+          const double          weight = stress_space.weight(c, s);
+          moments += weight * outer_product(x, x);
           for (unsigned int d = 0; d < dim; ++d)
-            products[d] += x[d] * field[c * stress_space.n_samples + s];
+            products[d] +=
+              weight * x[d] * field[c * stress_space.n_samples + s];
         }
       const Tensor<2, dim> inverse = invert(moments);
       for (unsigned int d = 0; d < dim; ++d)

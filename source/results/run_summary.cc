@@ -219,7 +219,9 @@ namespace Viscoplastic
       part("iterations", largest.algebraic);
       if (largest.initial > 0.)
         part("initial data", largest.initial);
-      part(largest.history > 0. ? "sum, of meshes by squares" : "sum",
+      part(largest.history > 0. && !largest.history_adds ?
+             "sum, of meshes by squares" :
+             "sum",
            largest.total());
     }
 

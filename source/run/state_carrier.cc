@@ -71,10 +71,12 @@ namespace Viscoplastic
       state.initial_u.size() > 0;
     if (keeps_displacement)
       state.initial_u -= state.u;
-    // u, which has been interpolated, follows z; what it cannot follow becomes
-    // z, which moves u again, since equilibrium keeps the volume.
-    time_stepper.settle(accepted);
+    // u, which has been interpolated, follows a history that has new slopes;
+    // what it cannot follow becomes z, which moves u again, since equilibrium
+    // keeps the volume.
     const unsigned int n_rounds = scene.has_viscosity() ? 8 : 0;
+    if (n_rounds == 0 || scene.keeps_history_at_points())
+      time_stepper.settle(accepted);
     for (unsigned int round = 0; round < n_rounds; ++round)
       {
         share_mismatch(discretization.stress_space, result.stress, state);

@@ -184,7 +184,7 @@ namespace Viscoplastic
     // root of its condition number, and rounding makes of residuals up to its
     // square.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    const double     size    = bulk_solver->energy_norm();
+    const double     size = std::max(bulk_solver->energy_norm(), data.old_size);
     const double     ratio = rounding_error(data, u) / (100. * epsilon * size);
     // Of a body that moves without strain nothing but rounding is left.
     if (!(epsilon * ratio * ratio > report.tolerance) ||
@@ -286,7 +286,12 @@ namespace Viscoplastic
     if (problem.foundation_step.size() > 0)
       foundation_step =
         face_motion(discretization.face->layout(), problem.foundation_step);
-    const Data   data{old_u, problem.load.values, right_side, foundation_step};
+    const Data   data{old_u,
+                    problem.load.values,
+                    right_side,
+                    foundation_step,
+                    std::sqrt(2. *
+                              std::max(0., problem.old.forces.strain_energy))};
     const double size = size_of(data, u);
     AssertThrow(!(size > largest_size),
                 ExcMessage(out_of_range("the size of loads and displacements "
@@ -334,7 +339,11 @@ namespace Viscoplastic
           bound /= unit;
       }
     ContactReport report =
-      solve_in_unit({other_old_u, load, other_right_side, foundation_step},
+      solve_in_unit({other_old_u,
+                     load,
+                     other_right_side,
+                     foundation_step,
+                     data.old_size / unit},
                     tolerance,
                     u,
                     contact,

@@ -31,13 +31,23 @@ namespace Viscoplastic
     /// The error of the initial data.
     double initial = 0.;
 
-    /// The sum, a bound by the triangle inequality; but what is left of former
-    /// meshes is orthogonal to what the present one cannot resolve.
+    /// Whether the history adds to the error of the mesh, as with cell means:
+    /// runs to a tolerance were above it without that. What is left of former
+    /// meshes alone is orthogonal to what the present one cannot resolve.
+    bool history_adds = false;
+
+    /// Of the present mesh and the former ones.
+    double
+    of_meshes() const
+    {
+      return history_adds ? space + history : std::hypot(space, history);
+    }
+
+    /// The sum, a bound by the triangle inequality.
     double
     total() const
     {
-      return std::hypot(space, history) + time + friction + transfer +
-             algebraic + initial;
+      return of_meshes() + time + friction + transfer + algebraic + initial;
     }
 
     /// Write to, or read from, an archive.
@@ -45,7 +55,8 @@ namespace Viscoplastic
     void
     exchange(Archive &archive)
     {
-      archive &space &history &time &friction &transfer &algebraic &initial;
+      archive &space &history &time &friction &transfer &algebraic &initial
+        &history_adds;
     }
   };
 

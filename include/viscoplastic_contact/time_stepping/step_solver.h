@@ -102,6 +102,9 @@ namespace Viscoplastic
     {
       const DistributedVector &old_u, &load, &right_side;
       const Vector<double>    &foundation_step; // on the face
+      /// The energy norm of the solution of the step before: one that passes
+      /// through zero is no scale for what rounding leaves of it.
+      const double old_size = 0.;
     };
 
     /// solve() with Coulomb's law of the pressure of the step itself, by

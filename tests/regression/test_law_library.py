@@ -168,10 +168,10 @@ class Example(Libraries):
             project.write(
                 "viscoplastic_contact_add_law_library(misbehaving misbehaving.cc)\n"
             )
-        cls.library = law_example.build(
+        cls.law_file = law_example.build(
             cls.work, f"-Dviscoplastic_contact_DIR={PACKAGE}"
         )
-        cls.law = {"Additional shared libraries": cls.library, **GAROFALO}
+        cls.law = {"Additional shared libraries": cls.law_file, **GAROFALO}
 
     def assertSameRuns(self, one, other, relative):
         # Only one of them has a cap.
@@ -219,9 +219,9 @@ class Example(Libraries):
         self.assertEqual(process.returncode, 0, process.stderr)
         results = there / "output" / "scene"
         record = (results / "parameters.prm").read_text()
-        self.assertIn(f"set Additional shared libraries = {self.library}", record)
+        self.assertIn(f"set Additional shared libraries = {self.law_file}", record)
         info = json.loads((results / "run.json").read_text())
-        self.assertEqual(info["shared_libraries"], [str(self.library)])
+        self.assertEqual(info["shared_libraries"], [str(self.law_file)])
         again = run_program([results / "parameters.prm"], 1, there)
         self.assertEqual(again.returncode, 0, again.stderr)
 
@@ -270,13 +270,13 @@ class Example(Libraries):
             ("negative_limit", "The relaxation rate is -1 at x = (", 2),
         ):
             with self.subTest(law=law, ranks=ranks):
-                library = self.library.with_name("misbehaving.so")
+                library = self.law_file.with_name("misbehaving.so")
                 self.refused(library, sentence, ranks=ranks, **{"Material/Law": law})
 
     def test_a_step_evaluates_a_law_once(self):
         """At each point of each cell, G at the end of a step is that at the start
         of the next one, of its balance and of its estimate."""
-        library = self.library.with_name("misbehaving.so")
+        library = self.law_file.with_name("misbehaving.so")
         for history, n_points in (("cell means", 1), ("quadrature points", 4)):
             with self.subTest(history=history):
                 result = run(
@@ -301,7 +301,7 @@ class Example(Libraries):
 
     def test_twice_the_same_law(self):
         self.refused(
-            f"{self.library}, {self.library}", "'garofalo', which another law has"
+            f"{self.law_file}, {self.law_file}", "'garofalo', which another law has"
         )
 
 

@@ -348,4 +348,60 @@ namespace Viscoplastic
       }
     return face.sum(energy_change);
   }
+
+
+
+  std::optional<KinkStep>
+  step_from_kinks(BulkSolver                      &bulk,
+                  const ContactLayout             &face,
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                  const Vector<double>            &residual,
+                  const Vector<double>            &w,
+                  const double                     tolerance,
+                  Vector<double>                  &x,
+                  ContactState                    &state)
+  {
+    const ContactState   old_state = state;
+    const Vector<double> old_x     = x;
+    Vector<double>       stop;
+    const double         change_of_j = bring_to_kinks(face, w, x, state, stop);
+    bulk.move_face(stop);
+    Vector<double> new_residual(x.size()), force(x.size());
+    bulk.face_residual(new_residual);
+    // J is quadratic but for friction: its mean slope makes the change.
+    const double energy_change =
+      change_of_j -
+      0.5 * (face.dot(stop, residual) + face.dot(stop, new_residual));
+
+    fit_multipliers(face, new_residual, state, force);
+    bulk.set_truncation(make_truncation(face, state, inverse_diagonal),
+                        /* may_rebuild = */ false);
+    KinkStep result;
+    result.linear_iterations = 0;
+    // The stop has moved the face with the bulk at rest. Where that makes
+    // much of the residual, as next to incompressible bodies, a solution as
+    // good as the first one takes more.
+    const double made = std::sqrt(face.dot(residual, residual) /
+                                  face.dot(new_residual, new_residual));
+    for (const double reduction :
+         {tolerance, tolerance * std::clamp(made, 1e-6, 1.)})
+      {
+        result.correction.reinit(x.size());
+        result.linear_iterations +=
+          bulk.correct(force, reduction, result.correction);
+        stop_at_kinks(face, state, x, result.correction);
+        result.search = search_along(bulk, face, state, result.correction);
+        if (energy_change + result.search.energy_change < 0.)
+          return result;
+        if (bulk.is_exact())
+          break;
+      }
+
+    Vector<double> back(x.size());
+    face.add(-1., stop, back);
+    bulk.move_face(back);
+    x     = old_x;
+    state = old_state;
+    return {};
+  }
 } // namespace Viscoplastic

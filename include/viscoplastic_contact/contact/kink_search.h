@@ -4,6 +4,9 @@
 #include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/contact_layout.h>
 
+#include <optional>
+#include <vector>
+
 namespace Viscoplastic
 {
   // The energy J of a step has kinks: where slip changes sides, and where a
@@ -62,4 +65,31 @@ namespace Viscoplastic
                  Vector<double>       &x,
                  ContactState         &state,
                  Vector<double>       &change);
+
+
+  /// A correction that begins with bringing nodes to kinks of J.
+  struct KinkStep
+  {
+    Vector<double> correction;
+    SearchResult   search;
+    unsigned int   linear_iterations;
+  };
+
+  /**
+   * Bring the nodes that the correction @p w takes beyond a kink of J there,
+   * solve with them held to the relative accuracy @p tolerance (or what the
+   * stop asks for), and search along that correction. If J is lower
+   * then, the stop is made (@p x and @p state change) and the step is
+   * returned, to be taken; otherwise everything is as before but the
+   * correction.
+   */
+  std::optional<KinkStep>
+  step_from_kinks(BulkSolver                      &bulk,
+                  const ContactLayout             &face,
+                  const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                  const Vector<double>            &residual,
+                  const Vector<double>            &w,
+                  const double                     tolerance,
+                  Vector<double>                  &x,
+                  ContactState                    &state);
 } // namespace Viscoplastic

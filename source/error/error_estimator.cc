@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/error_estimator.h>
+#include <viscoplastic_contact/laws/backward_euler.h>
 
 #include <algorithm>
 #include <cmath>
@@ -206,15 +207,14 @@ namespace Viscoplastic
             if (relaxes)
               {
                 const SymmetricTensor<4, 3> relaxation =
-                  law ? invert(identity_tensor<3>() -
-                               k * law
-                                     ->tangents(stiffness.stress(strains[s]) +
-                                                  state.z[i],
-                                                strains[s],
-                                                stiffness,
-                                                now.point(c, s))
-                                     .stress) :
-                        identity_tensor<3>();
+                  law ?
+                    error_relaxation(*law,
+                                     stiffness.stress(strains[s]) + state.z[i],
+                                     strains[s],
+                                     k,
+                                     stiffness,
+                                     now.point(c, s)) :
+                    identity_tensor<3>();
                 state.remembered_error[i] =
                   relaxation * (state.remembered_error[i] + step);
                 sums[4] += weight * stiffness.complementary_square(

@@ -80,6 +80,40 @@ namespace Viscoplastic
 
 
 
+    /// How radial flow shortens the deviator of a trial stress in a step: by
+    /// 1/(1 + a), and changes of it along its direction by 1/(1 + b).
+    struct RadialFactors
+    {
+      double                a, b;
+      SymmetricTensor<2, 3> direction;
+    };
+
+    /// Nothing for other laws and bodies, and where nothing flows.
+    std::optional<RadialFactors>
+    radial_factors(const ViscoplasticLaw       &law,
+                   const SymmetricTensor<2, 3> &stress,
+                   const double                 k,
+                   const Stiffness             &stiffness,
+                   const LawPoint              &point)
+    {
+      if (!stiffness.is_isotropic())
+        return {};
+      SymmetricTensor<2, 3> s    = deviator(stress);
+      const double          size = s.norm();
+      const auto            f = law.radial_flow(std::sqrt(1.5) * size, point);
+      if (!f)
+        return {};
+      const double mu = stiffness.shear_modulus(), a = 3. * mu * k * f->secant,
+                   b = 3. * mu * k * f->tangent;
+      if (!(a + b > 0.)) // or not a number
+        return {};
+      if (size > 0.)
+        s /= size;
+      return RadialFactors{a, b, s};
+    }
+
+
+
     /**
      * The tangent where radial_return() has given the stress, and its inverse:
      * dev sigma is that of the trial stress over 1 + a, and changes by 1/(1 +
@@ -93,19 +127,11 @@ namespace Viscoplastic
                    const Stiffness             &stiffness,
                    const LawPoint              &point)
     {
-      if (!stiffness.is_isotropic())
+      const auto factors = radial_factors(law, stress, k, stiffness, point);
+      if (!factors)
         return {};
-      SymmetricTensor<2, 3> s    = deviator(stress);
-      const double          size = s.norm();
-      const auto            f = law.radial_flow(std::sqrt(1.5) * size, point);
-      if (!f)
-        return {};
-      const double mu = stiffness.shear_modulus(), K = stiffness.bulk_modulus(),
-                   a = 3. * mu * k * f->secant, b = 3. * mu * k * f->tangent;
-      if (!(a + b > 0.)) // or not a number
-        return {};
-      if (size > 0.)
-        s /= size;
+      const auto &[a, b, s] = *factors;
+      const double mu = stiffness.shear_modulus(), K = stiffness.bulk_modulus();
       return StepTangent{
         transversal_tensor(
           2. * mu / (1. + a), K, 2. * mu * (a - b) / ((1. + a) * (1. + b)), s),
@@ -230,6 +256,28 @@ namespace Viscoplastic
           return blend;
       }
     return E;
+  }
+
+
+
+  SymmetricTensor<4, 3>
+  error_relaxation(const ViscoplasticLaw       &law,
+                   const SymmetricTensor<2, 3> &stress,
+                   const SymmetricTensor<2, 3> &strain,
+                   const double                 k,
+                   const Stiffness             &stiffness,
+                   const LawPoint              &point)
+  {
+    if (const auto factors = radial_factors(law, stress, k, stiffness, point))
+      {
+        const auto &[a, b, s] = *factors;
+        return transversal_tensor(1. / (1. + a),
+                                  1. / 3.,
+                                  (a - b) / ((1. + a) * (1. + b)),
+                                  s);
+      }
+    return invert(identity_tensor<3>() -
+                  k * law.tangents(stress, strain, stiffness, point).stress);
   }
 
 

@@ -139,6 +139,16 @@ namespace Viscoplastic
   definite_tangent(const SymmetricTensor<4, 3> &tangent,
                    const Stiffness             &stiffness);
 
+  /// (I - k dG/dsigma)^-1: what relaxation in a step leaves of an error of z at
+  /// a given strain. In closed form for radial flow in isotropic bodies.
+  SymmetricTensor<4, 3>
+  error_relaxation(const ViscoplasticLaw       &law,
+                   const SymmetricTensor<2, 3> &stress,
+                   const SymmetricTensor<2, 3> &strain,
+                   const double                 k,
+                   const Stiffness             &stiffness,
+                   const LawPoint              &point);
+
   /// What a solver takes for C, and its inverse.
   struct StepTangent
   {

@@ -172,18 +172,26 @@ namespace Viscoplastic
     if (is_second)
       state.rate_slope.resize(accepted.rate_slope.size());
     state.remembered_error = accepted.remembered_error;
-    std::vector<double>                sums(5, 0.);
-    std::vector<SymmetricTensor<2, 3>> strains(stress_space.n_samples);
-    std::size_t                        i = 0;
+    std::vector<double>                  sums(5, 0.);
+    std::vector<SymmetricTensor<2, 3>>   strains(stress_space.n_samples);
+    std::optional<SymmetricTensor<4, 3>> fading;
+    const ViscoplasticLaw               *last_law       = nullptr;
+    const Stiffness                     *last_stiffness = nullptr;
+    std::size_t                          i              = 0;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
         if (relaxes)
           stress_space.strains(c, state.u.begin(), strains.data());
         const Stiffness       &stiffness = stress_space.moduli(c);
         const ViscoplasticLaw *law       = now.law(c);
-        const std::optional<SymmetricTensor<4, 3>> fading =
-          law ? fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
-                std::nullopt;
+        // The same in all cells of most bodies.
+        if (c == 0 || law != last_law || &stiffness != last_stiffness ||
+            (law && law->depends_on_position()))
+          fading = law ?
+                     fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
+                     std::nullopt;
+        last_law       = law;
+        last_stiffness = &stiffness;
         for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
           {
             const double                weight = stress_space.weight(c, s);

@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 
 from plotting import convergence, cost, style, work_precision
 from plotting.results import UserError, read_parameters
+from viscoplastic_contact.program import processor
 
 from . import plan, program, references, tables
 
@@ -57,7 +58,7 @@ def stamp(runner, about=None):
         f"viscoplastic_contact {about['version']}"
         if about.get("version")
         else runner.version(),
-        program.processor(),
+        processor(),
         str(about.get("date") or datetime.date.today())[:10],
     ]
     return f"\n*{', '.join(word for word in words if word)}.*\n"

@@ -10,7 +10,7 @@ from plotting.results import UserError  # also makes the module below known
 from plotting.study import Study
 
 import viscoplastic_contact
-from viscoplastic_contact.program import RunError, set_options
+from viscoplastic_contact.program import RunError
 
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -76,18 +76,3 @@ class Program(viscoplastic_contact.Program):
                 f"(its messages are in {log})"
             ) from error
         return Study(results / "study")
-
-
-def processor():
-    """The model of the CPU and the number of cores this process may use."""
-    model = "unknown processor"
-    try:
-        with open("/proc/cpuinfo") as file:
-            for line in file:
-                if line.startswith("model name"):
-                    model = line.split(":", 1)[1].strip()
-                    break
-    except OSError:
-        pass
-    cores = len(os.sched_getaffinity(0))
-    return f"{model}, {cores} core" + ("s" if cores != 1 else "")

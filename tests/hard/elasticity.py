@@ -27,7 +27,7 @@ def hourglass(size, report):
         naive[n] = smallest_eigenvalue(
             box.matrix(MU, BULK, "one-point"), box.matrix(MU, BULK)
         )
-        report.figure(f"DGQ(0) form over full form, n = {n}", naive[n], 0)
+        report.figure(f"DGQ(0) form over full form, n = {n}", naive[n])
     # The trap itself: if this did not fall like h^2, the loads would be no test.
     order = np.log2(naive[n // 2] / naive[n])
     report.figure("its order in h", order, 1.9, 2.1)

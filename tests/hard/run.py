@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run hard cases: python3 run.py [--full] [--list] [--table FILE] [CASE ...].
+"""Run hard cases: python3 run.py [--full] [--list] [--page FILE] [CASE ...].
 
 Without names all of them.  Ends with `N passed, N failed`, and with code 1
 unless all have passed.
@@ -10,9 +10,12 @@ import importlib
 import sys
 from pathlib import Path
 
-from suite import CASES, Size, run_case, table
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "contrib" / "python"))
 
-# The order is that of the table.
+from suite import CASES, Size, page, run_case, write_csv
+from viscoplastic_contact import Program
+
+# The order is that of the page.
 MODULES = (
     "elasticity",
     "cells",
@@ -38,7 +41,7 @@ def main():
     parser.add_argument("names", nargs="*", metavar="CASE")
     parser.add_argument("--full", action="store_true", help="the full sizes")
     parser.add_argument("--list", action="store_true", help="names, and nothing else")
-    parser.add_argument("--table", metavar="FILE", help="write the results as Markdown")
+    parser.add_argument("--page", metavar="FILE.md", help="write a page, and FILE.csv")
     arguments = parser.parse_args()
     load()
     if arguments.list:
@@ -58,8 +61,9 @@ def main():
         for figure in outcome.figures:
             mark = "" if figure.holds else "  BROKEN"
             print(f"  {figure.name}: {figure.value:.6g} ({figure.bounds}){mark}")
-        if arguments.table:  # also what a run that is ended has found
-            Path(arguments.table).write_text(table(outcomes, size))
+        if arguments.page:  # also what a run that is ended has found
+            Path(arguments.page).write_text(page(outcomes, Program().origin()))
+            write_csv(Path(arguments.page).with_suffix(".csv"), outcomes)
     n_passed = sum(outcome.passed for outcome in outcomes)
     print(f"{n_passed} passed, {len(outcomes) - n_passed} failed")
     return 0 if n_passed == len(outcomes) else 1

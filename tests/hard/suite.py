@@ -7,6 +7,7 @@ it must lie, so that a table can show how near the bound is.  A module of cases
 registers them with the decorator case(); run.py runs them.
 """
 
+import csv
 import dataclasses
 import math
 import sys
@@ -41,10 +42,16 @@ class Figure:
         return self.least <= self.value <= self.largest  # false for nan
 
     @property
+    def is_asserted(self):
+        return self.least > -math.inf or self.largest < math.inf
+
+    @property
     def bounds(self):
         if self.least == self.largest:
             return f"= {self.least:.6g}"
-        parts = [f">= {self.least:.6g}"] * (self.least > -math.inf)
+        # Of a norm, zero is no bound but the best there can be.
+        is_norm = self.least == 0 and self.largest < math.inf
+        parts = [f">= {self.least:.6g}"] * (self.least > -math.inf and not is_norm)
         parts += [f"<= {self.largest:.6g}"] * (self.largest < math.inf)
         return ", ".join(parts) or "reported"
 
@@ -115,31 +122,60 @@ def number(value):
     return f"{value:.4g}"
 
 
-def table(outcomes, size):
-    """The results as the page doc/hard_cases.md."""
+def nearest_to_its_bound(figures):
+    """The figure that uses most of what its bounds leave."""
+
+    def use(figure):
+        value, least, largest = figure.value, figure.least, figure.largest
+        if not figure.holds:
+            return math.inf
+        if math.isfinite(least) and math.isfinite(largest) and least < largest:
+            middle, half = (least + largest) / 2, (largest - least) / 2
+            return value / largest if least == 0 else abs(value - middle) / half
+        if least == largest:
+            return 0
+        return value / largest if math.isfinite(largest) else least / value if value else 0
+
+    return max((f for f in figures if f.is_asserted), key=use, default=None)
+
+
+def page(outcomes, origin):
+    """The results as doc/hard_cases.md: a line for each case."""
     text = [
         "# Hard cases",
         "",
         "Written by `contrib/hard`; do not edit. Every scene is in",
         "[prm/verification/hard](../prm/verification/hard) or beside it; its first lines say",
-        "what is hard about it and what must hold. A figure with a bound is asserted;",
-        "`reported` ones are shown only. More of contact that opens is among the",
-        "regressions: `test_opening.py`, `test_unilateral.py`, `test_compliance.py`.",
+        "what is hard about it. Of each case the figure is shown that comes nearest to its",
+        "bound; [hard_cases.csv](hard_cases.csv) has all of them. More of contact that opens",
+        "is among the regressions: `test_opening.py`, `test_unilateral.py`,",
+        "`test_compliance.py`.",
         "",
-        "Sizes: " + ("full (`contrib/hard`)." if size.full else "small (CTest)."),
+        f"*{origin}*",
     ]
     for group in dict.fromkeys(o.case.group for o in outcomes):
-        text += ["", f"## {group}", "", "| case | must hold | figure | value | bound |"]
-        text += ["|---|---|---|---|---|"]
+        text += ["", f"## {group}", "", "| case | must hold | nearest to its bound | s |"]
+        text += ["|---|---|---|---|"]
         for outcome in (o for o in outcomes if o.case.group == group):
-            first = f"{outcome.case.name} ({outcome.seconds:.1f} s)", outcome.case.holds
-            rows = [
-                (f.name, number(f.value), f.bounds + ("" if f.holds else " **broken**"))
-                for f in outcome.figures
-            ]
-            if outcome.failure:
-                rows.append(("**failed**", "", outcome.failure))
-            for row in rows:
-                text.append("| " + " | ".join(first + row).replace("\n", " ") + " |")
-                first = "", ""
+            worst = nearest_to_its_bound(outcome.figures)
+            shown = outcome.failure or (
+                f"{worst.name}: {number(worst.value)} ({worst.bounds})" if worst else ""
+            )
+            if not outcome.passed:
+                shown = f"**broken** {shown}"
+            cells = f"`{outcome.case.name}`", outcome.case.holds, shown
+            row = " | ".join((*cells, f"{outcome.seconds:.0f}")).replace("\n", " ")
+            text.append(f"| {row} |")
     return "\n".join(text) + "\n"
+
+
+def write_csv(path, outcomes):
+    """All figures, a row each."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(("group", "case", "figure", "value", "least", "largest"))
+        for outcome in outcomes:
+            for f in outcome.figures:
+                bounds = ("" if math.isinf(b) else f"{b:.6g}" for b in (f.least, f.largest))
+                case = outcome.case.group, outcome.case.name
+                table.writerow((*case, f.name, f"{f.value:.6g}", *bounds))

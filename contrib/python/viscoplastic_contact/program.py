@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Running the program and its studies."""
 
+import datetime
 import os
 import shutil
 import subprocess
@@ -63,6 +64,20 @@ def find_executable():
     )
 
 
+def processor():
+    """The model of the CPU and the number of cores this process may use."""
+    model = "unknown processor"
+    try:
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                model = line.split(":", 1)[1].strip()
+                break
+    except OSError:
+        pass
+    cores = len(os.sched_getaffinity(0))
+    return f"{model}, {cores} core" + ("s" if cores != 1 else "")
+
+
 def set_options(overrides):
     """{"Section/Entry": value} as options of the program."""
     return [
@@ -116,6 +131,10 @@ class Program:
     def version(self):
         """The line of --version."""
         return self.call("--version").strip()
+
+    def origin(self):
+        """Where and when measurements are made: version, machine and date."""
+        return f"{self.version()}; {processor()}; {datetime.date.today()}"
 
     def check(self, scene, overrides=None):
         """What --check prints: effects, size, solver and memory."""

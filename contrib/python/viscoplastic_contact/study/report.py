@@ -21,6 +21,7 @@ from .analysis import (
 from .markdown import markdown
 from .price import WorkPrecisionModel, list_prices, price_in_words
 from .record import ESTIMATE_PARTS, FIELD_ERRORS, PHASES, MethodVariant, json_text
+from ..program import processor
 from .runs import replace_file
 from .solvers import SOLVERS, choose_solver
 from .tolerance import ToleranceModel, price_of, tolerance_price_in_words
@@ -94,17 +95,11 @@ def prices_in_words(study):
 
 def origin(runs):
     """Where and when numbers are made, as study.json has it."""
-    about, machine = runs.scene.about, "unknown machine"
-    try:
-        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                machine = line.split(":", 1)[1].strip()
-    except OSError:
-        pass
+    about = runs.scene.about
     return {
         "version": f"{about['version']} ({about['revision']})",
         "ranks": runs.program.ranks,
-        "machine": machine,
+        "machine": processor(),
         "date": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
     }
 

@@ -123,7 +123,7 @@ the runs, as root mean square and at worst. The price list of all three:
 ## Runs to a tolerance
 
 With `Error control/Tolerance` the run chooses meshes and steps by itself
-([method.md](method.md#runs-to-a-tolerance)). Manufactured solutions: the largest
+([error_bar.md](error_bar.md#7-runs-to-a-tolerance)). Manufactured solutions: the largest
 error in the energy norm of all steps, estimated and true, over the largest norm.
 
 {known_to_tolerance}

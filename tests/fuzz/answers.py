@@ -78,7 +78,7 @@ def of_identities(run, stdout, entries):
     if "rounding leaves an error of the solver" in stdout:
         # which is then more than the tolerance, but no more than is refused
         bound = max(bound, min(1e-3, 1.01 * run["algebraic_error"].max()))
-    # beyond this the program has to warn (doc/method.md, section 12)
+    # beyond this the program has to warn (doc/error_bar.md)
     balance = max(1e-8, min(1e3 * bound, 1e-2))
     of_forces = "load_", "reaction_", "friction_force_", "contact_force_"
     forces = [

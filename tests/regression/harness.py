@@ -41,7 +41,7 @@ SERVER = os.environ.get("VISCOPLASTIC_CONTACT_SERVER")
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]
 
 # The algebraic error at which iterations stop at the latest where a scene leaves
-# that to the error bar (doc/method.md, section 12).
+# that to the error bar (doc/error_bar.md).
 COUPLED = 1e-5
 
 # Columns that tell how the numbers were found: they may differ from run to

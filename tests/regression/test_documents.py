@@ -216,8 +216,8 @@ class Approximations(unittest.TestCase):
     """The table of what the program approximates by itself."""
 
     def test_each_names_its_entry_and_where_its_error_counts(self):
-        text = (SOURCE / "doc/method.md").read_text()
-        table = text.split("### What the program approximates by itself")[1].split("###")[0]
+        text = (SOURCE / "doc/error_bar.md").read_text()
+        table = text.split("## 4 What the program approximates by itself")[1].split("##")[0]
         rows = [line.split("|")[1:-1] for line in table.splitlines() if line[:1] == "|"][2:]
         self.assertGreater(len(rows), 15)
         known = entries()

@@ -55,7 +55,7 @@ namespace Viscoplastic
   public:
     /// The estimate is exact to leading order for the mesh of one step, and
     /// knows nothing of what the meshes before have done to z, or of fronts of
-    /// slip between nodes. How large that may be: doc/method.md, section 12.
+    /// slip between nodes. How large that may be: doc/error_bar.md.
     static constexpr double safety = 2.;
     /// What counts at least of the sum without signs where creep moves a point:
     /// contributions that cancel more are no more accurate than that.

@@ -44,7 +44,7 @@ namespace Viscoplastic
   public:
     /**
      * From residual estimator to error in the energy norm: one number for all
-     * scenes. How it was found: doc/method.md, section 12.
+     * scenes. How it was found: doc/notes.md.
      */
     static constexpr double residual_calibration = 0.3;
 

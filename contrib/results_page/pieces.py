@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The parts of the page that are computed, each by itself."""
 
+import csv
 import datetime
 import os
 import sys
@@ -33,7 +34,7 @@ def make(name, runner, images):
     """The Markdown of a piece."""
     style.set_up()
     if name == "manufactured":
-        return manufactured(runner)
+        return manufactured(runner, images.parent / "accuracy_orders.csv")
     if name == "low_regularity":
         return low_regularity(runner)
     if name == "references":
@@ -142,7 +143,7 @@ def facts(scene, law, mesh):
     }
 
 
-def manufactured(runner):
+def manufactured(runner, csv_file):
     cases = manufactured_cases()
     if not cases:
         raise UserError(f"there are no scenes in {SCENES / 'manufactured'}")
@@ -164,7 +165,10 @@ def manufactured(runner):
     if not found:
         raise errors[0]
     rows = [row for rows, _ in found for row in rows]
-    return tables.table(tables.CONVERGENCE_HEADER, rows) + stamp(runner, found[0][1])
+    with open(csv_file, "w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([tables.CONVERGENCE_HEADER, *rows])
+    lines = tables.orders_by_law(rows)
+    return tables.table(tables.ORDERS_HEADER, lines) + stamp(runner, found[0][1])
 
 
 def low_regularity(runner):

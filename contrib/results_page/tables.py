@@ -134,6 +134,69 @@ def convergence_rows(studies, facts):
     return rows
 
 
+ORDERS_HEADER = (
+    "law",
+    "d",
+    "ways",
+    "h and k: u",
+    "stress",
+    "multiplier",
+    "k alone: u",
+    "smallest error of u",
+    "effectivity",
+)
+
+
+def orders_by_law(rows):
+    """Lines of the page, one for each law and dimension, from convergence_rows(): the
+    least and the largest order of all meshes, schemes and laws of friction."""
+    groups = {}
+    for row in rows:
+        cells = dict(zip(CONVERGENCE_HEADER, row))
+        groups.setdefault((cells["law"], cells["d"]), []).append(cells)
+
+    def between(values, digits=2):
+        known = [value for value in values if value is not None]
+        if not known:
+            return UNKNOWN
+        least, largest = (f"{value:.{digits}f}" for value in (min(known), max(known)))
+        return least if least == largest else f"{least} to {largest}"
+
+    def orders_of(group, ladder, norm, least=-np.inf):
+        texts = [cells[ladder].split(" / ")[NORMS.index(norm)] for cells in group]
+        values = [float(text) for text in texts if text != UNKNOWN]
+        return [value for value in values if value >= least]
+
+    lines = []
+    for (law, d), group in sorted(groups.items()):
+        lines.append(
+            [
+                law,
+                d,
+                len(group),
+                *(
+                    between(orders_of(group, "h and k", norm))
+                    for norm in ("error_energy", "error_stress", "error_multiplier")
+                ),
+                # Below, it is the error of the mesh that is left.
+                between(orders_of(group, "k alone", "error_energy", least=0.5)),
+                min(
+                    (cells["smallest error"] for cells in group),
+                    key=lambda text: float(text.split()[0]),
+                ),
+                between(
+                    [
+                        float(word)
+                        for cells in group
+                        for word in cells["effectivity"].split(" to ")
+                        if word != UNKNOWN
+                    ]
+                ),
+            ]
+        )
+    return lines
+
+
 LOW_REGULARITY_HEADER = (
     "scene",
     "what is not smooth",
@@ -211,9 +274,7 @@ def price_cell(found, is_cheapest):
     """Seconds bold where no other variant is cheaper, all italic if predicted."""
     if found is None:
         return UNKNOWN
-    if not found["measured"] and not (
-        found["seconds"] <= LONGEST and (found["memory"] or 0) <= LARGEST
-    ):
+    if not within_reach(found):
         return "*out of reach*"
     time = seconds(found["seconds"])
     rest = ", ".join(
@@ -242,11 +303,30 @@ def best_seconds(prices):
     return min((price["seconds"] for price in measured or prices), default=None)
 
 
+def within_reach(found):
+    measured = found["measured"]
+    return measured or found["seconds"] <= LONGEST and (found["memory"] or 0) <= LARGEST
+
+
 def price_rows(name, study, tolerances, error):
-    """a line for each variant of the method, a column for each tolerance."""
+    """A line for each strategy, of its cheapest scheme at the smallest errors, and a
+    column for each tolerance."""
     variants = study.variants()
     found = [[price(study, variant, eps, error) for eps in tolerances] for variant in variants]
     cheapest = [best_seconds([line[i] for line in found]) for i in range(len(tolerances))]
+
+    def at_smallest_errors(line):
+        return [
+            cell["seconds"] if cell and within_reach(cell) else np.inf
+            for cell in reversed(line)
+        ]
+
+    strategy = VARIANT.index("strategy")
+    lines = {}
+    for variant, line in zip(variants, found):
+        best = lines.get(variant[strategy])
+        if best is None or at_smallest_errors(line) < at_smallest_errors(best[1]):
+            lines[variant[strategy]] = variant, line
     return [
         [
             name,
@@ -256,7 +336,7 @@ def price_rows(name, study, tolerances, error):
                 for cell, best in zip(line, cheapest)
             ),
         ]
-        for variant, line in zip(variants, found)
+        for variant, line in lines.values()
     ]
 
 
@@ -425,19 +505,23 @@ def uniform_seconds(reached, study, targets, error):
     return float(rates.at(reached, np.array(errors), np.array(times)))
 
 
-def beside(own, other):
-    """Seconds of another method, and how many times one's own that is."""
+def beside(own, other, is_measured):
+    """Seconds of another method, and how many times one's own that is; italic if
+    predicted."""
     if np.isnan(other):
         return UNKNOWN, UNKNOWN
     if other > LONGEST:
-        return f"over {LONGEST} s", f"over {number(LONGEST / own, 2)}"
-    return seconds(other), number(other / own, 2)
+        cells = f"over {LONGEST} s", f"over {number(LONGEST / own, 2)}"
+    else:
+        cells = seconds(other), number(other / own, 2)
+    return cells if is_measured else tuple(f"*{cell}*" for cell in cells)
 
 
 def to_tolerance_rows(scene, study, targets, error, scheme):
     """The runs to a tolerance of a study, from large to small ones; the rate is
     that of the error in the number of cells, from the run before."""
     rows, before = [], None
+    measured = np.nanmin(study[error][study["strategy"] == "uniform"])
     variants = [
         variant
         for variant in study.variants()
@@ -468,7 +552,11 @@ def to_tolerance_rows(scene, study, targets, error, scheme):
                     / own
                 ),
                 seconds(own),
-                *beside(own, uniform_seconds(reached, study, targets, error)),
+                *beside(
+                    own,
+                    uniform_seconds(reached, study, targets, error),
+                    reached >= measured,
+                ),
             ]
         )
         before = cells, reached

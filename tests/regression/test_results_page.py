@@ -20,7 +20,8 @@ sys.path.insert(0, str(SOURCE / "contrib"))
 
 from plotting.results import UserError
 from plotting.study import Study
-from results_page import page, pieces, plan, program, references, tables
+from results_page import page, pieces, plan, references, tables
+from viscoplastic_contact.program import set_options
 
 UNIFORM = ("uniform", "forward Euler", "cell means")
 ADAPTIVE = ("adaptive", "forward Euler", "cell means")
@@ -92,6 +93,13 @@ class Tables(Folder):
             # C_h h + C_k k of the finest run
             self.assertEqual(row[9], f"{100 * (0.3 / 64 + 0.2 / 80):.2g} %")
             self.assertEqual(row[10], "0.50 to 2.50")
+        # one line a law; the order in k alone of one way is that of the mesh
+        rows[1][7:9] = ["0.20 / – / 0.10 / –", "1.30 / – / 1.10 / –"]
+        (line,) = tables.orders_by_law(rows)
+        self.assertEqual(len(line), len(tables.ORDERS_HEADER))
+        k_alone = rows[0][7].split(" / ")[0]
+        expected = ["maxwell", "2", 2, "1.00 to 1.30", "1.00 to 1.10", "–", k_alone]
+        self.assertEqual(line, [*expected, rows[0][9], "0.50 to 2.50"])
         study = self.study(known=(), levels=1)
         (row,) = tables.convergence_rows(
             dict.fromkeys(("space", "time", "both"), study), FACTS
@@ -321,7 +329,7 @@ class Page(Folder):
     def check(self, files, overrides):
         """The program accepts the scene."""
         process = subprocess.run(
-            [EXECUTABLE, "--check", *files, *program.set_options(overrides)],
+            [EXECUTABLE, "--check", *files, *set_options(overrides)],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

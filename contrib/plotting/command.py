@@ -23,6 +23,7 @@ from . import (
     hysteresis,
     lines,
     overview,
+    quantities,
     stick_slip,
 )
 from . import study_pictures, style
@@ -379,6 +380,7 @@ def main(arguments=None):
                 f"{options.results} holds no study.csv, so it has no errors to draw"
             )
         results = Results(options.results)
+        quantities.names_of_places = results.names
         if options.units:
             results.units = options.units
         if options.list:

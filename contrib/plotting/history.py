@@ -166,7 +166,7 @@ def label(name):
     match = re.fullmatch(r"(reaction|point)_?(\d+)_([xyz])", name)
     if match:
         what = "boundary" if match.group(1) == "reaction" else "point"
-        return f"{what} {match.group(2)}, ${match.group(3)}$"
+        return f"{quantities.place(what, match.group(2))}, ${match.group(3)}$"
     return quantities.plain(re.sub("^max_", "largest ", name).replace("_", " "))
 
 

@@ -12,6 +12,7 @@ from . import style
 from .expression import evaluate
 from .history import window
 from .layout import number_bar
+from .quantities import place
 from .results import NoPicture, UserError
 from .units import Units, show
 
@@ -61,9 +62,9 @@ def displacements(results, statistics):
             continue
         role = entries.get((key[0], "Role"))
         if (role, key[1]) == ("displacement", "Displacement"):
-            name, symbol = f"boundary{match.group(1)}", "displacement of boundary"
+            name, symbol = f"boundary{match.group(1)}", "displacement of {}"
         elif (role, key[1]) == ("contact", "Foundation motion"):
-            name, symbol = f"foundation{match.group(1)}", "motion of foundation"
+            name, symbol = f"foundation{match.group(1)}", "motion of the foundation at {}"
         else:
             continue
         for axis, component in zip("xyz", text.split(";")):
@@ -73,12 +74,14 @@ def displacements(results, statistics):
                 values = evaluate(component, t)
             except UserError:
                 continue
-            found[f"{name}_{axis}"] = values, f"{symbol} {match.group(1)}, $U_{axis}$"
+            found[f"{name}_{axis}"] = values, (
+                f"{symbol.format(place('boundary', match.group(1)))}, $U_{axis}$"
+            )
     for name, values in statistics.items():
         match = re.fullmatch(r"point(\d+)_([xyz])", name)
         if match:
             found[name] = values, (
-                f"displacement of point {match.group(1)}, $u_{match.group(2)}$"
+                f"displacement of {place('point', match.group(1))}, $u_{match.group(2)}$"
             )
     return found
 
@@ -94,7 +97,8 @@ def forces(statistics):
         match = re.fullmatch(r"reaction_(\d+)_([xyz])", name)
         if match:
             found[name] = values, (
-                f"reaction of boundary {match.group(1)} on the body, $R_{match.group(2)}$"
+                f"reaction of {place('boundary', match.group(1))} on the body, "
+                f"$R_{match.group(2)}$"
             )
     return found
 

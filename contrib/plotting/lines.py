@@ -82,7 +82,7 @@ def draw(results, options):
     units = Units.of(results)
     length = units.unit("length", [line["s"].max() for line in lines])
     for i, (line, names) in enumerate(zip(lines, wanted)):
-        panels[0, i].set_title(f"line {i}")
+        panels[0, i].set_title(quantities.place("line", i))
         for axes, name in zip(panels[:, i], rows):
             if name in names:
                 draw_panel(axes, line, name, units, length)

@@ -47,14 +47,14 @@ COLUMNS = [
     ("contact_force_([xyz])", "contact force on the foundation, ${0}$", "force"),
     ("max_pressure", "largest contact pressure", "stress"),
     ("max_gap", "largest gap", "length"),
-    (r"reaction_(\d+)_([xyz])", "reaction of boundary {0} on the body, ${1}$", "force"),
+    (r"reaction_(\d+)_([xyz])", "reaction of {boundary} on the body, ${1}$", "force"),
     (
         r"reaction_(point|edge)(\d+)_([xyz])",
         "reaction of support {0} {1} on the body, ${2}$",
         "force",
     ),
     ("load_([xyz])", "load on the body, ${0}$", "force"),
-    (r"point(\d+)_([xyz])", "displacement of point {0}, ${1}$", "length"),
+    (r"point(\d+)_([xyz])", "displacement of {point}, ${1}$", "length"),
     ("max_displacement", "largest displacement", "length"),
     ("max_stick_slip", None, "length"),
     ("critical_cell_[xyz]", None, "length"),
@@ -73,6 +73,16 @@ COLUMNS = [
     (r"estimate_\w+|estimator|energy_norm|error_energy", None, "energy norm"),
     ("exact_energy|error_memory|time_indicator", None, "energy norm"),
 ]
+
+
+# What the scene that is drawn calls its places: {"boundary 3": "roof"}.
+names_of_places = {}
+
+
+def place(kind, number):
+    """The name of `boundary' 3, or `boundary 3'."""
+    text = f"{kind} {number}"
+    return plain(names_of_places.get(text, text))
 
 
 def plain(text):
@@ -109,12 +119,17 @@ def column(name):
     for pattern, template, kind in COLUMNS:
         match = re.fullmatch(pattern, name)
         if match:
-            return (template or words).format(*match.groups()), kind
+            places = {
+                kind: place(kind, match.group(1))
+                for kind in ("boundary", "point")
+                if f"{{{kind}}}" in (template or "")
+            }
+            return (template or words).format(*match.groups(), **places), kind
     # A field at a point: point0_stress_xx
     match = re.fullmatch(r"point(\d+)_(\w+)", name)
     if match:
         label, kind = field(match.group(2))
-        return f"{label} at point {match.group(1)}", kind
+        return f"{label} at {place('point', match.group(1))}", kind
     return words, None
 
 

@@ -104,6 +104,10 @@ namespace Viscoplastic
   MaterialParameters::declare(ParameterHandler                  &prm,
                               const std::vector<LawDescription> &laws)
   {
+    prm.add_parameter("Name",
+                      name,
+                      "What the material is called in what a run prints, as "
+                      "for boundaries.");
     prm.add_parameter("Young's modulus",
                       youngs_modulus,
                       "E > 0 as an expression of position; taken at the center "
@@ -263,6 +267,12 @@ namespace Viscoplastic
   void
   BoundaryParameters::declare(ParameterHandler &prm)
   {
+    prm.add_parameter("Name",
+                      name,
+                      "What the piece is called in what a run prints, in its "
+                      "record and in entries such as `Error control/Quantity', "
+                      "as in `roof'; by default `boundary' and its id, or the "
+                      "name of its physical group in a mesh file of Gmsh.");
     prm.add_parameter(
       "Role",
       role,

@@ -143,7 +143,8 @@ namespace Viscoplastic
       "of the reaction of a boundary, or of the displacement of "
       "one of `Output/Points', as in `friction_dissipation', "
       "`friction_force_x', `contact_force_y', "
-      "`reaction_1_y', `point0_x'. `Tolerance' is that of this "
+      "`reaction_1_y', `point0_x', or with names `reaction_y of roof', "
+      "`displacement_x of crown'. `Tolerance' is that of this "
       "quantity then, relative to its largest value, and "
       "meshes are refined where it feels their errors; all steps "
       "are made twice, first to find one mesh for all times. "
@@ -318,7 +319,8 @@ namespace Viscoplastic
                       points,
                       "Points of the body, coordinates separated by commas and "
                       "points by semicolons, whose displacement goes into "
-                      "statistics.csv. Unit: length.");
+                      "statistics.csv; with a name if you like, as in `crown = "
+                      "0, 2.5; floor = 0, -2.5'. Unit: length.");
     add_choices(
       prm,
       "Point fields",
@@ -333,7 +335,8 @@ namespace Viscoplastic
                       lines,
                       "Straight lines through the body as `begin : end : "
                       "number of points', separated by semicolons, such as "
-                      "`0, 0 : 2, 0 : 101'. Each gets a file, line_0.csv and "
+                      "`0, 0 : 2, 0 : 101' or `wall = 0, 0 : 2, 0 : 101'. "
+                      "Each gets a file, line_0.csv and "
                       "so on, with the displacement at equal distances. Unit: "
                       "length.");
     add_choices(prm,

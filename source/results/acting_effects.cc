@@ -134,7 +134,7 @@ namespace Viscoplastic
             entries +=
               (entries.empty() ? "'" : " and '") + section + '/' + name + "'";
         if (!entries.empty() && loads.count(id) == 0)
-          result.push_back("the load on " + section +
+          result.push_back("the load on " + scene.names.of("boundary", id) +
                            " has never acted: what " + entries +
                            " gives has been zero everywhere and at all "
                            "times, and " +

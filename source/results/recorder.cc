@@ -302,7 +302,7 @@ namespace Viscoplastic
   Recorder<dim>::print(std::ostream &out, const RunSummary<dim> *coarser) const
   {
     out << '\n';
-    run.print(out, scene.parameters.units, coarser);
+    run.print(out, scene.parameters.units, scene.names, coarser);
     const double n = run.n_steps;
     out << std::setprecision(3) << "Iterations per step: ";
     if (may_be_implicit())

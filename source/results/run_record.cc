@@ -126,6 +126,8 @@ namespace Viscoplastic
       record["units"] = {{"length", units.length.name},
                          {"time", units.time.name},
                          {"stress", units.stress.name}};
+    for (const auto &[place, name] : scene.names.names)
+      record["names"][place.text()] = name;
     // parameters.prm has them as they were written.
     if (const auto entries = scene.parameters.entries_with_units();
         !entries.empty())

@@ -5,10 +5,7 @@
 
 #include <cmath>
 #include <iomanip>
-#include <regex>
 #include <sstream>
-#include <utility>
-#include <vector>
 
 namespace Viscoplastic
 {
@@ -56,30 +53,12 @@ namespace Viscoplastic
 
 
 
-    /// The words for a quantity of statistics.csv.
-    std::string
-    in_words(const std::string &column)
-    {
-      static const std::vector<std::pair<std::regex, std::string>> patterns{
-        {std::regex("reaction_(\\d+)"), "reaction of boundary $1"},
-        {std::regex("reaction_(.*)"), "reaction at $1"},
-        {std::regex("point(\\d+)"), "displacement of point $1"},
-        {std::regex("slip_area"), "slipping area"},
-        {std::regex("max_"), "largest "},
-        {std::regex("_"), " "}};
-      std::string text = column;
-      for (const auto &[pattern, words] : patterns)
-        text = std::regex_replace(text, pattern, words);
-      return text;
-    }
-
-
-
     /// The quantities at the end of the run.
     template <int dim>
     void
     print_end(std::ostream          &out,
               const Units           &units,
+              const PlaceNames      &names,
               const RunSummary<dim> &run,
               const RunSummary<dim> *coarser)
     {
@@ -103,7 +82,7 @@ namespace Viscoplastic
                                  coarser->at_end[e].values[i]);
             }
           print_row(out,
-                    in_words(entry.name),
+                    names.words(entry.name),
                     text.str() + units.suffix(entry.quantity, dim));
         }
       if (run.error_estimate)
@@ -231,6 +210,7 @@ namespace Viscoplastic
     void
     print_errors(std::ostream          &out,
                  const Units           &units,
+                 const PlaceNames      &names,
                  const RunSummary<dim> &run)
     {
       const WithUnits<dim> with{units};
@@ -256,7 +236,7 @@ namespace Viscoplastic
       print_parts(out, run, *run.errors);
       if (!run.quantity.empty())
         {
-          out << "Estimated error of " << run.quantity
+          out << "Estimated error of " << names.quantity(run.quantity)
               << ", largest at t = " << with.time(run.quantity_errors.t)
               << ", and relative to its largest value:\n";
           print_parts(out, run, run.quantity_errors);
@@ -273,12 +253,13 @@ namespace Viscoplastic
   void
   RunSummary<dim>::print(std::ostream     &out,
                          const Units      &units,
+                         const PlaceNames &names,
                          const RunSummary *coarser) const
   {
-    print_end(out, units, *this, coarser);
+    print_end(out, units, names, *this, coarser);
     print_largest(out, units, *this);
     print_steps(out, *this);
-    print_errors(out, units, *this);
+    print_errors(out, units, names, *this);
   }
 
 

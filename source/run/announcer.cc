@@ -106,7 +106,8 @@ namespace Viscoplastic
     for (const types::boundary_id id : discretization.face->held_boundaries())
       if (held_faces.insert(id).second)
         console.remark(
-          "Note: nothing slips or opens on boundary " + std::to_string(id) +
+          "Note: nothing slips or opens on " +
+          discretization.scene().names.of("boundary", id) +
           ", although it has friction or unilateral contact: other conditions hold all of its nodes "
           "on the present mesh; refine it there, or release another boundary.");
   }

@@ -232,7 +232,7 @@ namespace Viscoplastic
       {
         const DataSampler<dim> here(places_on_boundary(triangulation, id),
                                     scene);
-        const std::string      where = " of boundary " + std::to_string(id);
+        const std::string      where = " of " + scene.names.of("boundary", id);
         if (condition.traction)
           loads.add(here.largest(*condition.traction, dim),
                     "the traction" + where,
@@ -279,7 +279,7 @@ namespace Viscoplastic
     for (const auto &[material, modulus, ratio, time] :
          ranges_of_materials(discretization, stress.value))
       {
-        out << material->section
+        out << material->name
             << (material->is_anisotropic() ? ": anisotropic, in the mean E = " :
                                              ": E = ")
             << modulus.text() << stress_unit << ", nu = " << ratio.text()

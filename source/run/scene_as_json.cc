@@ -227,6 +227,8 @@ namespace Viscoplastic
       add_mesh<3>(scene, communicator, json);
     const auto data                = SceneData::of(scene, communicator);
     json["volumetric_integration"] = name_of(data->volumetric_integration());
+    for (const auto &[place, name] : PlaceNames(scene).names)
+      json["names"][place.text()] = name;
     if (with_means)
       Means(scene, *data, json).add_all();
     return json_text(json);

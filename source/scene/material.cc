@@ -115,6 +115,7 @@ namespace Viscoplastic
                           const std::vector<LawDescription> &laws,
                           const bool                         is_absent)
     : section(section)
+    , name(parameters.name.empty() ? section : parameters.name)
     , law_name(is_absent ? "elastic" : parameters.law)
     , is_absent(is_absent)
     , added_at(read_time(parameters.added_at,

@@ -42,29 +42,22 @@ namespace Viscoplastic
 
     /// The integral over what @p place names, without fields.
     OutputIntegral
-    read_domain(const std::string &place)
+    read_domain(const std::string &place, const PlaceNames &names)
     {
       using Domain = OutputIntegral::Domain;
-      OutputIntegral    result;
-      const std::size_t blank = place.find(' ');
-      const std::string kind  = place.substr(0, blank);
-      bool              fits  = kind == "body" && blank == std::string::npos;
-      if ((kind == "boundary" || kind == "material") &&
-          blank != std::string::npos)
-        {
-          result.domain =
-            kind == "boundary" ? Domain::boundary : Domain::material;
-          const std::string id = Utilities::trim(place.substr(blank));
-          fits                 = !id.empty() && id.size() < 9 &&
-                 id.find_first_not_of("0123456789") == std::string::npos;
-          if (fits)
-            result.id = Utilities::string_to_int(id);
-        }
-      AssertThrow(fits,
+      OutputIntegral result;
+      if (place == "body")
+        return result;
+      const auto found = names.find(place);
+      AssertThrow(found &&
+                    (found->kind == "boundary" || found->kind == "material"),
                   ExcMessage("'Output/Integrals': '" + excerpt(place) +
                              "' is no place to integrate over; write "
                              "`boundary ID: fields', `material ID: fields' or "
-                             "`body: fields'."));
+                             "`body: fields', or the name of the place."));
+      result.domain =
+        found->kind == "boundary" ? Domain::boundary : Domain::material;
+      result.id = found->number;
       return result;
     }
   } // namespace
@@ -105,7 +98,8 @@ namespace Viscoplastic
     std::vector<Point<dim>> result;
     for (const std::string &point : Utilities::split_string_list(text, ';'))
       if (!point.empty())
-        result.push_back(parse_point<dim>(point, "Output/Points"));
+        result.push_back(
+          parse_point<dim>(split_name(point).second, "Output/Points"));
     return result;
   }
 
@@ -120,7 +114,8 @@ namespace Viscoplastic
       {
         if (line.empty())
           continue;
-        const auto parts = Utilities::split_string_list(line, ':');
+        const auto parts =
+          Utilities::split_string_list(split_name(line).second, ':');
         AssertThrow(parts.size() == 3,
                     ExcMessage("'Output/Lines': '" + excerpt(line) +
                                "' is no line; write `begin : end : number of "
@@ -152,7 +147,7 @@ namespace Viscoplastic
 
 
   std::vector<OutputIntegral>
-  read_output_integrals(const std::string &text)
+  read_output_integrals(const std::string &text, const PlaceNames &names)
   {
     std::vector<OutputIntegral> result;
     for (const std::string &entry : Utilities::split_string_list(text, ';'))
@@ -161,7 +156,7 @@ namespace Viscoplastic
           continue;
         const std::size_t colon = entry.find(':');
         OutputIntegral    integral =
-          read_domain(Utilities::trim(entry.substr(0, colon)));
+          read_domain(Utilities::trim(entry.substr(0, colon)), names);
         const std::string fields =
           colon == std::string::npos ? "" : entry.substr(colon + 1);
         for (const std::string &field : Utilities::split_string_list(fields))

@@ -30,6 +30,7 @@ namespace Viscoplastic
   template <int dim>
   Scene<dim>::Scene(const Parameters &parameters)
     : parameters(parameters)
+    , names(parameters)
     , schedule(parameters.time.phases)
     , exact_solution(make_exact_solution<dim>(parameters.exact_solution,
                                               schedule.end_time()))
@@ -57,11 +58,12 @@ namespace Viscoplastic
     const OutputParameters &output = parameters.output;
     output_points                  = read_output_points<dim>(output.points);
     output_lines                   = read_output_lines<dim>(output.lines);
-    output_integrals               = read_output_integrals(output.integrals);
+    output_integrals = read_output_integrals(output.integrals, names);
     if (!parameters.error_control.quantity.empty())
-      quantity = quantity_of_interest(parameters.error_control.quantity,
-                                      boundary,
-                                      output_points.size());
+      quantity =
+        quantity_of_interest(names.column(parameters.error_control.quantity),
+                             boundary,
+                             output_points.size());
   }
 
 
@@ -274,7 +276,7 @@ namespace Viscoplastic
     for (const auto &material : materials)
       {
         const std::string of =
-          materials.size() > 1 ? " of " + material->section : "";
+          materials.size() > 1 ? " of " + material->name : "";
         if (material->is_anisotropic())
           result.push_back("anisotropic elasticity" + of);
         if (!material->law)
@@ -289,15 +291,21 @@ namespace Viscoplastic
       result.push_back("time integration by " +
                        name_of(parameters.time.scheme));
     const auto boundaries = [&](const auto &condition) {
-      std::string ids;
+      std::string pieces, ids;
       for (const auto &[id, data] : boundary)
         if (condition(data))
-          ids += (ids.empty() ? "" : ", ") + std::to_string(id);
-      return ids;
+          {
+            const bool   has_name = names.has("boundary", id);
+            std::string &list     = has_name ? pieces : ids;
+            list += (list.empty() ? "" : ", ") +
+                    (has_name ? names.of("boundary", id) : std::to_string(id));
+          }
+      return pieces + (pieces.empty() || ids.empty() ? "" : " and ") +
+             (ids.empty() ? "" : "boundary " + ids);
     };
-    const auto add = [&](const std::string &name, const std::string &ids) {
-      if (!ids.empty())
-        result.push_back(name + " on boundary " + ids);
+    const auto add = [&](const std::string &name, const std::string &pieces) {
+      if (!pieces.empty())
+        result.push_back(name + " on " + pieces);
     };
     const auto add_contact = [&](const std::string &name,
                                  const ContactLaw   contact_law,
@@ -375,7 +383,7 @@ namespace Viscoplastic
           stages << (stages.str().empty() ? "" : " and")
                  << " removed at t = " << material.removed_at << time_unit;
         if (!stages.str().empty())
-          result.push_back(material.section + stages.str());
+          result.push_back(material.name + stages.str());
       }
     std::ostringstream tolerance;
     tolerance << "meshes and steps for an error of "

@@ -231,8 +231,11 @@ namespace Viscoplastic
                                ", but there is no `subsection " + section +
                                "'; the mesh has the material ids " + list(ids) +
                                "."));
+        MaterialParameters named = given->second;
+        if (names.has("material", id))
+          named.name = names.of("material", id);
         materials.push_back(std::make_unique<const Material<dim>>(
-          section, given->second, parameters.handler, parameters.laws));
+          section, named, parameters.handler, parameters.laws));
         entries[id] = {materials.back().get()};
       }
     for (const auto &pair : parameters.materials)

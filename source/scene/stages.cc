@@ -184,7 +184,7 @@ namespace Viscoplastic
     std::vector<std::string> result;
     for (const auto &[id, material] : material_of_id)
       if (material->is_absent)
-        result.push_back(material->section);
+        result.push_back(material->name);
     return result;
   }
 

@@ -92,10 +92,10 @@ class NeverActed(TestCase):
                 "Loads/Body force": "0; t - t",
             },
             (
-                "load on Boundary 0 has never acted: what 'Boundary 0/Traction' gives",
+                "load on boundary 0 has never acted: what 'Boundary 0/Traction' gives",
                 "the body force has never acted: 'Loads/Body force'",
             ),
-            ("load on Boundary 1",),
+            ("load on boundary 1",),
             ranks=2,
         )
 

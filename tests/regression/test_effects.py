@@ -85,6 +85,7 @@ set Role = traction
 set Traction = 0; 0
 end
 subsection Boundary 2
+set Name = foot
 set Role = contact
 set Friction law = tresca
 set Friction bound = 0.08 + 0*x
@@ -136,9 +137,9 @@ class Variants(TestCase):
                 "traction on Boundary 0: none (Boundary 0/Traction=0; 0)",
                 "traction on Boundary 0 over time: its mean (Boundary 0/Traction=0.15; 0,"
                 "Initial state/Equilibrate=true)",
-                "friction on Boundary 2: none (Boundary 2/Friction bound=0)",
-                "slip on Boundary 2: never (Boundary 2/Friction bound=1e6*(0.08 + 0*x))",
-                "friction bound on Boundary 2 over space: its mean (Boundary 2/Friction "
+                "friction on foot: none (Boundary 2/Friction bound=0)",
+                "slip on foot: never (Boundary 2/Friction bound=1e6*(0.08 + 0*x))",
+                "friction bound on foot over space: its mean (Boundary 2/Friction "
                 "bound=0.08)",
                 "displacement on Boundary 3: none (Boundary 3/Displacement=free; 0)",
                 "displacement on Boundary 3 over time: its mean (Boundary 3/Displacement="

@@ -6,6 +6,7 @@ import sys
 import tempfile
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 import matplotlib
 import numpy as np
@@ -17,7 +18,7 @@ sys.path.insert(0, str(SOURCE / "contrib"))
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-from plotting import hysteresis, overview, quantities, style
+from plotting import history, hysteresis, overview, quantities, style
 from plotting.body_base import Scale, folded
 from plotting.geometry import corner_volumes
 from plotting.results import NoPicture, Results, UserError, read_statistics
@@ -124,6 +125,13 @@ class Handy(TestCase):
             quantities.column("reaction_3_y"),
             ("reaction of boundary 3 on the body, $y$", "force"),
         )
+        named = {"boundary 3": "roof", "point 1": "crown"}
+        with mock.patch.object(quantities, "names_of_places", named):
+            self.assertIn("reaction of roof", quantities.column("reaction_3_y")[0])
+            self.assertIn("displacement of crown", quantities.column("point1_x")[0])
+            self.assertIn("displacement of point 0", quantities.column("point0_x")[0])
+            self.assertTrue(quantities.column("point1_stress_xx")[0].endswith("at crown"))
+            self.assertEqual(history.label("reaction_3_x"), "roof, $x$")
         self.assertEqual(quantities.column("t")[1], "time")
         self.assertEqual(quantities.field("stress_yy")[1], "stress")
         self.assertIn("tension positive", quantities.field("stress_yy")[0])

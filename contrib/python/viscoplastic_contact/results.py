@@ -242,6 +242,13 @@ class Results:
             return {}
         return self.info.get("units") or {}
 
+    @cached_property
+    def names(self):
+        """What the scene calls its places, as {"boundary 3": "roof", ...}."""
+        if not (self.directory / "run.json").exists():
+            return {}
+        return self.info.get("names", {})
+
     def vector(self, prefix):
         """The columns prefix_x, prefix_y(, prefix_z) as one array (step, axis);
         vector("point0") is the displacement of the first of `Output/Points'."""

@@ -48,6 +48,7 @@ namespace Viscoplastic
   /// The entries of one material; those of its law are read by the law itself.
   struct MaterialParameters
   {
+    std::string name;
     std::string youngs_modulus = "1";
     std::string poissons_ratio = "0.3";
     std::string voigt_matrix;
@@ -111,6 +112,7 @@ namespace Viscoplastic
 
   struct BoundaryParameters
   {
+    std::string name;
     std::string role = "not given";
     std::string displacement, traction, pressure;
     std::string normal_stiffness, tangential_stiffness;

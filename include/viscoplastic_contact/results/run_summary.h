@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/error/error_estimate.h>
 #include <viscoplastic_contact/error/solution_norms.h>
 #include <viscoplastic_contact/results/statistics.h>
+#include <viscoplastic_contact/scene/place_names.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
 
 #include <map>
@@ -99,10 +100,12 @@ namespace Viscoplastic
 
     /// @p coarser: of a run with twice the mesh width and twice the time steps,
     /// or null. The difference is the uncertainty of each quantity, by first
-    /// order convergence. Numbers have their units if @p units are declared.
+    /// order convergence. Numbers have their units if @p units are declared,
+    /// and places their names.
     void
     print(std::ostream     &out,
           const Units      &units,
+          const PlaceNames &names,
           const RunSummary *coarser = nullptr) const;
   };
 

@@ -51,7 +51,10 @@ namespace Viscoplastic
 
     static constexpr double absent_stiffness = 1e-6;
 
-    const std::string section, law_name;
+    const std::string section;
+    /// What people are told: `Material/Name', or the section.
+    const std::string name;
+    const std::string law_name;
     /// Whether this stands for the material where it is absent.
     const bool is_absent;
     /// When the material comes and goes; -infinity and infinity for one that is

@@ -4,6 +4,7 @@
 #include <deal.II/base/point.h>
 
 #include <viscoplastic_contact/parameters/choices.h>
+#include <viscoplastic_contact/scene/place_names.h>
 
 #include <set>
 #include <string>
@@ -66,5 +67,5 @@ namespace Viscoplastic
 
   /// The integrals of `Output/Integrals'.
   std::vector<OutputIntegral>
-  read_output_integrals(const std::string &text);
+  read_output_integrals(const std::string &text, const PlaceNames &names);
 } // namespace Viscoplastic

@@ -10,6 +10,7 @@
 #include <viscoplastic_contact/scene/exact_solution.h>
 #include <viscoplastic_contact/scene/material.h>
 #include <viscoplastic_contact/scene/output_places.h>
+#include <viscoplastic_contact/scene/place_names.h>
 #include <viscoplastic_contact/scene/quantity_of_interest.h>
 #include <viscoplastic_contact/scene/support.h>
 
@@ -218,6 +219,7 @@ namespace Viscoplastic
     }
 
     const Parameters &parameters;
+    const PlaceNames  names;
     TimeSchedule      schedule;
     /// The exact solution; null if none is known.
     std::unique_ptr<ExactSolution<dim>>                  exact_solution;

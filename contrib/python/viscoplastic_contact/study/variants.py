@@ -116,6 +116,10 @@ class Variants:
         ]
         return {number: f"{kind} {number}" for number in sorted(ids)}
 
+    def title(self, section):
+        """What the scene calls it."""
+        return self.scene.about.get("names", {}).get(section.lower(), section)
+
     def add(self, effect, instead, *overrides, has_outputs=False):
         self.result.append(
             EffectVariant(
@@ -160,7 +164,7 @@ class Variants:
     def add_materials(self):
         sections = self.materials()
         for section in sections:
-            self.add_material(section, f" of {section}" if len(sections) > 1 else "")
+            self.add_material(section, f" of {self.title(section)}" if len(sections) > 1 else "")
         # All of the first one.
         first = sections[0] + "/"
         same = [
@@ -171,7 +175,7 @@ class Variants:
             if self.values[f"{other}/{path[len(first):]}"] != text
         ]
         if same:
-            self.add("different materials", f"{sections[0]} everywhere", *same)
+            self.add("different materials", f"{self.title(sections[0])} everywhere", *same)
 
     def add_material(self, section, of):
         law = self.scene[f"{section}/Law"]
@@ -232,7 +236,7 @@ class Variants:
         def data(name):
             return self.values[f"{section}/{name}"]
 
-        on, role = f" on {section}", data("Role")
+        on, role = f" on {self.title(section)}", data("Role")
         is_contact = role == "contact"
         friction, contact = (
             data(f"{name} law") if is_contact else ""

@@ -224,7 +224,7 @@ def draw_loop(results, t, displacement, force, plane):
     )
     axes.add_collection(path)
     axes.plot(u, f, color="none")  # the legend avoids lines, not collections
-    axes.plot(u[0], f[0], "o", ms=7, mfc="white", mec="black", label="begin")
+    axes.plot(u[0], f[0], "o", ms=7, mfc="white", mec="black", label="start")
     axes.plot(u[-1], f[-1], "s", ms=6, color="black", label="end")
     axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
     axes.axvline(0.0, color="#aaaaaa", lw=0.6, zorder=0)

@@ -298,8 +298,11 @@ def draw(axes, body, supports):
                     hatched.append(HATCHED[role])
                     lines += found
             elif role in HATCHED:
-                hatched.append(HATCHED[role])
-                lines.append(hatching(piece, size, GAP.get(role, 0.0)))
+                found = hatching(piece, size, GAP.get(role, 0.0))
+                # In a small hole the lines would cross.
+                if np.ptp(found[:, 0], axis=0).max() > 6 * HATCH * size:
+                    hatched.append(HATCHED[role])
+                    lines.append(found)
             elif role == "symmetry":
                 place, normals, _ = piece.sample(4 * SPACING * size)
                 rollers.append(place + ROLLER * size * normals)

@@ -215,7 +215,7 @@ namespace Viscoplastic
     const double size = size_of_body(discretization);
     ValueRange   modulus;
     for (const auto &ranges : ranges_of_materials(discretization, 0.))
-      modulus.add(ranges.youngs_modulus.largest);
+      modulus.add(ranges.youngs_modulus.least);
 
     const DataSampler<dim> body(places_in_body(triangulation), scene);
     KeepLargest            loads, bounds;
@@ -255,7 +255,8 @@ namespace Viscoplastic
         for (const auto &component : condition.displacement)
           if (component)
             displacement = std::max(displacement, here.largest(*component));
-        loads.add(modulus.largest * displacement / size,
+        // Stiff parts move with it.
+        loads.add(modulus.least * displacement / size,
                   "Young's modulus times the displacement" + where +
                     " over the size of the body",
                   true);

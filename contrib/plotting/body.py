@@ -3,6 +3,7 @@
 
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.patches import Rectangle
 
 from . import style, supports
 from .body_3d import Body3D
@@ -55,6 +56,8 @@ class Body2D(Body):
         low, high = self.limits()
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
+        if self.scale.window:
+            self.draw_whole(axes, outline)
         show(axes.xaxis, "$x$", self.scale.length)
         show(axes.yaxis, "$y$", self.scale.length)
         for side in ("top", "right"):
@@ -94,8 +97,28 @@ class Body2D(Body):
                 )
             )
 
+    def draw_whole(self, axes, outline):
+        """The whole body in a corner, with the window; nothing beyond the latter."""
+        for artist in axes.get_children():
+            if artist is not axes.patch and artist not in axes.spines.values():
+                artist.set_clip_on(True)
+        low, high = self.limits()
+        for text in axes.texts:
+            place = text.get_position()
+            if text.get_transform() == axes.transData:
+                text.set_visible(all(low <= place) and all(place <= high))
+        whole = axes.inset_axes([0.72, 0.7, 0.26, 0.28])
+        whole.add_collection(LineCollection(outline, colors=style.OUTLINE, linewidths=0.8))
+        whole.add_patch(Rectangle(low, *(high - low), fill=False, ec="#d55e00", lw=1.2))
+        whole.autoscale_view()
+        whole.set_aspect("equal")
+        whole.set_xticks([])
+        whole.set_yticks([])
+
     def limits(self):
         """Corners of what is drawn: the body with its supports and loads."""
+        if self.scale.window:
+            return np.array(self.scale.window)
         low, high = self.scale.low[:2], self.scale.high[:2]
         if self.scale.supports:
             below, above = supports.reach(self.scale.supports, self.scale)

@@ -93,6 +93,7 @@ class Scale:
     def __init__(self, results, indices, name, options):
         self.name = name
         self.labels = options.label
+        self.window = options.window
         bodies = [results.body(index) for index in indices]
         self.magnification = options.magnification or self.chosen_magnification(bodies)
         self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)

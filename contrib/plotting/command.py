@@ -137,6 +137,15 @@ def view(text):
     return elevation, azimuth
 
 
+def window(text):
+    """Lower left and upper right corner."""
+    parts = [finite(part) for part in text.split(",")]
+    low, high = parts[:2], parts[2:]
+    if len(parts) != 4 or low[0] >= high[0] or low[1] >= high[1]:
+        raise ValueError
+    return low, high
+
+
 def parse(arguments):
     parser = argparse.ArgumentParser(
         prog="contrib/plot",
@@ -228,6 +237,13 @@ def parse(arguments):
         default=[],
         metavar="X,Y[,Z]=TEXT",
         help="words at a place of the body; in 3D also on the contact face",
+    )
+    how.add_argument(
+        "--window",
+        type=window,
+        metavar="X,Y,X,Y",
+        help="the part of a plane body between these two corners, with the whole "
+        "beside it",
     )
     how.add_argument(
         "--view",

@@ -247,8 +247,8 @@ def draw_planes(contact, body, scale):
     # Rows of panels for each plane: of friction, and of what acts along the normal.
     rows = [["slip", "traction", "states"] if friction else ["slip"]]
     if is_unilateral(contact):
-        of_normal = ["contact_pressure", "gap"]
-        rows = [*rows, of_normal] if friction else [[*of_normal, "slip"]]
+        rows = [["contact_pressure", "gap"], ["slip", "states"], ["traction"]]
+        rows = rows if friction else [[*rows[0], "slip"]]
     columns = max(map(len, rows))
     aspect = shown[0].aspect()
     if shown[0].is_flat():
@@ -272,6 +272,8 @@ def draw_planes(contact, body, scale):
     }
     shades["traction"].map = matplotlib.colormaps["cividis"]
     shades["contact_pressure"].map = matplotlib.colormaps["cividis"]
+    # White where the body touches.
+    shades["gap"].map = matplotlib.colormaps["YlGnBu"]
     words = {
         "slip": r"slip since $t=0$, $|s_\tau|$",
         "traction": r"tangential traction $|\sigma_\tau|$",

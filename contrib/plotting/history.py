@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import quantities, style
-from .results import NoPicture
+from .results import NoPicture, UserError
 from .units import Unit, Units, show
 
 
@@ -193,14 +193,20 @@ def window(statistics, options):
 def draw(results, options):
     statistics = window(results.statistics, options)
     if options.columns:
-        for name in options.columns:
+        # Columns that are joined by + share a panel.
+        groups = [group.split("+") for group in options.columns]
+        for name in sum(groups, []):
             results.column(name)
-        panels = [(alone(name), [name]) for name in options.columns]
-        names = options.columns[:2]
+        panels = [
+            (alone(group[0]), group) if len(group) == 1 else together(group)
+            for group in groups
+        ]
+        names = sum(groups, [])[:2]
         labels = [quantities.column(name)[0] for name in names]
         what = ", ".join(map(quantities.in_titles, labels))
-        if len(options.columns) > len(names):
-            what = "some quantities over time"
+        if len(sum(groups, [])) > len(names):
+            one = panels[0][0].label if len(panels) == 1 else "some quantities"
+            what = f"{one} over time"
         return draw_panels(results, panels, statistics, what)
     panels = those_with_something(PANELS, statistics)
     return draw_panels(results, panels, statistics, "forces, energies, errors over time")
@@ -210,6 +216,15 @@ def alone(name):
     """A panel for one column, whose label says all of it."""
     words, _ = quantities.column(name)
     return Panel(textwrap.fill(words, 22), [name], steps=name.endswith("_area"))
+
+
+def together(names):
+    """A panel for several columns of one kind, and these."""
+    kinds = {quantities.column(name)[1] for name in names}
+    if len(kinds) > 1:
+        raise UserError(f"{'+'.join(names)}: these columns have not the same unit")
+    words = quantities.in_titles(quantities.column(names[0])[0])
+    return Panel(words.split(" of ")[0], []), names
 
 
 def those_with_something(panels, statistics):

@@ -166,7 +166,7 @@ class Figures(TestCase):
         plt.close("all")
 
     def draw(self, results, view=VIEW):
-        options = SimpleNamespace(magnification=None, view=view, label=[])
+        options = SimpleNamespace(magnification=None, view=view, label=[], window=None)
         scale = fields.scale(results, [0], options, "von_mises")
         figure = fields.draw(results, 0, options, scale)
         figure.draw_without_rendering()
@@ -220,7 +220,7 @@ class Figures(TestCase):
     def test_frames_have_the_same_ranges(self):
         """A slip of 2e-5 is drawn shorter than one of 3.6e-4, whatever the mesh."""
         results = sliding_block()
-        options = SimpleNamespace(magnification=None, view=VIEW, label=[])
+        options = SimpleNamespace(magnification=None, view=VIEW, label=[], window=None)
         for module, n_arrows in ((overview, 1), (contact, 1), (fields, 0)):
             name = ["displacement"] if module is fields else []
             scale = module.scale(results, range(3), options, *name)
@@ -247,7 +247,7 @@ class Figures(TestCase):
         scale = fields.scale(
             results,
             [0],
-            SimpleNamespace(magnification=None, label=[]),
+            SimpleNamespace(magnification=None, window=None, label=[]),
             "displacement_x",
         )
         self.assertClose((scale.shade.norm.vmin, scale.shade.norm.vmax), (0, 0.05), 1e-12)
@@ -691,7 +691,8 @@ class Pictures(TestCase):
                 asked += ["stick-slip"] if friction == "coulomb" else []
                 names = self.draw(result, *asked, "--dpi", 60)
                 self.assertEqual(len(names), len(asked))
-        columns = "contact_area,max_pressure,max_gap,contact_force_y"
+        self.draw(result, "von_mises", "--window", "0,0,1,0.5", "--label", "0.5,0.2=here")
+        columns = "contact_area,max_pressure,max_gap,contact_force_x+contact_force_y"
         self.draw(result, "history", "--columns", columns)
 
     def test_map_agrees_with_the_statistics(self):
@@ -813,6 +814,7 @@ class Pictures(TestCase):
             (["--columns", "energy"], 'no column "energy".*strain_energy'),
             (["hysteresis", "--force", "f"], 'no force "f".*friction_force_x'),
             (["hysteresis", "--displacement", "u"], 'no displacement "u".*point0_x'),
+            (["history", "--columns", "t+slip_area"], "have not the same unit"),
             (["history", "--from", 9], "fewer than two rows"),
             (["--output", result.directory / "none" / "a.png"], "No such file"),
         ):

@@ -535,7 +535,8 @@ namespace Viscoplastic
                        {recorder.seconds(),
                         first_memory,
                         memory_of_ranks(communicator).second,
-                        discretization->solver_demand()});
+                        discretization->solver_demand()},
+                       remarks);
     for (const std::string &remark : remarks)
       out << remark << '\n';
     out << "Results in " << output->directory() << std::endl;

@@ -137,12 +137,12 @@ class Body:
         self.dim = results.dimension()
         self.units = Units.of(results)
         self.packed = Packed()
-        last = results.body()
-        names = names_of_interest(last)
-        ends = Surface(results.body(0)), Surface(last)
-        outputs, self.names = plan(*ends, len(results.solution), names, self.dim)
-        self.frames = []
+        names = names_of_interest(results.body())
         surface_of, surface_of_face = Latest(Surface), Latest(Surface.of_face)
+        last, first = surface_of(results.body()), surface_of(results.body(0))
+        n_outputs = len(results.solution)
+        outputs, self.names = plan(first, last, n_outputs, names, self.dim)
+        self.frames = []
         for output in outputs:
             record = results.body(output)
             there = [name for name in self.names if name in available_fields(record)]

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The panels of `contrib/plot history` as numbers for curves.js."""
 
+import math
+
 import numpy as np
 
 from plotting import history, style
@@ -86,7 +88,14 @@ def tolerance(results, panel, size):
 
 def info(results):
     """run.json, or nothing where it is missing."""
-    return results.info if (results.directory / "run.json").exists() else {}
+    if not (results.directory / "run.json").exists():
+        return {}
+    about = results.info
+    for errors in (about.get("estimated_error"), about.get("estimated_error_of_quantity")):
+        for part, value in (errors or {}).items():
+            if value is None:  # of what is not finite
+                errors[part] = math.nan
+    return about
 
 
 def numbers(values, size, is_logarithmic=False):

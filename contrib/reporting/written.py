@@ -78,8 +78,11 @@ def block(text, directory):
 
 
 def cells(line, directory):
-    inside = line.strip().strip("|")
-    return [inline(cell.strip(), directory) for cell in inside.split("|")]
+    found = [cell.strip() for cell in line.strip().strip("|").split("|")]
+    # Numbers with their units, "14 +- 18 %", are not torn apart.
+    short = re.compile(r"[-+]?\d.{0,20}")
+    found = [re.sub(" ", "\u00a0", c) if short.fullmatch(c) else c for c in found]
+    return [inline(cell, directory) for cell in found]
 
 
 def inline(text, directory):

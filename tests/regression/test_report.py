@@ -11,6 +11,7 @@ import tempfile
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 
@@ -21,7 +22,7 @@ sys.path.insert(0, str(SOURCE / "contrib"))
 
 from plotting.body_base import field
 from plotting.results import Results
-from reporting import bill, thinning, written
+from reporting import bill, body, thinning, written
 from reporting.markup import formula
 from reporting.surface import Surface
 
@@ -118,9 +119,7 @@ class Runs(TestCase):
         cls.pages = {dim: page_of(result) for dim, result in cls.results.items()}
 
     def each(self):
-        for dim, page in self.pages.items():
-            with self.subTest(dimension=dim):
-                yield self.results[dim], page
+        return [(self.results[dim], self.pages[dim]) for dim in (2, 3)]
 
     def test_results_are_those_of_the_statistics(self):
         for result, page in self.each():
@@ -178,7 +177,8 @@ class Runs(TestCase):
             saved = base64.b64decode(re.search(link, page.text).group(1))
             parameters = (result.directory / "parameters.prm").read_bytes()
             self.assertEqual(saved, parameters)
-        self.assertTrue(self.results[3].info["remarks"])
+        for sentence in self.results[3].info["remarks"]:
+            self.assertIn(sentence, self.results[3].stdout)
         self.assertIn("mpirun -n 2 ", self.pages[3].text)
 
     def test_curves_are_the_columns(self):
@@ -240,6 +240,21 @@ class Runs(TestCase):
             has_bound = contact.point_data["bound"] > 0.0
             self.assertEqual("slip" in shown, (slips & has_bound).any())
             self.assertEqual("stick" in shown, (~slips & has_bound).any())
+
+    def test_what_does_not_fit_is_left_out_and_told(self):
+        results = Results(self.results[2].directory)
+        whole = body.Body(results)
+        self.assertEqual(whole.thinned, [])
+        with mock.patch.object(body, "MOST_BYTES", whole.packed.size // 8):
+            small = body.Body(results)
+        self.assertLess(small.packed.size, whole.packed.size // 2)
+        text = " ".join(small.thinned)
+        n_outputs = len(results.solution)
+        self.assertIn(f"{len(small.frames)} of {n_outputs} outputs", text)
+        self.assertIn(f"{len(small.names)} of {len(whole.names)} fields", text)
+        # the first and the last output are there in any case
+        shown = [small.frames[0].time, small.frames[-1].time]
+        self.assertEqual(shown, [results.solution[i][0] for i in (0, -1)])
 
     def test_units(self):
         page = self.pages[3]

@@ -458,6 +458,13 @@ class Parts(TestCase):
         self.assertEqual(len(again), len(plain))
         self.assertClose(self.area(again, places), -1 / 64, 1e-12)
 
+    def test_faces_around_a_vertex_are_no_family_unless_they_close(self):
+        n = 5
+        star = [[0, 1 + 2 * i, 2 + 2 * i, 1 + (2 * i + 2) % (2 * n)] for i in range(n)]
+        faces, owner = thinning.merged(np.array(star), most=1)
+        self.assertEqual(faces.tolist(), star)
+        self.assertEqual(owner.tolist(), list(range(n)))
+
     def test_meshes_without_families(self):
         faces, places = self.square(40)
         edges = [(f[k], f[(k + 1) % 4]) for f in faces for k in range(4)]

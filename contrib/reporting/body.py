@@ -16,7 +16,7 @@ from .markup import formula, value
 from .packed import Packed, levels
 from .surface import Surface
 
-MOST_FRAMES = 60
+MOST_FRAMES = 120
 MOST_BYTES = 6_000_000  # before they are compressed, to about a half
 FIRST = ("von_mises", "displacement", "creep_strain", "principal_stress", "pressure")
 # Of vectors the size is shown, displacements aside, which the page has anyway.

@@ -91,8 +91,9 @@ def info(results):
     if not (results.directory / "run.json").exists():
         return {}
     about = results.info
-    for errors in (about.get("estimated_error"), about.get("estimated_error_of_quantity")):
-        for part, value in (errors or {}).items():
+    for key in ("estimated_error", "estimated_error_of_quantity"):
+        errors = about.get(key, {})
+        for part, value in errors.items():
             if value is None:  # of what is not finite
                 errors[part] = math.nan
     return about

@@ -78,19 +78,15 @@ def span(values, what):
 def answer(results, about):
     """Accuracy and price in one line."""
     parts = []
-    errors = about.get("estimated_error")
-    if errors:
-        parts.append(
-            "estimated error of the solution "
-            f"<b>{tables.data(errors['relative'], percent(errors['relative']))}</b> in "
-            "the energy norm"
-        )
-    errors = about.get("estimated_error_of_quantity")
-    if errors:
-        parts.append(
-            f"of the {escape(errors['quantity'])} "
-            f"<b>{tables.data(errors['relative'], percent(errors['relative']))}</b>"
-        )
+    for key, of in (
+        ("estimated_error", "the solution in the energy norm"),
+        ("estimated_error_of_quantity", "the quantity of interest"),
+    ):
+        if key in about:
+            of = escape(about[key].get("quantity", of))
+            share = about[key]["relative"]
+            words = f"<b>{tables.data(share, tables.percent(share))}</b>"
+            parts.append(f"estimated error of {of} {words}")
     if not parts:
         parts.append(
             "the error has not been estimated (<code>Error bar</code> = false)"
@@ -105,10 +101,6 @@ def answer(results, about):
         parts.append(f"{tables.data(memory, plain_number(memory, 3))} MB of memory")
     text = ", ".join(parts) + "."
     return text[0].upper() + text[1:]
-
-
-def percent(share):
-    return f"{plain_number(100.0 * share, 2)} %"
 
 
 def overview(results):
@@ -213,7 +205,8 @@ def again(results, about):
     name = f"{results.name}.prm"
     ranks = about.get("n_mpi_ranks", 1)
     launcher = f"mpirun -n {ranks} " if ranks > 1 else ""
-    text += f"<p>Save {as_link(name, prm)}, all parameters of the run, and run</p>\n"
+    text += f"<p>Save {as_link(name, prm)}, all parameters of the run, "
+    text += "beside the files that it names, and run</p>\n"
     text += listing(
         f"{launcher}viscoplastic_contact {name} --set Output/Directory=output/again"
     )

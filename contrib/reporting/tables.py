@@ -11,7 +11,7 @@ from plotting.quantities import column
 from plotting.results import UserError
 from plotting.units import plain_number
 
-from .markup import formula, items, table, value
+from .markup import folded_up, formula, items, table, value
 
 # Panels of the history that say something of the method, not of the body.
 OF_THE_METHOD = ("iterations", "step size", "cells", "estimate\nof the mesh")
@@ -35,42 +35,51 @@ def data(value, words):
 
 def quantities(results, units):
     """The columns of the statistics that describe the body: at the end, and where
-    they are largest."""
+    they are largest. Those that pictures do not show are folded up."""
     statistics = results.statistics
     if not len(statistics.get("t", ())):
         return "<p>There is no statistics.csv with rows.</p>\n"
-    time = units.unit("time", statistics["t"])
+    panels = history.those_with_something(history.PANELS, statistics)
+    of_body = [names for panel, names in panels if panel.label not in OF_THE_METHOD]
+    main = [name for names in of_body for name in names]
+    more = [
+        name
+        for name, values in statistics.items()
+        if name not in main and history.finite(values).any()
+    ]
     errors = uncertainties(results)
-    rows = []
-    for panel, names in history.those_with_something(history.PANELS, statistics):
-        if panel.label in OF_THE_METHOD:
-            continue
-        for name in names:
-            words, kind = column(name)
-            values = statistics[name]
-            unit = units.unit(kind, history.finite(values))
-            at = int(np.nanargmax(np.abs(values)))
-            rows.append(
-                [
-                    f'<span title="{escape(name)}">{formula(words)}</span>',
-                    data(values[-1], value(unit, but_rounding(values[-1], values[at]))),
-                    data(values[at], value(unit, values[at])),
-                    data(statistics["t"][at], value(time, statistics["t"][at])),
-                ]
-            )
-            if errors:
-                error = errors.get(name)
-                known = error is not None
-                rows[-1].append(data(error, value(unit, error, 2)) if known else "")
-    head = ["quantity", "at the end", "largest in size", "at <i>t</i> ="]
-    text = ""
+    text = columns(statistics, main, units, errors)
     if errors:
-        head.append("± at the end")
-        text = (
+        text += (
             "<p>± is the difference to the run with twice the mesh width and half the "
             "steps (<code>uncertainty.csv</code>).</p>\n"
         )
-    return table(head, rows, (1, 2, 3, 4)) + text
+    rest = columns(statistics, more, units, errors)
+    return text + folded_up("All other columns of statistics.csv", rest)
+
+
+def columns(statistics, names, units, errors):
+    time = units.unit("time", statistics["t"])
+    rows = []
+    for name in names:
+        words, kind = column(name)
+        values = statistics[name]
+        unit = units.unit(kind, history.finite(values))
+        at = int(np.argmax(np.abs(np.where(np.isfinite(values), values, 0.0))))
+        rows.append(
+            [
+                f'<span title="{escape(name)}">{formula(words)}</span>',
+                data(values[-1], value(unit, but_rounding(values[-1], values[at]))),
+                data(values[at], value(unit, values[at])),
+                data(statistics["t"][at], value(time, statistics["t"][at])),
+            ]
+        )
+        if errors:
+            known = name in errors
+            error = known and data(errors[name], value(unit, errors[name], 2))
+            rows[-1].append(error or "")
+    head = ["quantity", "at the end", "largest in size", "at <i>t</i> ="]
+    return table(head + ["± at the end"] * bool(errors), rows, (1, 2, 3, 4))
 
 
 def but_rounding(number, largest):
@@ -93,6 +102,7 @@ def uncertainties(results):
 def errors(results, about, units):
     """The estimated errors by their parts."""
     text = ""
+    time = units.unit("time", results.statistics.get("t", []))
     for key, size, what in (
         ("estimated_error", "largest_energy_norm", "the energy norm of the solution"),
         ("estimated_error_of_quantity", "largest_value", "its largest value"),
@@ -100,21 +110,21 @@ def errors(results, about, units):
         found = about.get(key)
         if not found:
             continue
-        at = value(units.unit("time", results.statistics.get("t", [])), found["t"])
-        of = "the solution in the energy norm"
+        of, kind = "the solution in the energy norm", "energy norm"
         if "quantity" in found:
-            of = escape(found["quantity"])
+            of, kind = escape(found["quantity"]), column(found["quantity"])[1]
+        unit = units.unit(kind, found["total"])
+        at = data(found["t"], value(time, found["t"]))
+
+        def shown(number):
+            return data(number, value(unit, number))
+
         text += (
-            f"<p>Of {of}, largest at <i>t</i> = {data(found['t'], at)}; shares are "
-            f"those of {what}, {data(found[size], short(found[size]))}.</p>\n"
+            f"<p>Of {of}, largest at <i>t</i> = {at}; shares are those of {what}, "
+            f"{shown(found[size])}.</p>\n"
         )
-        largest = found[size] or np.inf
         rows = [
-            [
-                words,
-                data(found[part], short(found[part])),
-                f"{plain_number(100.0 * found[part] / largest, 2)} %",
-            ]
+            [words, shown(found[part]), percent(found[part] / (found[size] or np.inf))]
             for part, words in PARTS.items()
             if found.get(part) or part in ("space", "total")
         ]
@@ -125,6 +135,10 @@ def errors(results, about, units):
             "has not ended.</p>\n"
         )
     return text + tolerance(results, about)
+
+
+def percent(share):
+    return f"{plain_number(100.0 * share, 2)} %"
 
 
 def tolerance(results, about):
@@ -167,5 +181,5 @@ def balances(results, units):
         if size > 0.0:
             share = plain_number(100.0 * abs(defect[-1]) / size, 2)
             text += f", {share} % of the largest energy or work"
-        lines.append(text + "; it vanishes with the steps")
+        lines.append(text + "; it goes to zero with the time steps")
     return items(lines) if lines else "<p>The run has left no balances.</p>\n"

@@ -4,6 +4,8 @@
 (async () => {
   "use strict";
   const place = document.getElementById("viewer");
+  if (!document.createElement("canvas").getContext("webgl2"))
+    throw new Error("this browser has no WebGL 2");
   const about = JSON.parse(document.getElementById("body-data").textContent);
   const flat = about.dimension === 2;
 
@@ -168,8 +170,17 @@
   body.actor.getProperty().setEdgeColor(1, 1, 1);
   face.actor.getProperty().setEdgeColor(0.4, 0.4, 0.4);
   for (const thing of [body, face]) thing.actor.getProperty().setEdgeOpacity(0.35);
-  if (flat) body.actor.getProperty().setLighting(false);
-  else {
+  if (flat) {
+    body.actor.getProperty().setLighting(false);
+    // Between a cell and smaller ones pixels may be left: lines in the same colors
+    // under them fill these.
+    const under = vtk.Actor.newInstance();
+    under.setMapper(body.mapper);
+    under.getProperty().setLighting(false);
+    under.getProperty().setRepresentation(1);
+    under.setPosition(0, 0, -1e-3 * about.extent);
+    renderer.addActor(under);
+  } else {
     body.actor.getProperty().setAmbient(0.35);
     body.actor.getProperty().setDiffuse(0.75);
   }
@@ -298,9 +309,10 @@
   // The camera.
   const AXES = { x: "#d55e00", y: "#009e73", z: "#0072b2" };
   function drawAxes() {
+    if (flat) return;
     const svg = document.querySelector("#viewer .axes");
     const [right, up] = screen();
-    svg.innerHTML = Object.entries(AXES).slice(0, about.dimension).map(([name, color], d) => {
+    svg.innerHTML = Object.entries(AXES).map(([name, color], d) => {
       const [x, y] = [26 * right[d], -26 * up[d]];
       return `<line x1="0" y1="0" x2="${x}" y2="${y}" stroke="${color}" stroke-width="2"/>
         <text x="${1.3 * x}" y="${1.3 * y + 4}" text-anchor="middle">${name}</text>`;
@@ -447,6 +459,6 @@
   whole();
   box.dataset.ready = "yes";
 })().catch((error) => {
-  document.getElementById("viewer").textContent = `The view failed: ${error.message}`;
+  document.getElementById("viewer").textContent = `The view failed: ${error.message}.`;
   console.error(error);
 });

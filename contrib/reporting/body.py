@@ -17,7 +17,8 @@ from .packed import Packed, levels
 from .surface import Surface
 
 MOST_FRAMES = 120
-MOST_BYTES = 6_000_000  # before they are compressed, to about a half
+MOST_BYTES = 6_000_000  # before they are compressed, to a half or so
+MOST_TEXT = 3_800_000  # characters of a page after that
 FIRST = ("von_mises", "displacement", "creep_strain", "principal_stress", "pressure")
 # Of vectors the size is shown, displacements aside, which the page has anyway.
 NOT_SHOWN = ("subdomain", "displacement", "velocity_", "error_energy", "recovery")
@@ -90,30 +91,36 @@ def face_at(record, surface):
     return shown
 
 
-def names_of_interest(record):
-    """Fields of a record, those of most interest first, without those that are zero."""
+def names_of_interest(results):
+    """Fields, those of most interest first, without those that are zero in the middle
+    and at the end."""
+    records = [results.body(i) for i in (len(results.solution) // 2, -1)]
 
     def order(name):
         return [not name.startswith(start) for start in FIRST]
 
+    def is_something(name):
+        there = [record for record in records if name in available_fields(record)]
+        return any(np.any(field(record, name)) for record in there)
+
     found = [
         name
-        for name in available_fields(record)
-        if not name.startswith(NOT_SHOWN) and np.any(field(record, name))
+        for name in available_fields(records[-1])
+        if not name.startswith(NOT_SHOWN) and is_something(name)
     ]
     return sorted(found, key=order)
 
 
-def plan(first, last, n_outputs, names, dim):
-    """Which outputs and fields fit into a page, going by the surfaces of the first and
-    the last output: all, or fewer of both."""
+def plan(first, last, n_outputs, names, dim, most):
+    """Which outputs and fields fit into so many bytes, going by the surfaces of the
+    first and the last output: all, or fewer of both."""
     cost = 2 * dim * len(last.vertices)
     if len(first.faces) != len(last.faces):
         cost *= 2  # the mesh changes, so that each time has places,
         cost += 2 * last.faces.size  # and faces of its own
     n_frames = min(n_outputs, MOST_FRAMES)
     n_fields = len(names)
-    while n_frames * (cost + n_fields * len(last.faces)) > MOST_BYTES:
+    while n_frames * (cost + n_fields * len(last.faces)) > most:
         if n_fields > 6 or (n_fields > 3 and n_frames <= 10):
             n_fields -= 1
         elif n_frames > 3:
@@ -124,24 +131,35 @@ def plan(first, last, n_outputs, names, dim):
     return [int(output) for output in outputs], names[:n_fields]
 
 
-class Body:
-    """All that is shown; `data` describes it, `packed` has its numbers.
+def fitting_body(results):
+    """With as many outputs and fields as a page has room for."""
+    most = MOST_BYTES
+    body = Body(results, most)
+    while len(body.numbers) > MOST_TEXT and most > 0.1 * MOST_BYTES:
+        most /= 2
+        body = Body(results, most)
+    return body
 
-    data  mesh, frames and fields as viewer.js takes them
-    thinned  sentences on what has been left out for the size of the page
+
+class Body:
+    """All that is shown.
+
+    data     frames, fields and colors as viewer.js takes them
+    numbers  its arrays, as text
+    thinned  what has been left out for the size of the page, in words
     """
 
-    def __init__(self, results):
+    def __init__(self, results, most=MOST_BYTES):
         results.index()  # or there is nothing to show
         self.results = results
         self.dim = results.dimension()
         self.units = Units.of(results)
         self.packed = Packed()
-        names = names_of_interest(results.body())
+        names = names_of_interest(results)
         surface_of, surface_of_face = Latest(Surface), Latest(Surface.of_face)
         last, first = surface_of(results.body()), surface_of(results.body(0))
         n_outputs = len(results.solution)
-        outputs, self.names = plan(first, last, n_outputs, names, self.dim)
+        outputs, self.names = plan(first, last, n_outputs, names, self.dim, most)
         self.frames = []
         for output in outputs:
             record = results.body(output)
@@ -153,6 +171,7 @@ class Body:
             self.frames.append(frame)
         self.thinned = list(self.omissions(names))
         self.data = self.describe()
+        self.numbers = self.packed.text()
 
     def omissions(self, names):
         n_outputs = len(self.results.solution)
@@ -180,7 +199,6 @@ class Body:
 
     def describe(self):
         time = self.units.unit("time", [frame.time for frame in self.frames])
-        length = self.units.unit("length", np.ptp(self.frames[0].points, axis=0))
         parts = [*self.frames, *(frame.face for frame in self.frames if frame.face)]
         self.size = float(max(np.abs(part.moved).max() for part in parts)) or 1.0
         self.low = np.min([part.points.min(axis=0) for part in parts], axis=0)
@@ -212,7 +230,6 @@ class Body:
             "low": [float(value) for value in self.low],
             "extent": self.extent,
             "magnification": self.magnification(),
-            "length": {"size": length.size, "unit": formula(length.text)},
             "fields": {**self.of_displacement(), **self.legends(shades)},
             "faceFields": self.legends(on_face),
             "states": [

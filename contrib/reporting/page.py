@@ -45,7 +45,7 @@ class Page:
         self.scripts += [
             as_data("body-data", body.data),
             '<script type="text/plain" id="body-numbers">'
-            f"{body.packed.text()}</script>\n",
+            f"{body.numbers}</script>\n",
             script("vtk/vtk.min.js"),
             script("viewer.js"),
         ]

@@ -13,7 +13,7 @@ from plotting.results import NoPicture, Results, UserError, read_parameters
 from plotting.units import Units, plain_number
 
 from . import bill, tables, written
-from .body import Body
+from .body import fitting_body
 from .curves import curves, info
 from .markup import folded_up, items, listing, picture, section, value
 from .page import Page, as_link
@@ -143,7 +143,7 @@ def remarks(results, about):
 def view(results, found):
     """The body to turn."""
     try:
-        body = Body(results)
+        body = fitting_body(results)
     except NoPicture as reason:
         return section("view", "The body", f"<p>{escape(str(reason))}.</p>\n")
     found.show_body(body)

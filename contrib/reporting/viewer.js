@@ -58,7 +58,7 @@
   fill(get("field"), about.fields);
   const hasFace = about.frames.some((frame) => frame.face);
   if (hasFace) {
-    fill(get("face"), about.faceFields, { states: "stick, slip, gap", none: "not shown" });
+    fill(get("face"), about.faceFields, { states: "stick and slip", none: "not shown" });
   } else {
     get("face-label").remove();
     get("below").remove();

@@ -248,9 +248,13 @@ class Runs(TestCase):
         results = Results(self.results[2].directory)
         whole = body.Body(results)
         self.assertEqual(whole.thinned, [])
-        with mock.patch.object(body, "MOST_BYTES", whole.packed.size // 8):
-            small = body.Body(results)
+        small = body.Body(results, most=whole.packed.size // 8)
         self.assertLess(small.packed.size, whole.packed.size // 2)
+        limits = {"MOST_BYTES": whole.packed.size, "MOST_TEXT": len(whole.numbers) - 1}
+        with mock.patch.multiple(body, **limits):
+            fitting = body.fitting_body(results)
+        self.assertLess(len(fitting.numbers), len(whole.numbers))
+        self.assertTrue(fitting.thinned)
         text = " ".join(small.thinned)
         n_outputs = len(results.solution)
         self.assertIn(f"{len(small.frames)} of {n_outputs} outputs", text)

@@ -13,7 +13,8 @@ PHASES = {
     "rate": ("viscosity: flow of the law in all cells", style.SERIES[2]),
     "tangent": ("backward Euler: matrices of the steps", "#f0e442"),
     "load": ("data: loads, friction bounds, foundations", style.SERIES[4]),
-    "contact": ("elasticity and contact: solution of the steps", style.SERIES[0]),
+    "contact": ("elasticity: linear solves, as without friction", style.SERIES[0]),
+    "friction": ("friction: active set", "#999933"),
     "balance": ("balances: energies, reactions, statistics", style.SERIES[3]),
     "estimate": ("error estimate", style.SERIES[1]),
     "adaptation": ("adaptivity: new meshes with their set-up", "#35978f"),
@@ -34,6 +35,10 @@ def bars(results, about):
     seconds, whole = about.get("costs", {}).get("seconds"), total(results)
     if not seconds or not whole:
         return "<p>The run has left no costs.</p>\n"
+    friction = about["costs"].get("friction_seconds", 0.0)
+    if friction > 0.0:
+        seconds = {**seconds, "contact": seconds["contact"] - friction}
+        seconds["friction"] = friction
     # The last fields may be written after the last row of the statistics.
     known = sum(seconds.values())
     whole = max(whole, known)
@@ -41,7 +46,7 @@ def bars(results, about):
     order = [words for words, _ in PHASES.values()]
     place = {words: i for i, words in enumerate(order)}
     parts.sort(key=lambda part: place.get(part[0], len(order)))
-    resumed = is_resumed(results, seconds)
+    resumed = is_resumed(results, about["costs"]["seconds"])
     rest = "rest, and all before the last restart" if resumed else REST[0]
     parts.append((rest, REST[1], whole - known))
     rows = "".join(row(*part, whole) for part in parts if part[2] > 0.0)

@@ -44,6 +44,7 @@ namespace Viscoplastic
       const BulkSolverKind solver   = choose_bulk_solver(demand);
       const SolverCost     expected = expected_cost(solver, demand);
       return {{"seconds", costs.seconds},
+              {"friction_seconds", costs.friction},
               {"memory_before_MB", costs.first_memory},
               {"peak_memory_MB", costs.peak_memory},
               {"solver", to_string(solver)},

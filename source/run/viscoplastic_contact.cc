@@ -533,6 +533,7 @@ namespace Viscoplastic
                           *coarser);
     output->record_end(recorder.summary(),
                        {recorder.seconds(),
+                        recorder.bill().friction(),
                         first_memory,
                         memory_of_ranks(communicator).second,
                         discretization->solver_demand()},

@@ -151,15 +151,22 @@ class Runs(TestCase):
             *parts, whole = page.numbers["bill"]
             self.assertClose(sum(parts), whole, 1e-9)
             self.assertGreaterEqual(whole, result["wall_total"][-1])
-            for seconds in result.info["costs"]["seconds"].values():
-                if seconds > 0.0:
-                    self.assertIn(seconds, parts)
+            costs = result.info["costs"]
+            seconds, friction = dict(costs["seconds"]), costs["friction_seconds"]
+            self.assertGreater(friction, 0.0)
+            self.assertLess(friction, seconds["contact"])
+            seconds["contact"] -= friction
+            for part in (friction, *seconds.values()):
+                if part > 0.0:
+                    self.assertIn(part, parts)
+            printed = re.search(r"^  friction +([\d.]+) ", result.stdout, re.M).group(1)
+            self.assertClose(friction, float(printed), 0.05, 1e-3)
 
     def test_bill_knows_all_phases(self):
         header = SOURCE / "include/viscoplastic_contact/results/run_phases.h"
         text = header.read_text().split("run_phases{", 1)[1]
         names = re.findall(r'\{"([^"]+)"', text)
-        self.assertEqual(list(bill.PHASES), names)
+        self.assertEqual([name for name in bill.PHASES if name != "friction"], names)
 
     def test_balances(self):
         for result, page in self.each():

@@ -30,6 +30,8 @@ namespace Viscoplastic
   {
     /// Wall time by phase, see run_phases; of a resumed run, of its last part.
     std::map<std::string, double> seconds;
+    /// What friction takes of the phase `contact', see RunBill.
+    double friction = 0.;
     /// Memory of all ranks together in MB: before the run, and the largest.
     double first_memory = 0., peak_memory = 0.;
     /// What the solver of the last mesh had to do.

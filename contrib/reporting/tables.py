@@ -176,7 +176,7 @@ def balances(results, units):
         names = ["external_work", "stored_energy", "viscous_dissipation"]
         names += ["friction_dissipation"]
         size = max(np.abs(statistics[n]).max() for n in names if n in statistics)
-        unit = units.unit("energy", [size])
+        unit = units.unit("energy", defect[-1:])
         text = f"energy: {data(defect[-1], value(unit, defect[-1], 3))} at the end"
         if size > 0.0:
             share = plain_number(100.0 * abs(defect[-1]) / size, 2)

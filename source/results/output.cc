@@ -113,8 +113,9 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  Output<dim>::record_end(const RunSummary<dim> &summary,
-                          const RunCosts        &costs) const
+  Output<dim>::record_end(const RunSummary<dim>          &summary,
+                          const RunCosts                 &costs,
+                          const std::vector<std::string> &remarks) const
   {
     fail_together(communicator, [&]() {
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
@@ -122,7 +123,8 @@ namespace Viscoplastic
                      path,
                      Utilities::MPI::n_mpi_processes(communicator),
                      &summary,
-                     &costs);
+                     &costs,
+                     remarks);
     });
   }
 

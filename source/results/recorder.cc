@@ -310,6 +310,15 @@ namespace Viscoplastic
     if (discretization->face)
       out << contact_iterations / n << " of the active set, ";
     out << linear_iterations / n << " linear\n";
+    bill().print(out);
+  }
+
+
+
+  template <int dim>
+  RunBill
+  Recorder<dim>::bill() const
+  {
     RunBill bill;
     bill.seconds       = seconds();
     bill.total         = elapsed();
@@ -317,7 +326,7 @@ namespace Viscoplastic
     bill.solves        = solve_seconds;
     if (scene.has_friction())
       bill.plain_solves = plain_solve_seconds;
-    bill.print(out);
+    return bill;
   }
 
 

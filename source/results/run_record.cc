@@ -44,6 +44,7 @@ namespace Viscoplastic
       const BulkSolverKind solver   = choose_bulk_solver(demand);
       const SolverCost     expected = expected_cost(solver, demand);
       return {{"seconds", costs.seconds},
+              {"friction_seconds", costs.friction},
               {"memory_before_MB", costs.first_memory},
               {"peak_memory_MB", costs.peak_memory},
               {"solver", to_string(solver)},
@@ -61,6 +62,20 @@ namespace Viscoplastic
                {{"set_up", expected.set_up},
                 {"step", expected.step},
                 {"memory_MB", 1e-6 * expected_memory(solver, demand)}}}};
+    }
+
+
+
+    /// The model of the processor that rank 0 runs on, as Linux names it.
+    std::string
+    processor()
+    {
+      std::ifstream file("/proc/cpuinfo");
+      for (std::string line; std::getline(file, line);)
+        if (const auto colon = line.find(": ");
+            line.rfind("model name", 0) == 0 && colon != std::string::npos)
+          return line.substr(colon + 2);
+      return "unknown";
     }
   } // namespace
 
@@ -100,11 +115,12 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  write_record(const Scene<dim>      &scene,
-               const std::string     &path,
-               const unsigned int     n_ranks,
-               const RunSummary<dim> *summary,
-               const RunCosts        *costs)
+  write_record(const Scene<dim>               &scene,
+               const std::string              &path,
+               const unsigned int              n_ranks,
+               const RunSummary<dim>          *summary,
+               const RunCosts                 *costs,
+               const std::vector<std::string> &remarks)
   {
     std::ostringstream parameters;
     scene.parameters.print(parameters);
@@ -150,9 +166,12 @@ namespace Viscoplastic
       }
     if (summary != nullptr && !summary->doubtful_steps.empty())
       record["doubtful_steps"] = summary->doubtful_steps;
+    if (!remarks.empty())
+      record["remarks"] = remarks;
     if (costs != nullptr)
       record["costs"] = record_of_costs(*costs);
-    record["date"] = date;
+    record["processor"] = processor();
+    record["date"]      = date;
     replace_file(path + "run.json", json_text(record));
   }
 
@@ -187,11 +206,13 @@ namespace Viscoplastic
                   const std::string &,
                   const unsigned int,
                   const RunSummary<2> *,
-                  const RunCosts *);
+                  const RunCosts *,
+                  const std::vector<std::string> &);
   template void
   write_record<3>(const Scene<3> &,
                   const std::string &,
                   const unsigned int,
                   const RunSummary<3> *,
-                  const RunCosts *);
+                  const RunCosts *,
+                  const std::vector<std::string> &);
 } // namespace Viscoplastic

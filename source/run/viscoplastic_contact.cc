@@ -533,9 +533,11 @@ namespace Viscoplastic
                           *coarser);
     output->record_end(recorder.summary(),
                        {recorder.seconds(),
+                        recorder.bill().friction(),
                         first_memory,
                         memory_of_ranks(communicator).second,
-                        discretization->solver_demand()});
+                        discretization->solver_demand()},
+                       remarks);
     for (const std::string &remark : remarks)
       out << remark << '\n';
     out << "Results in " << output->directory() << std::endl;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs contrib/plot as a user does: arguments in, an exit code, two streams and
+"""Runs contrib/plot and its like as a user does: arguments in, an exit code, two streams and
 files out.
 
 Most of the time of a small picture and nearly all of that of a refusal is the
@@ -34,10 +34,14 @@ def plot_afresh(*arguments):
 
 def plot(*arguments):
     """The same in a fork of this process."""
-    command = [str(PLOT), *map(str, arguments)]
+    return run_script(PLOT, *arguments)
+
+
+def run_script(script, *arguments):
+    command = [str(script), *map(str, arguments)]
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
 
-        def run_script():
+        def run_it():
             os.dup2(out.fileno(), 1)
             os.dup2(err.fileno(), 2)
             sys.argv = command
@@ -45,7 +49,7 @@ def plot(*arguments):
 
         sys.stdout.flush()
         sys.stderr.flush()
-        process = multiprocessing.get_context("fork").Process(target=run_script)
+        process = multiprocessing.get_context("fork").Process(target=run_it)
         process.start()
         process.join()
         streams = []

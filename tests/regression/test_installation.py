@@ -120,6 +120,16 @@ class Installation(TestCase):
         script = self.share / "contrib" / "convert_mesh"
         self.assertIn("convert_mesh", self.call(sys.executable, script, "--help"))
 
+    def test_reports_are_made_by_what_was_installed(self):
+        contrib = self.share / "contrib"
+        (self.work / "study").mkdir()
+        (self.work / "study" / "study.md").write_text("# Study\n")
+        page = self.call(sys.executable, contrib / "report", self.work / "study").strip()
+        self.assertIn("<h2>Study</h2>", Path(page).read_text())
+        for name in ("viewer.js", "curves.js", "page.css", "vtk/vtk.min.js"):
+            self.assertTrue((contrib / "reporting" / name).exists(), name)
+        self.assertFalse((contrib / "reporting" / "vtk" / "node_modules").exists())
+
     def test_python_module_runs_the_installed_program(self):
         text = self.call(
             sys.executable,

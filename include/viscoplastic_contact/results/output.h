@@ -41,10 +41,12 @@ namespace Viscoplastic
       return times;
     }
 
-    /// Add the estimated error and the costs to the record of the run. On all
-    /// ranks.
+    /// Add the estimated error, the costs and what the run has remarked on to
+    /// its record. On all ranks.
     void
-    record_end(const RunSummary<dim> &summary, const RunCosts &costs) const;
+    record_end(const RunSummary<dim>          &summary,
+               const RunCosts                 &costs,
+               const std::vector<std::string> &remarks) const;
 
     const std::string &
     directory() const

@@ -111,6 +111,10 @@ namespace Viscoplastic
     std::map<std::string, double>
     seconds() const;
 
+    /// What the run has paid for its effects up to now.
+    RunBill
+    bill() const;
+
     /// Wall time of this process.
     double
     elapsed() const

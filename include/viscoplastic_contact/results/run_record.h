@@ -7,6 +7,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace Viscoplastic
 {
@@ -29,6 +30,8 @@ namespace Viscoplastic
   {
     /// Wall time by phase, see run_phases; of a resumed run, of its last part.
     std::map<std::string, double> seconds;
+    /// What friction takes of the phase `contact', see RunBill.
+    double friction = 0.;
     /// Memory of all ranks together in MB: before the run, and the largest.
     double first_memory = 0., peak_memory = 0.;
     /// What the solver of the last mesh had to do.
@@ -36,13 +39,14 @@ namespace Viscoplastic
   };
 
   /// Write what is needed to reproduce a run: parameters.prm and run.json, with
-  /// the errors of @p summary and with @p costs unless these are null. On one
-  /// rank.
+  /// the errors of @p summary and with @p costs unless these are null, and with
+  /// the sentences that the run had for the user. On one rank.
   template <int dim>
   void
-  write_record(const Scene<dim>      &scene,
-               const std::string     &path,
-               const unsigned int     n_ranks,
-               const RunSummary<dim> *summary,
-               const RunCosts        *costs);
+  write_record(const Scene<dim>               &scene,
+               const std::string              &path,
+               const unsigned int              n_ranks,
+               const RunSummary<dim>          *summary,
+               const RunCosts                 *costs,
+               const std::vector<std::string> &remarks = {});
 } // namespace Viscoplastic

@@ -8,6 +8,7 @@ import tempfile
 from html import escape
 from pathlib import Path
 
+from plotting import quantities
 from plotting.command import main as plot
 from plotting.results import NoPicture, Results, UserError, read_parameters
 from plotting.units import Units, plain_number
@@ -22,6 +23,7 @@ from .page import Page, as_link
 def page(directory):
     """The Page of a directory of results."""
     results = Results(directory)
+    quantities.names_of_places = results.names
     about, units = info(results), Units.of(results)
     found = Page(results.name)
     found.add(summary(results, about, units))

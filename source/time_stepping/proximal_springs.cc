@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -397,19 +398,19 @@ namespace Viscoplastic
               }
           }
       }
-    AssertThrow(false,
-                ExcMessage(
-                  "The body that only contact holds has not come to rest in " +
-                  std::to_string(max_proximal_steps) + " solves of a step, " +
-                  (left_by_rounding > 0. ?
-                     "in which rounding leaves the error " +
-                       Utilities::to_string(left_by_rounding) +
-                       ": cells that are less flat, stiffness that differs "
-                       "less, Poisson's ratio farther from 1/2 or prescribed "
-                       "displacements mend that." :
-                     "although contact could balance its loads if it were "
-                     "closed everywhere, or nearly so. Prescribe "
-                     "displacements that hold it.")));
+    std::ostringstream message;
+    message << "The body that only contact holds has not come to rest in "
+            << max_proximal_steps << " solves of a step, ";
+    if (left_by_rounding > 0.)
+      message << "in which rounding leaves the error " << left_by_rounding
+              << ": cells that are less flat, stiffness that differs less, "
+                 "Poisson's ratio farther from 1/2 or prescribed displacements "
+                 "mend that.";
+    else
+      message << "although contact could balance its loads if it were closed "
+                 "everywhere, or nearly so. Prescribe displacements that hold "
+                 "it.";
+    AssertThrow(false, ExcMessage(message.str()));
     return report;
   }
 

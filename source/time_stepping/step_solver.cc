@@ -158,16 +158,17 @@ namespace Viscoplastic
       sum +=
         diagonal.begin()[discretization.face_restriction().positions()[k]] *
         square(data.foundation_step[k]);
+    // A body that is carried along may begin with prescribed values alone.
     for (std::size_t i = 0; i < space.excluded().size(); ++i)
-      if (!space.excluded()[i])
-        {
-          const double stiffness = diagonal.begin()[i];
-          sum +=
-            stiffness * (square(u.begin()[i]) + square(data.old_u.begin()[i])) +
-            (square(data.load.begin()[i]) +
-             square(data.right_side.begin()[i])) /
-              stiffness;
-        }
+      {
+        const double stiffness = diagonal.begin()[i];
+        sum +=
+          stiffness * (square(u.begin()[i]) + square(data.old_u.begin()[i]));
+        if (!space.excluded()[i])
+          sum += (square(data.load.begin()[i]) +
+                  square(data.right_side.begin()[i])) /
+                 stiffness;
+      }
     return 100. * std::numeric_limits<double>::epsilon() *
            std::sqrt(Utilities::MPI::sum(sum, space.communicator));
   }
@@ -191,14 +192,13 @@ namespace Viscoplastic
         size <= bulk_solver->rounding_error())
       return;
     bulk_solver->begin(data.right_side, u);
-    const double rounding = bulk_solver->rounding_of_residual();
-    AssertThrow(rounding <= largest_rounding * size,
-                ExcMessage(
-                  "Rounding alone makes " +
-                  Utilities::to_string(rounding / size) +
-                  " or more of the solution. Cells that are less flat, "
-                  "stiffness that differs less or Poisson's ratio farther from "
-                  "1/2 mend that."));
+    const double       rounding = bulk_solver->rounding_of_residual();
+    std::ostringstream message;
+    message
+      << "Rounding alone makes " << rounding / size
+      << " or more of the solution. Cells that are less flat, stiffness "
+         "that differs less or Poisson's ratio farther from 1/2 mend that.";
+    AssertThrow(rounding <= largest_rounding * size, ExcMessage(message.str()));
     if (!(rounding > std::max(report.error, report.tolerance * size)))
       return;
     report.error          = rounding;

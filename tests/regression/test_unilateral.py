@@ -922,8 +922,13 @@ class Refused(TestCase):
                 self.assertLess(spread, 2 * error)
                 self.assertLess(error, 10 * spread)
 
-        flatter = {"Geometry/Arguments": "8, 2 : 0, 0 : 1, 1e-5 : true"}
+        flatter = {"Geometry/Arguments": "8, 2 : 0, 0 : 1, 5e-6 : true"}
         self.assertRefused(in_unit(1, **flatter), "rounding alone makes", "less flat")
+        # which a solver that has converged does not know by itself
+        converged = {**flatter, "Solver/Contact tolerance": 1e-8}
+        self.assertRefused(
+            in_unit(1, **converged), "Rounding alone makes 0.00957", "less flat"
+        )
 
     def test_foundations(self):
         normal = "Boundary 2/Foundation normal"

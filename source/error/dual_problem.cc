@@ -233,7 +233,8 @@ namespace Viscoplastic
         truncation.transposed = true;
         solver.set_truncation(truncation, /* may_rebuild = */ false);
         // The tolerance is relative to where it begins, which may have much
-        // more energy than w.
+        // more energy than w. What five corrections leave is beyond the digits
+        // of that, and asked for below.
         constexpr unsigned int max_corrections = 5;
         constexpr double       enough          = 30.;
         for (unsigned int n = 0; n < max_corrections; ++n)

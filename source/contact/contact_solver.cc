@@ -422,7 +422,7 @@ namespace Viscoplastic
     bulk.set_truncation(truncation);
     const Certificate certificate =
       certify(face, residual, diagonal, state, force, bulk.rounding_error());
-    size  = std::max(bulk.energy_norm(), bulk.rounding_error() / tolerance);
+    size  = std::max(bulk.size(), bulk.rounding_error() / tolerance);
     error = bound(bulk.dual_norm(certificate.force), certificate);
     if (error <= tolerance * size && error > beyond_doubt * tolerance * size)
       error = bound(bulk.confirmed_dual_norm(certificate.force,

@@ -241,8 +241,7 @@ namespace Viscoplastic
               hessian[i][j] += scale * ((i == j) - projector[i][j]);
           const Tensor<1, 3> direction =
             projector * (invert(hessian) * downhill);
-          if (!(direction.norm() > 1e-17 * x.norm()) ||
-              !(direction * downhill > 0.))
+          if (!(direction.norm() > negligible) || !(direction * downhill > 0.))
             break;
           const double step = step_length(x, direction);
           x += step * direction;

@@ -353,7 +353,8 @@ namespace Viscoplastic
     Generalized  motion(n, 0.);
     ContactState state(contact);
     state.slip = slips;
-    // Newton's method; the line search makes it converge.
+    // Newton's method; the line search makes it converge. Where it ends early,
+    // the solves of the step begin farther from their end.
     for (unsigned int iteration = 0; iteration < 100 && !free.empty();
          ++iteration)
       {

@@ -128,6 +128,9 @@ namespace Viscoplastic
     const Discretization<dim> &discretization,
     const EvaluatedState<dim> &accepted) const
   {
+    // Nor does a quantity that no residual changes.
+    if (scene.quantity && accepted.errors.quantity.unsigned_space == 0.)
+      return true;
     const EnergyRounding rounding = energy_rounding(discretization.space,
                                                     discretization.matrix,
                                                     accepted.forces);

@@ -222,10 +222,10 @@ namespace Viscoplastic
     for (unsigned int pass = 0; pass < 20; ++pass)
       {
         const double error = dual_norm(no_force);
-        if (error <= std::max(tolerance * energy_norm(), rounding_error()))
-          return iterations;
         // The first solution sets the scale of a start from zero.
-        const double size = energy_norm();
+        const double size = this->size();
+        if (error <= std::max(tolerance * size, rounding_error()))
+          return iterations;
         iterations +=
           correct(no_force,
                   size > 0. ? std::min(0.3, 0.3 * tolerance * size / error) :
@@ -450,9 +450,9 @@ namespace Viscoplastic
   void
   KrylovSolver::take_step(const double step)
   {
-    // K w = product; both are zero or irrelevant on excluded components.
+    // K w = product, all rows of it; w is zero on excluded components.
+    squared_norm += step * (2. * (*u * product) + step * (w * product));
     u->add(step, w);
-    squared_norm += step * step * (product * w);
     restrict_to_unknowns(product);
     residual.add(-step, product);
   }

@@ -64,10 +64,12 @@ namespace Viscoplastic
             {
               missing[p] = bounds[p] - contact.bound[p];
               change += std::abs(missing[p]);
-              // Both may be zero in turn.
-              sum += std::isfinite(contact.bound[p]) ?
-                       std::max(bounds[p], contact.bound[p]) :
-                       bounds[p];
+              // Each may be zero, in turn or in the end.
+              double largest = bounds[p];
+              for (const double bound : {contact.bound[p], problem.bounds[p]})
+                if (std::isfinite(bound))
+                  largest = std::max(largest, bound);
+              sum += largest;
             }
         change = face.layout().sum(change);
         sum    = face.layout().sum(sum);

@@ -285,9 +285,9 @@ namespace Viscoplastic
                                        const StressForStrain &z_for,
                                        NewtonIterate<dim>    &iterate) const
   {
-    // The solver's idea of rounding belongs to other right-hand sides.
-    const double rounding = solver.rounding_error();
-    solver.set_rounding_error(0.);
+    // The solver's idea of sizes belongs to other right-hand sides.
+    const BulkSolver::Scale scale = solver.get_scale();
+    solver.set_scale({});
 
     const FaceTruncation    truncation = this->truncation(iterate.contact);
     const DistributedVector r          = residual(iterate);
@@ -338,7 +338,7 @@ namespace Viscoplastic
               }
           }
       }
-    solver.set_rounding_error(rounding);
+    solver.set_scale(scale);
     return result;
   }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -20,6 +21,10 @@ namespace Viscoplastic
     constexpr double spring_stiffness = 1e-3;
     /// A body that still moves after so many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
+    /// Where it has not come to rest after so many, something that is much
+    /// softer than the springs holds it, as a slender part that bends, and the
+    /// steps learn from each other.
+    constexpr unsigned int first_learned_step = 4;
   } // namespace
 
 
@@ -164,6 +169,29 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  ProximalSprings<dim>::learned_step(const DistributedVector &last_center,
+                                     const DistributedVector &center,
+                                     const DistributedVector &last_change,
+                                     const DistributedVector &change) const
+  {
+    DistributedVector way(center), fall(last_change), of_springs(springs);
+    of_springs.scale(change);
+    // Beyond the minimum the springs press the body onto what holds it there:
+    // it is where it is to be, or nearly so.
+    if (!(last_change * of_springs > 0.))
+      return 0.;
+    way -= last_center;
+    fall -= change;
+    of_springs = springs;
+    of_springs.scale(fall);
+    const double square = fall * of_springs;
+    return square > 0. ? (way * of_springs) / square : 0.;
+  }
+
+
+
+  template <int dim>
   DistributedVector
   ProximalSprings<dim>::rigid_part(const DistributedVector &u) const
   {
@@ -279,7 +307,7 @@ namespace Viscoplastic
     ContactReport     report;
     double            inner_tolerance = tolerance, left_by_rounding = 0.;
     const HeldBody    body = held_body(problem);
-    DistributedVector center(u), right(u), change(u);
+    DistributedVector center(u), right(u), change(u), last_center, last_change;
     // How far the body has gone as a whole makes no strain, but rounding of
     // it would make forces, which soft ground does not tell from loads: all
     // displacements are those relative to a rigid motion.
@@ -309,7 +337,8 @@ namespace Viscoplastic
         // forces that balance leave nothing in the springs.
         const double force_in_springs = right.l1_norm();
         singular_matrix->vmult(right, u);
-        const double      size = std::sqrt(std::max(0., u * right));
+        const double      size = std::max(std::sqrt(std::max(0., u * right)),
+                                     bulk.get_scale().former_size);
         DistributedVector whole(center);
         whole += rigid_motion;
         const bool in_balance =
@@ -333,13 +362,24 @@ namespace Viscoplastic
         // touches it; one that a soft part of itself or of the ground holds, or
         // friction that is small, until its energy has its minimum there.
         singular_matrix->vmult(right, change);
-        center = u;
-        center.add(
+        double step =
           repetitions({in_springs * in_springs, std::max(0., change * right)},
                       discretization.face->layout(),
                       contact,
-                      discretization.face_restriction().gather(change)),
-          change);
+                      discretization.face_restriction().gather(change));
+        if (n + 1 >= first_learned_step)
+          {
+            if (n >= first_learned_step)
+              {
+                const double learned =
+                  learned_step(last_center, whole, last_change, change);
+                step = learned > 0. ? std::max(step, learned - 1.) : 0.;
+              }
+            last_center = whole;
+            last_change = change;
+          }
+        center = u;
+        center.add(step, change);
         // A body on soft ground is where its loads are in balance as a whole,
         // long before springs have let it go there.
         if (discretization.face->gives_way())
@@ -358,19 +398,19 @@ namespace Viscoplastic
               }
           }
       }
-    AssertThrow(false,
-                ExcMessage(
-                  "The body that only contact holds has not come to rest in " +
-                  std::to_string(max_proximal_steps) + " solves of a step, " +
-                  (left_by_rounding > 0. ?
-                     "in which rounding leaves the error " +
-                       Utilities::to_string(left_by_rounding) +
-                       ": cells that are less flat, stiffness that differs "
-                       "less, Poisson's ratio farther from 1/2 or prescribed "
-                       "displacements mend that." :
-                     "although contact could balance its loads if it were "
-                     "closed everywhere, or nearly so. Prescribe "
-                     "displacements that hold it.")));
+    std::ostringstream message;
+    message << "The body that only contact holds has not come to rest in "
+            << max_proximal_steps << " solves of a step, ";
+    if (left_by_rounding > 0.)
+      message << "in which rounding leaves the error " << left_by_rounding
+              << ": cells that are less flat, stiffness that differs less, "
+                 "Poisson's ratio farther from 1/2 or prescribed displacements "
+                 "mend that.";
+    else
+      message << "although contact could balance its loads if it were closed "
+                 "everywhere, or nearly so. Prescribe displacements that hold "
+                 "it.";
+    AssertThrow(false, ExcMessage(message.str()));
     return report;
   }
 

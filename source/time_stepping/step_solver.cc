@@ -158,16 +158,17 @@ namespace Viscoplastic
       sum +=
         diagonal.begin()[discretization.face_restriction().positions()[k]] *
         square(data.foundation_step[k]);
+    // A body that is carried along may begin with prescribed values alone.
     for (std::size_t i = 0; i < space.excluded().size(); ++i)
-      if (!space.excluded()[i])
-        {
-          const double stiffness = diagonal.begin()[i];
-          sum +=
-            stiffness * (square(u.begin()[i]) + square(data.old_u.begin()[i])) +
-            (square(data.load.begin()[i]) +
-             square(data.right_side.begin()[i])) /
-              stiffness;
-        }
+      {
+        const double stiffness = diagonal.begin()[i];
+        sum +=
+          stiffness * (square(u.begin()[i]) + square(data.old_u.begin()[i]));
+        if (!space.excluded()[i])
+          sum += (square(data.load.begin()[i]) +
+                  square(data.right_side.begin()[i])) /
+                 stiffness;
+      }
     return 100. * std::numeric_limits<double>::epsilon() *
            std::sqrt(Utilities::MPI::sum(sum, space.communicator));
   }
@@ -184,21 +185,20 @@ namespace Viscoplastic
     // root of its condition number, and rounding makes of residuals up to its
     // square.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    const double     size = std::max(bulk_solver->energy_norm(), data.old_size);
+    const double     size    = bulk_solver->size();
     const double     ratio = rounding_error(data, u) / (100. * epsilon * size);
     // Of a body that moves without strain nothing but rounding is left.
     if (!(epsilon * ratio * ratio > report.tolerance) ||
         size <= bulk_solver->rounding_error())
       return;
     bulk_solver->begin(data.right_side, u);
-    const double rounding = bulk_solver->rounding_of_residual();
-    AssertThrow(rounding <= largest_rounding * size,
-                ExcMessage(
-                  "Rounding alone makes " +
-                  Utilities::to_string(rounding / size) +
-                  " or more of the solution. Cells that are less flat, "
-                  "stiffness that differs less or Poisson's ratio farther from "
-                  "1/2 mend that."));
+    const double       rounding = bulk_solver->rounding_of_residual();
+    std::ostringstream message;
+    message
+      << "Rounding alone makes " << rounding / size
+      << " or more of the solution. Cells that are less flat, stiffness "
+         "that differs less or Poisson's ratio farther from 1/2 mend that.";
+    AssertThrow(rounding <= largest_rounding * size, ExcMessage(message.str()));
     if (!(rounding > std::max(report.error, report.tolerance * size)))
       return;
     report.error          = rounding;
@@ -355,7 +355,9 @@ namespace Viscoplastic
       contact.foundation_step = problem.foundation_step;
     report.duality_gap *= unit * unit;
     report.error *= unit;
-    bulk_solver->set_rounding_error(unit * bulk_solver->rounding_error());
+    const BulkSolver::Scale &scale_in_unit = bulk_solver->get_scale();
+    bulk_solver->set_scale(
+      {unit * scale_in_unit.rounding_error, unit * scale_in_unit.former_size});
     return report;
   }
 
@@ -371,7 +373,7 @@ namespace Viscoplastic
   {
     const Discretization<dim> &d = discretization;
     const Timer                timer;
-    bulk_solver->set_rounding_error(rounding_error(data, u));
+    bulk_solver->set_scale({rounding_error(data, u), data.old_size});
     ContactReport report;
     if (d.slipping_face())
       {
@@ -396,8 +398,7 @@ namespace Viscoplastic
     if (!bulk_solver->is_exact())
       {
         report.relative_error = tolerance;
-        report.error =
-          std::max(report.error, tolerance * bulk_solver->energy_norm());
+        report.error = std::max(report.error, tolerance * bulk_solver->size());
       }
     report.seconds = report.plain_seconds = timer.wall_time();
     return report;
@@ -421,7 +422,7 @@ namespace Viscoplastic
     if (const double size = size_of(data, u);
         !(size >= 1e-100 && size <= largest_size))
       return;
-    bulk_solver->set_rounding_error(rounding_error(data, u));
+    bulk_solver->set_scale({rounding_error(data, u), data.old_size});
     if (!d.slipping_face())
       {
         bulk_solver->solve(right_side, u, tolerance);

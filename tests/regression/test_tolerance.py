@@ -144,6 +144,35 @@ class Rounding(TestCase):
                 self.assertEqual(set(result["cells"][: first + 1]), {48})
                 self.assertNotEqual(result["cells"][-1], 48)
 
+    def test_of_a_quantity_that_statics_fixes(self):
+        """Friction carries all of the pull: no mesh changes the force."""
+        strip = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "4, 1 : 0, 0 : 1, 0.06 : true",
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Traction": "-1.4e-5*t; 0",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": 0.3,
+            "Boundary 2/Gap": "1e-4*(1 + sin(9*x))",
+            "Boundary 3/Role": "free",
+            "Loads/Body force": "0; -0.0036*t",
+            "Time/Phases": "0.5: 4",
+            "Error control/Quantity": "friction_force_x",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Maximal level": 2,
+        }
+        for solver in "direct", "multigrid":
+            with self.subTest(solver=solver):
+                result = run("pull", {**strip, "Solver/Linear solver": solver}, text="")
+                self.assertEqual(set(result["cells"]), {4})
+                self.assertEqual(result["quantity_space"].max(), 0)
+                self.assertClose(
+                    result["friction_force_x"], -8.4e-7 * result["t"], relative=1e-5
+                )
+
 
 class Kinks(TestCase):
     """The turn of a load, which no step of the phases meets."""

@@ -395,6 +395,51 @@ class Held(TestCase):
                         multigrid[name][-1], direct[name][-1], relative=1e-4
                     )
 
+    def test_slender_and_nearly_incompressible(self):
+        """Bending that is 1e5 times softer than the springs of the method: steps
+        learn from each other."""
+        strip = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "7, 2 : 0, 0 : 1, 0.0351 : true",
+            "Geometry/Global refinements": 1,
+            "Material/Young's modulus": 0.6748,
+            "Material/Poisson's ratio": 0.4999,
+            "Boundary 0/Role": "symmetry",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Friction law": "none",
+            "Boundary 2/Gap": 2.4e-5,
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Traction": "0; -4.3e-7*t*(x > 0.1429 ? 1 : 0)",
+            "Time/Phases": "1: 1",
+        }
+        for solver in "direct", "multigrid":
+            with self.subTest(solver=solver):
+                found = run("strip", {**strip, "Solver/Linear solver": solver}, text="")
+                # 12 of 14 cells, as the traction is taken at their points
+                self.assertClose(
+                    found["contact_force_y"][-1], -4.3e-7 * 6 / 7, relative=1e-6
+                )
+                self.assertLess(found["contact_iterations"][-1], 60)
+
+    def test_relieved_of_all_loads(self):
+        """The error is relative to what there was, not to the nothing that is
+        left, and so are the bounds of friction."""
+        for more in (
+            {},
+            {"Solver/Linear solver": "multigrid"},
+            {"Solver/Coulomb pressure": "fixed point"},
+        ):
+            with self.subTest(more):
+                relieved = {"Boundary 3/Pressure": "0.01*min(t, 2 - t)", **more}
+                result = run("hard/wedge_2d", relieved)
+                self.assertLessEqual(result["algebraic_error"].max(), 1e-5)
+                self.assertNotIn("rounding leaves", result.stdout)
+                self.assertLess(
+                    result["max_pressure"][-1], 1e-5 * result["max_pressure"].max()
+                )
+
     def test_belt_below_a_body_without_load(self):
         """Where nothing presses, nothing is carried along; and the pressure of
         the step before is told to be that."""
@@ -877,8 +922,13 @@ class Refused(TestCase):
                 self.assertLess(spread, 2 * error)
                 self.assertLess(error, 10 * spread)
 
-        flatter = {"Geometry/Arguments": "8, 2 : 0, 0 : 1, 1e-5 : true"}
+        flatter = {"Geometry/Arguments": "8, 2 : 0, 0 : 1, 5e-6 : true"}
         self.assertRefused(in_unit(1, **flatter), "rounding alone makes", "less flat")
+        # which a solver that has converged does not know by itself
+        converged = {**flatter, "Solver/Contact tolerance": 1e-8}
+        self.assertRefused(
+            in_unit(1, **converged), "Rounding alone makes 0.00957", "less flat"
+        )
 
     def test_foundations(self):
         normal = "Boundary 2/Foundation normal"

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/base/types.h>
 #include <viscoplastic_contact/contact/face_matrix.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -135,26 +136,55 @@ namespace Viscoplastic
     virtual double
     rounding_of_residual() = 0;
 
-    /// A norm of the solution to compare dual_norm() with. Zero for rigid
-    /// translations, hence the next one.
+    /// The energy norm of the present displacement. Zero for rigid
+    /// translations, hence the next ones.
     virtual double
     energy_norm() const = 0;
 
-    /**
-     * An error in the energy norm that rounding leaves in any case, and that
-     * counts as none: of a body that moves without strain, or whose loads
-     * balance, nothing else remains.
-     */
+    /// What errors are compared with.
+    double
+    size() const
+    {
+      return std::max(energy_norm(), scale.former_size);
+    }
+
+    /// What the right-hand side and its start say of sizes in the energy norm.
+    struct Scale
+    {
+      /// An error that rounding leaves in any case, and that counts as none: of
+      /// a body that moves without strain, or whose loads balance, nothing else
+      /// remains.
+      double rounding_error = 0.;
+      /// The norm of the solution of the step before. A body that is relieved
+      /// of all loads has none in the end, and its error is relative to what it
+      /// had.
+      double former_size = 0.;
+    };
+
+    /// Belongs to the right-hand side that is solved for next.
+    void
+    set_scale(const Scale &scale_)
+    {
+      scale = scale_;
+    }
+
+    const Scale &
+    get_scale() const
+    {
+      return scale;
+    }
+
+    /// Rounding has turned out to make more.
     void
     set_rounding_error(const double error)
     {
-      rounding = error;
+      scale.rounding_error = error;
     }
 
     double
     rounding_error() const
     {
-      return rounding;
+      return scale.rounding_error;
     }
 
     /**
@@ -192,6 +222,6 @@ namespace Viscoplastic
     finish() = 0;
 
   private:
-    double rounding = 0.;
+    Scale scale;
   };
 } // namespace Viscoplastic

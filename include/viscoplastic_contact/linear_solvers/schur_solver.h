@@ -119,14 +119,18 @@ namespace Viscoplastic
     void
     forward(const DistributedVector &load, const DistributedVector &u);
 
-    /// u += L^{-T} y.
-    void
-    backward(DistributedVector &u);
+    /// L^{-1} r.
+    Vector<double>
+    forward(const DistributedVector &r) const;
 
-    /// Add what the solve under way has found to the displacement from which it
-    /// began.
+    /// What the solve under way has added to the displacement from which it
+    /// began, times L^T: (y_i, L_cc^T face_change).
+    Vector<double>
+    change() const;
+
+    /// u += L^{-T} v.
     void
-    complete(DistributedVector &target);
+    backward(Vector<double> v, DistributedVector &u) const;
 
     const DistributedMatrix &matrix;
     const ContactLayout     &face;
@@ -142,6 +146,8 @@ namespace Viscoplastic
     DistributedVector       *u    = nullptr;
     Vector<double>           y, face_load, face_change, correction, product;
     FaceTruncation           truncation;
-    double                   squared_norm = 0.;
+    double                   squared_norm = 0.; // of the start
+    /// L^{-1} load, once it has been asked for.
+    mutable Vector<double> forward_load;
   };
 } // namespace Viscoplastic

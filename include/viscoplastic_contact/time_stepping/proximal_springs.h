@@ -77,6 +77,19 @@ namespace Viscoplastic
     double
     norm(const DistributedVector &u) const;
 
+    /**
+     * How many times as far the springs' rest should go as the last solve has
+     * moved the body away from it, by what the last two have taught: the step
+     * of Barzilai & Borwein (IMA J. Numer. Anal. 8, 1988) for the minimum of
+     * the energy with springs, whose gradient is what they carry. With a
+     * single motion it is the rule of the secant. Collective.
+     */
+    double
+    learned_step(const DistributedVector &last_center,
+                 const DistributedVector &center,
+                 const DistributedVector &last_change,
+                 const DistributedVector &change) const;
+
     /// The rigid motion, of those that only contact can prevent, nearest to a
     /// displacement. Collective.
     DistributedVector

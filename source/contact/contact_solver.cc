@@ -400,12 +400,13 @@ namespace Viscoplastic
   bool
   ContactSolver::Iteration::is_solved()
   {
-    fit_multipliers(face, residual, state, force);
+    const bool follow = bounds && bounds->follow();
+    fit_multipliers(face, residual, state, force, follow ? law : nullptr);
     if (bounds)
-      bounds->update(residual, state, force);
+      bounds->measure(state);
     FaceTruncation last = std::move(truncation);
     truncation          = make_truncation(face, state, inverse_diagonal);
-    if (bounds && bounds->follow())
+    if (follow)
       law->tilt(face, state, truncation);
     // A face that sticks or slips altogether, and whose slip does not turn,
     // makes a linear problem: unless the first sweep has found otherwise, it

@@ -3,6 +3,7 @@
 
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/contact_points.h>
+#include <viscoplastic_contact/contact/node_forces.h>
 #include <viscoplastic_contact/contact/node_minimum.h>
 
 #include <algorithm>
@@ -65,97 +66,6 @@ namespace Viscoplastic
       Tensor<1, 2> result;
       result[0] = std::max(0., multiplier[0]);
       return result;
-    }
-
-
-
-    /// Whether a point blocks its directions.
-    bool
-    holds(const ContactLayout::Point &point,
-          const ContactState         &state,
-          const unsigned int          p)
-    {
-      return state.sticks[p] && !point.gives_way();
-    }
-
-
-
-    /// Least-norm multipliers of the points that hold a node with several
-    /// points whose forces make up for @p missing, as far as they are
-    /// admissible.
-    void
-    fit_node(const ContactLayout &face,
-             const unsigned int   begin,
-             const unsigned int   end,
-             Tensor<1, 3>        &missing,
-             ContactState        &state)
-    {
-      // lambda = B (B^T B)^+ missing.
-      SymmetricTensor<2, 3> gram;
-      for (unsigned int p = begin; p < end; ++p)
-        if (holds(face.points[p], state, p))
-          for (unsigned int i = 0; i < face.points[p].n_tangents; ++i)
-            gram += symmetrize(
-              outer_product(face.points[p].map[i], face.points[p].map[i]));
-      const auto   pairs = eigenvectors(gram);
-      Tensor<1, 3> solution;
-      for (const auto &[value, vector] : pairs)
-        if (value > 1e-12 * pairs[0].first)
-          solution += (vector * missing) / value * vector;
-      bool                      inside = true;
-      std::vector<Tensor<1, 2>> lambda(end - begin), z, old;
-      for (unsigned int p = begin; p < end; ++p)
-        if (holds(face.points[p], state, p))
-          {
-            const Tensor<1, 2> free = slip(face.points[p], solution);
-            lambda[p - begin] = clip(face.points[p], free, state.bound[p]);
-            inside &= lambda[p - begin] == free;
-          }
-      // Where that leaves a ball: accelerated projected gradients. One in a
-      // thousand random nodes takes all of them, with nothing left to gain but
-      // where bounds or areas of pieces differ by some 1e4. Whatever they end
-      // with is admissible, and the force that it misses counts as an error.
-      if (!inside)
-        {
-          const double L        = pairs[0].first;
-          double       momentum = 1.;
-          z                     = lambda;
-          for (unsigned int step = 0; step < 3000; ++step)
-            {
-              old                 = lambda;
-              Tensor<1, 3> remain = missing;
-              for (unsigned int p = begin; p < end; ++p)
-                remain -= node_force(face.points[p], z[p - begin]);
-              double change = 0., size = 0., uphill = 0.;
-              for (unsigned int p = begin; p < end; ++p)
-                if (holds(face.points[p], state, p))
-                  {
-                    auto &l = lambda[p - begin];
-                    l       = clip(face.points[p],
-                             z[p - begin] + slip(face.points[p], remain) / L,
-                             state.bound[p]);
-                    uphill += (z[p - begin] - l) * (l - old[p - begin]);
-                    change += (z[p - begin] - l).norm();
-                    size += l.norm();
-                  }
-              if (change <= 1e-15 * size)
-                break;
-              const double next =
-                uphill > 0. ?
-                  1. :
-                  0.5 * (1. + std::sqrt(1. + 4. * momentum * momentum));
-              const double beta = uphill > 0. ? 0. : (momentum - 1.) / next;
-              momentum          = next;
-              for (unsigned int p = 0; p < lambda.size(); ++p)
-                z[p] = lambda[p] + beta * (lambda[p] - old[p]);
-            }
-        }
-      for (unsigned int p = begin; p < end; ++p)
-        if (holds(face.points[p], state, p))
-          {
-            state.multiplier[p] = lambda[p - begin];
-            missing -= node_force(face.points[p], state.multiplier[p]);
-          }
     }
   } // namespace
 
@@ -237,6 +147,39 @@ namespace Viscoplastic
 
 
 
+  } // namespace
+
+
+
+  PointSolution
+  solve_point(const ContactLayout &face,
+              const unsigned int   p,
+              const Tensor<2, 3>  &flexibility,
+              const Tensor<1, 3>  &force,
+              const ContactState  &state,
+              const Tensor<1, 3>  &start)
+  {
+    const ContactLayout::Point &point = face.points[p];
+    Tensor<2, 2>                of_point;
+    for (unsigned int i = 0; i < point.n_tangents; ++i)
+      for (unsigned int j = 0; j < point.n_tangents; ++j)
+        of_point[i][j] = point.map[i] * (flexibility * point.map[j]);
+    const Tensor<1, 2> free_motion =
+      state.slip_with(point, p, start + flexibility * force);
+    return point.is_obstacle ? solve_obstacle(point,
+                                              of_point[0][0],
+                                              free_motion[0],
+                                              state.bound[p]) :
+                               solve_friction_point(of_point,
+                                                    free_motion,
+                                                    point.n_tangents,
+                                                    state.bound[p]);
+  }
+
+
+
+  namespace
+  {
     /**
      * Minimize J over x = start + y, with y in the range of the symmetric @p
      * flexibility, its response to forces: by duality, block by block over the
@@ -266,21 +209,8 @@ namespace Viscoplastic
             {
               const ContactLayout::Point &point = face.points[p];
               remaining += node_force(point, state.multiplier[p]);
-              Tensor<2, 2> of_point;
-              for (unsigned int i = 0; i < point.n_tangents; ++i)
-                for (unsigned int j = 0; j < point.n_tangents; ++j)
-                  of_point[i][j] = point.map[i] * (flexibility * point.map[j]);
-              const Tensor<1, 2> free_motion =
-                state.slip_with(point, p, start + flexibility * remaining);
               const PointSolution solution =
-                point.is_obstacle ? solve_obstacle(point,
-                                                   of_point[0][0],
-                                                   free_motion[0],
-                                                   state.bound[p]) :
-                                    solve_friction_point(of_point,
-                                                         free_motion,
-                                                         point.n_tangents,
-                                                         state.bound[p]);
+                solve_point(face, p, flexibility, remaining, state, start);
               change += (solution.multiplier - state.multiplier[p]).norm();
               size += solution.multiplier.norm();
               state.multiplier[p] = solution.multiplier;
@@ -382,45 +312,38 @@ namespace Viscoplastic
   fit_multipliers(const ContactLayout  &face,
                   const Vector<double> &residual,
                   ContactState         &state,
-                  Vector<double>       &force)
+                  Vector<double>       &force,
+                  const CoulombLaw     *law)
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
         const unsigned int begin   = face.first_point[node];
         const unsigned int end     = face.first_point[node + 1];
-        unsigned int       n_stick = 0;
-        Tensor<1, 3>       missing = face.node_values(residual, node);
-        for (unsigned int p = begin; p < end; ++p)
-          {
-            state.multiplier[p] = Tensor<1, 2>();
-            if (face.points[p].gives_way())
-              state.multiplier[p][0] =
-                face.points[p].compliance.force(state.penetration(p));
-            else if (state.sticks[p])
-              ++n_stick;
-            else if (!face.points[p].is_obstacle)
-              state.multiplier[p] =
-                slipping_multiplier(state.bound[p], state.slip[p]);
-            missing -= node_force(face.points[p], state.multiplier[p]);
-          }
-        // Points of orthogonal rows: the residual, clipped.
-        if (n_stick > 0 &&
-            (end - begin == 1 ||
-             (end - begin == 2 && face.has_plain_friction(node))))
-          for (unsigned int p = begin; p < end; ++p)
+        const Tensor<1, 3> total   = face.node_values(residual, node);
+        Tensor<1, 3>       missing = total;
+        if (end - begin == 1 ||
+            (end - begin == 2 && face.has_plain_friction(node)))
+          // Points of orthogonal rows, obstacles first: the residual, clipped.
+          for (unsigned int p = end; p-- > begin;)
             {
-              const ContactLayout::Point &point = face.points[p];
-              if (!holds(point, state, p))
-                continue;
-              state.multiplier[p] =
-                clip(point, nearest_multiplier(point, missing), state.bound[p]);
-              missing -= node_force(point, state.multiplier[p]);
+              const ContactLayout::Point &point      = face.points[p];
+              Tensor<1, 2>               &multiplier = state.multiplier[p];
+              if (law != nullptr && !point.is_obstacle)
+                state.bound[p] = law->bound(face, state, p);
+              multiplier = Tensor<1, 2>();
+              if (point.gives_way())
+                multiplier[0] = point.compliance.force(state.penetration(p));
+              else if (state.sticks[p])
+                multiplier = clip(point,
+                                  nearest_multiplier(point, missing),
+                                  state.bound[p]);
+              else if (!point.is_obstacle)
+                multiplier = slipping_multiplier(state.bound[p], state.slip[p]);
+              missing -= node_force(point, multiplier);
             }
-        else if (n_stick > 0)
-          fit_node(face, begin, end, missing, state);
-        face.set_node_values(face.node_values(residual, node) - missing,
-                             node,
-                             force);
+        else
+          missing = NodeForces(face, node, state, law).fit(total, state);
+        face.set_node_values(total - missing, node, force);
       }
   }
 

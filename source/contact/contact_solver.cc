@@ -37,6 +37,9 @@ namespace Viscoplastic
     /// preconditioner is below the tolerance by any: that takes one whose
     /// condition number is less than 1e6.
     constexpr double beyond_doubt = 1e-3;
+    /// Estimates found too low are not taken for more than so many times too
+    /// low: others will be less so.
+    constexpr double largest_misjudgment = 10.;
 
 
 
@@ -214,6 +217,8 @@ namespace Viscoplastic
     std::vector<bool>       last_sets;
     /// Bound on the error and size of the solution in the energy norm.
     double error = 0., size = 0.;
+    /// The dual norm over its estimate when this was found too low.
+    double misjudged  = 1.;
     double best_error = std::numeric_limits<double>::max();
     /// The iteration that has halved that last, and that before which rounding
     /// is not to be asked for again.
@@ -400,12 +405,13 @@ namespace Viscoplastic
   bool
   ContactSolver::Iteration::is_solved()
   {
-    fit_multipliers(face, residual, state, force);
+    const bool follow = bounds && bounds->follow();
+    fit_multipliers(face, residual, state, force, follow ? law : nullptr);
     if (bounds)
-      bounds->update(residual, state, force);
+      bounds->measure(state);
     FaceTruncation last = std::move(truncation);
     truncation          = make_truncation(face, state, inverse_diagonal);
-    if (bounds && bounds->follow())
+    if (follow)
       law->tilt(face, state, truncation);
     // A face that sticks or slips altogether, and whose slip does not turn,
     // makes a linear problem: unless the first sweep has found otherwise, it
@@ -422,12 +428,23 @@ namespace Viscoplastic
     bulk.set_truncation(truncation);
     const Certificate certificate =
       certify(face, residual, diagonal, state, force, bulk.rounding_error());
-    size  = std::max(bulk.size(), bulk.rounding_error() / tolerance);
-    error = bound(bulk.dual_norm(certificate.force), certificate);
+    size = std::max(bulk.size(), bulk.rounding_error() / tolerance);
+    const double estimate = bulk.dual_norm(certificate.force);
+    error                 = bound(misjudged * estimate, certificate);
     if (error <= tolerance * size && error > beyond_doubt * tolerance * size)
-      error = bound(bulk.confirmed_dual_norm(certificate.force,
-                                             report.linear_iterations),
-                    certificate);
+      {
+        // Above this, the bound is above the tolerance.
+        const double limit = tolerance * size /
+                             (bounds ? bounds->error_with_bounds(1.) -
+                                         bounds->error_with_bounds(0.) :
+                                       1.);
+        const double confirmed =
+          bulk.confirmed_dual_norm(certificate.force,
+                                   limit,
+                                   report.linear_iterations);
+        error     = bound(confirmed, certificate);
+        misjudged = std::clamp(confirmed / estimate, 1., largest_misjudgment);
+      }
     AssertThrow(std::isfinite(error),
                 ExcMessage("The contact solver met a value that is not "
                            "finite."));
@@ -478,9 +495,11 @@ namespace Viscoplastic
       return false;
     next_question += stalled_after;
     const double rounding = bulk.rounding_of_residual();
-    error                 = bound(bulk.confirmed_dual_norm(certificate.force,
-                                           report.linear_iterations),
-                  certificate);
+    error =
+      bound(bulk.confirmed_dual_norm(certificate.force,
+                                     std::numeric_limits<double>::infinity(),
+                                     report.linear_iterations),
+            certificate);
     if (rounding > largest_rounding * size)
       give_up();
     if (error > rounding_margin * rounding)

@@ -35,13 +35,8 @@ namespace Viscoplastic
 
 
   void
-  CoulombBounds::update(const Vector<double> &residual,
-                        ContactState         &state,
-                        Vector<double>       &force)
+  CoulombBounds::measure(const ContactState &state)
   {
-    if (!rest && law.set_bounds(face, state))
-      fit_multipliers(face, residual, state, force);
-    // Where pieces meet, pressures may have changed with the bounds again.
     double sum = 0.;
     missing.assign(face.points.size(), 0.);
     for (unsigned int p = 0; p < face.points.size(); ++p)

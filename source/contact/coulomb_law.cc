@@ -4,9 +4,11 @@
 #include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/contact/coulomb_law.h>
 #include <viscoplastic_contact/contact/coulomb_node.h>
+#include <viscoplastic_contact/contact/node_forces.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace Viscoplastic
 {
@@ -24,28 +26,64 @@ namespace Viscoplastic
 
 
 
-  bool
-  CoulombLaw::set_bounds(const ContactLayout &face, ContactState &state) const
+  unsigned int
+  CoulombLaw::own_obstacle(const ContactLayout &face,
+                           const unsigned int   point) const
   {
-    bool any = false;
-    for (unsigned int p = 0; p < face.points.size(); ++p)
-      if (!face.points[p].is_obstacle)
-        {
-          const double now = bound(face, state, p);
-          any |= now != state.bound[p];
-          state.bound[p] = now;
-        }
-    return any;
+    const unsigned int node   = face.points[point].node;
+    const unsigned int begin  = face.first_obstacle(node);
+    unsigned int       result = numbers::invalid_unsigned_int;
+    double             most   = 0.;
+    for (unsigned int o = begin; o < face.first_point[node + 1]; ++o)
+      {
+        bool is_across = true;
+        for (unsigned int i = 0; i < face.points[point].n_tangents; ++i)
+          is_across = is_across && std::abs(face.points[point].map[i] *
+                                            face.points[o].map[0]) < 1e-10;
+        if (is_across && of_pressure[point][o - begin] > most)
+          {
+            most   = of_pressure[point][o - begin];
+            result = o;
+          }
+      }
+    return result;
   }
 
 
 
-  bool
-  CoulombLaw::is_plain(const ContactLayout &face, const unsigned int node) const
+  double
+  CoulombLaw::own_pressure(const ContactLayout &face,
+                           const unsigned int   p,
+                           const unsigned int   o,
+                           const Tensor<2, 3>  &inverse_diagonal,
+                           const Tensor<1, 3>  &force,
+                           const ContactState  &state) const
   {
-    return face.has_plain_friction(node) &&
-           face.first_point[node + 1] - face.first_obstacle(node) == 1 &&
-           of_pressure[face.first_point[node]][0] > 0.;
+    const ContactLayout::Point       &friction = face.points[p];
+    const std::array<Tensor<1, 3>, 3> rows{
+      {face.points[o].map[0], friction.map[0], friction.map[1]}};
+    const double coefficient =
+                   of_pressure[p][o - face.first_obstacle(friction.node)],
+                 present = state.multiplier[o][0];
+    CoulombNode        problem{{},
+                        {},
+                        friction.n_tangents,
+                        std::max(0.,
+                                 bound(face, state, p) - coefficient * present),
+                        coefficient,
+                        face.points[o].compliance,
+                        state.sticks[o] ? present : 0.};
+    const Tensor<1, 3> free  = inverse_diagonal * force;
+    problem.free_motion[0]   = rows[0] * free - state.bound[o];
+    const Tensor<1, 2> slips = state.slip_with(friction, p, free);
+    for (unsigned int i = 0; i <= friction.n_tangents; ++i)
+      {
+        if (i > 0)
+          problem.free_motion[i] = slips[i - 1];
+        for (unsigned int j = 0; j <= friction.n_tangents; ++j)
+          problem.flexibility[i][j] = rows[i] * (inverse_diagonal * rows[j]);
+      }
+    return coulomb_pressure(problem);
   }
 
 
@@ -57,61 +95,58 @@ namespace Viscoplastic
                          const Tensor<1, 3>  &force,
                          ContactState        &state) const
   {
-    const unsigned int p = face.first_point[node],
-                       o = face.first_obstacle(node);
-    const auto relax     = [&] {
-      return Viscoplastic::relax_node(
-        face, node, inverse_diagonal, force, state);
+    constexpr unsigned int max_sweeps = 100;
+    const unsigned int     begin      = face.first_point[node],
+                       end            = face.first_point[node + 1],
+                       obstacle       = face.first_obstacle(node);
+    Tensor<1, 3> remaining            = force;
+    double       change, size;
+    const auto   take_away = [&](const unsigned int p) {
+      remaining += node_force(face.points[p], state.multiplier[p]);
     };
-    if (is_plain(face, node))
-      {
-        const ContactLayout::Point       &friction = face.points[p];
-        const std::array<Tensor<1, 3>, 3> rows{
-          {face.points[o].map[0], friction.map[0], friction.map[1]}};
-        CoulombNode        problem{{},
-                            {},
-                            friction.n_tangents,
-                            given[p],
-                            of_pressure[p][0],
-                            face.points[o].compliance,
-                            state.sticks[o] ? state.multiplier[o][0] : 0.};
-        const Tensor<1, 3> free  = inverse_diagonal * force;
-        problem.free_motion[0]   = rows[0] * free - state.bound[o];
-        const Tensor<1, 2> slips = state.slip_with(friction, p, free);
-        for (unsigned int i = 0; i <= friction.n_tangents; ++i)
-          {
-            if (i > 0)
-              problem.free_motion[i] = slips[i - 1];
-            for (unsigned int j = 0; j <= friction.n_tangents; ++j)
-              problem.flexibility[i][j] =
-                rows[i] * (inverse_diagonal * rows[j]);
-          }
-        // With the bound of its pressure, the minimum at the node is what
-        // Coulomb's law asks for.
-        state.bound[p] =
-          given[p] + of_pressure[p][0] * coulomb_pressure(problem);
-        return relax();
-      }
+    const auto set = [&](const unsigned int p, const PointSolution &solution) {
+      change += (solution.multiplier - state.multiplier[p]).norm();
+      size += solution.multiplier.norm();
+      state.multiplier[p] = solution.multiplier;
+      state.sticks[p]     = solution.sticks;
+      remaining -= node_force(face.points[p], solution.multiplier);
+    };
+    for (unsigned int p = begin; p < end; ++p)
+      remaining -= node_force(face.points[p], state.multiplier[p]);
 
-    // Where pieces meet, pressures and bounds follow each other; swings are
-    // halved.
-    constexpr unsigned int max_iterations = 50;
-    Tensor<1, 3>           x;
-    for (unsigned int iteration = 0;; ++iteration)
+    // Piece by piece, as often as the others change its forces.
+    for (unsigned int sweep = 0; sweep < max_sweeps; ++sweep)
       {
-        x             = relax();
-        double change = 0., sum = 0.;
-        for (unsigned int f = p; f < o; ++f)
+        std::vector<bool> is_done(end - begin, false);
+        change = size = 0.;
+        for (unsigned int p = begin; p < end; ++p)
           {
-            const double now = bound(face, state, f);
-            change += std::abs(now - state.bound[f]);
-            sum += now;
-            state.bound[f] =
-              iteration < 10 ? now : 0.5 * (now + state.bound[f]);
+            if (is_done[p - begin])
+              continue;
+            take_away(p);
+            if (p < obstacle)
+              if (const unsigned int o = own_obstacle(face, p); o < end)
+                {
+                  take_away(o);
+                  PointSolution pressed{{}, false};
+                  pressed.multiplier[0] = own_pressure(
+                    face, p, o, inverse_diagonal, remaining, state);
+                  pressed.sticks = pressed.multiplier[0] > 0.;
+                  set(o, pressed);
+                  is_done[o - begin] = true;
+                }
+            if (p < obstacle)
+              state.bound[p] = bound(face, state, p);
+            set(p, solve_point(face, p, inverse_diagonal, remaining, state));
           }
-        if (change <= 1e-14 * sum || iteration == max_iterations)
-          return x;
+        if (face.has_plain_friction(node) && end - obstacle <= 1)
+          break;
+        if (change <= 1e-14 * size)
+          break;
       }
+    // With the bounds of its pressures, the minimum at the node is what
+    // Coulomb's law asks for.
+    return Viscoplastic::relax_node(face, node, inverse_diagonal, force, state);
   }
 
 
@@ -123,24 +158,42 @@ namespace Viscoplastic
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
-        const unsigned int p = face.first_point[node],
-                           o = face.first_obstacle(node);
-        if (!is_plain(face, node) || state.sticks[p] || !state.sticks[o] ||
-            !(state.multiplier[o][0] > 0.) || !(state.slip[p].norm() > 0.))
-          continue;
-        if (truncation.tilt.empty())
+        const unsigned int        obstacle = face.first_obstacle(node);
+        std::optional<NodeForces> forces;
+        bool                      any_gives_way = false;
+        for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
+          any_gives_way = any_gives_way || face.points[o].gives_way();
+        for (unsigned int p = face.first_point[node]; p < obstacle; ++p)
+          for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
+            {
+              const double coefficient = of_pressure[p][o - obstacle];
+              if (state.sticks[p] || !(state.slip[p].norm() > 0.) ||
+                  !(coefficient > 0.) || !(state.multiplier[o][0] > 0.))
+                continue;
+              if (truncation.tilt.empty())
+                {
+                  Tensor<2, 3> identity;
+                  for (unsigned int d = 0; d < 3; ++d)
+                    identity[d][d] = 1.;
+                  truncation.tilt.assign(face.n_nodes(), identity);
+                }
+              if (!forces)
+                forces.emplace(face, node, state, this, true);
+              truncation.tilt[node] -=
+                coefficient *
+                outer_product(node_force(face.points[p],
+                                         state.slip[p] / state.slip[p].norm()),
+                              forces->pressure_of_force(o));
+            }
+        // Slips that turn press the pieces that they do not move along.
+        if (forces && !face.has_plain_friction(node) && !any_gives_way)
           {
-            Tensor<2, 3> identity;
-            for (unsigned int d = 0; d < 3; ++d)
-              identity[d][d] = 1.;
-            truncation.tilt.assign(face.n_nodes(), identity);
+            const Tensor<2, 3> &projector = truncation.projector[node];
+            const Tensor<2, 3>  spring    = projector * truncation.tilt[node] *
+                                        truncation.spring[node] * projector;
+            if (trace(spring) >= 0.)
+              truncation.spring[node] = 0.5 * (spring + transpose(spring));
           }
-        const Tensor<1, 3> &normal = face.points[o].map[0];
-        truncation.tilt[node] -=
-          of_pressure[p][0] / normal.norm_square() *
-          outer_product(node_force(face.points[p],
-                                   state.slip[p] / state.slip[p].norm()),
-                        normal);
       }
   }
 
@@ -152,17 +205,20 @@ namespace Viscoplastic
                              ContactState         &state) const
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
-      if (is_plain(face, node))
-        {
-          const unsigned int p       = face.first_point[node],
-                             o       = face.first_obstacle(node);
-          const Tensor<1, 3> &normal = face.points[o].map[0];
-          const double        force =
-            state.sticks[o] ?
-                     normal * face.node_values(residual, node) / normal.norm_square() :
-                     0.;
-          state.bound[p] = given[p] + of_pressure[p][0] * std::max(0., force);
-        }
+      {
+        const NodeForces forces(face, node, state, this, true);
+        if (!forces.is_free() && !face.has_plain_friction(node))
+          continue;
+        const unsigned int obstacle = face.first_obstacle(node);
+        const auto         pressures =
+          forces.pressures(face.node_values(residual, node));
+        for (unsigned int p = face.first_point[node]; p < obstacle; ++p)
+          {
+            state.bound[p] = given[p];
+            for (unsigned int k = 0; k < pressures.size(); ++k)
+              state.bound[p] += of_pressure[p][k] * pressures[k];
+          }
+      }
   }
 
 

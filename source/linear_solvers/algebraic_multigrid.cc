@@ -38,8 +38,8 @@ namespace Viscoplastic
 
 
 
-  void
-  AlgebraicMultigrid::build()
+  std::unique_ptr<SmoothedAggregation>
+  AlgebraicMultigrid::make(const FaceTruncation &truncation) const
   {
     // Components that are cut off: excluded ones, and those of the face that
     // are blocked by themselves, such as the normal one of a node that slips on
@@ -58,7 +58,6 @@ namespace Viscoplastic
     else
       keep_column = keep;
 
-    amg.reset(); // before there is another one: memory
     auto masked_matrix = std::make_unique<DistributedMatrix>();
     masked_matrix->copy_from(matrix);
     const Epetra_CrsMatrix &M = masked_matrix->trilinos_matrix();
@@ -73,7 +72,7 @@ namespace Viscoplastic
       }
 
     // The springs of slipping points, which the cut-off rows do not have.
-    if (has_springs)
+    if (truncation.has_springs(face))
       {
         const std::vector<types::global_dof_index> &dofs = restriction.dofs();
         for (unsigned int n = 0; n < face.n_nodes(); ++n)
@@ -95,11 +94,20 @@ namespace Viscoplastic
       for (std::size_t i = 0; i < n; ++i)
         near_null_space[m * n + i] = rigid_body_modes[m].begin()[i] * keep[i];
 
-    amg       = std::make_unique<SmoothedAggregation>(std::move(masked_matrix),
-                                                std::move(near_null_space),
-                                                dim);
-    built_for = truncation;
-    is_fresh  = true;
+    return std::make_unique<SmoothedAggregation>(std::move(masked_matrix),
+                                                 std::move(near_null_space),
+                                                 dim);
+  }
+
+
+
+  void
+  AlgebraicMultigrid::build()
+  {
+    amg.reset(); // before there is another one: memory
+    amg             = make(truncation);
+    built_for       = truncation;
+    is_fresh        = true;
     lost_iterations = 0.;
   }
 
@@ -133,12 +141,9 @@ namespace Viscoplastic
     truncation  = truncation_;
     has_springs = truncation.has_springs(face);
 
-    // What ML costs in iterations of conjugate gradients: a set-up takes 1.2
-    // (2D) to 2.2 (3D) solves of about 15.
-    const double price = dim == 2 ? 20. : 30.;
-    const bool   is_outdated =
+    const bool is_outdated =
       !built_for.blocks_as(truncation, face) || has_springs;
-    if (!amg || (may_rebuild && lost_iterations > price && is_outdated))
+    if (!amg || (may_rebuild && lost_iterations > price() && is_outdated))
       build();
     make_damping();
   }
@@ -168,6 +173,34 @@ namespace Viscoplastic
                                         const DistributedVector &x) const
   {
     amg->vmult(y, x);
+  }
+
+
+
+  void
+  AlgebraicMultigrid::vmult_whole(DistributedVector       &y,
+                                  const DistributedVector &x) const
+  {
+    if (!whole)
+      whole = make(FaceTruncation());
+    whole->vmult(y, x);
+  }
+
+
+
+  unsigned int
+  AlgebraicMultigrid::iterations_for_whole() const
+  {
+    return price();
+  }
+
+
+
+  unsigned int
+  AlgebraicMultigrid::price() const
+  {
+    // A set-up takes 1.2 (2D) to 2.2 (3D) solves of about 15.
+    return dim == 2 ? 20 : 30;
   }
 
 

@@ -69,11 +69,14 @@ namespace Viscoplastic
   {
     const KrylovSolver &solver;
     const bool          is_truncated;
+    const bool          is_whole = false;
 
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
-      if (is_truncated)
+      if (is_whole)
+        solver.preconditioner->vmult_whole(y, x);
+      else if (is_truncated)
         solver.preconditioner->vmult(y, x);
       else
         solver.preconditioner->vmult_untruncated(y, x);
@@ -312,11 +315,12 @@ namespace Viscoplastic
 
   double
   KrylovSolver::confirmed_dual_norm(const Vector<double> &force,
+                                    const double          limit,
                                     unsigned int         &iterations)
   {
     product = residual;
     restriction.add(-1., force, product);
-    return dual_norm_of_product(iterations);
+    return dual_norm_of_product(limit, iterations);
   }
 
 
@@ -329,39 +333,62 @@ namespace Viscoplastic
         product = error;
         restrict_to_unknowns(product);
         unsigned int iterations = 0;
-        return Utilities::fixed_power<2>(dual_norm_of_product(iterations));
+        return Utilities::fixed_power<2>(
+          dual_norm_of_product(std::numeric_limits<double>::infinity(),
+                               iterations));
       });
   }
 
 
 
   double
-  KrylovSolver::dual_norm_of_product(unsigned int &iterations)
+  KrylovSolver::dual_norm_of_product(const double  limit,
+                                     unsigned int &iterations)
   {
     // A preconditioner for another stick set misjudges residuals on the face,
-    // so solve A w = R on all unknowns: w . R is the square of the norm up to
-    // the square of the error.
-    w           = 0.;
-    double norm = 0.;
-    if (product.l2_norm() > 0.)
+    // so solve A w = R on all unknowns: w . R is the square of the norm less
+    // the square of the error, which grows from step to step.
+    // One that is made for all unknowns is worth its price where this takes
+    // long; beginning again makes all of it the same after a restart.
+    if (!(product.l2_norm() > 0.))
+      return 0.;
+    const auto square = [&](const DistributedVector &x) {
+      return std::max(0., x * product);
+    };
+    const unsigned int patience =
+      std::min(preconditioner->iterations_for_whole(), max_cg_iterations);
+    for (const bool is_whole : {false, true})
       {
-        ReductionControl            control(max_cg_iterations, 0., 0.1);
+        w                         = 0.;
+        bool             is_above = false;
+        ReductionControl control(is_whole ? max_cg_iterations : patience,
+                                 0.,
+                                 0.1);
         SolverCG<DistributedVector> cg(control);
+        if (std::isfinite(limit))
+          cg.connect([&](const unsigned int, const double, const auto &x) {
+            is_above = square(x) > Utilities::fixed_power<2>(limit);
+            return is_above ? SolverControl::failure : SolverControl::success;
+          });
+        bool has_ended = true;
         try
           {
             cg.solve(TruncatedOperator{*this, false},
                      w,
                      product,
-                     TruncatedPreconditioner{*this, false});
-            norm = std::sqrt(std::max(0., w * product));
+                     TruncatedPreconditioner{*this, false, is_whole});
           }
         catch (const SolverControl::NoConvergence &)
           {
-            norm = std::numeric_limits<double>::infinity();
+            has_ended = is_above;
           }
         iterations += control.last_step();
+        if (has_ended)
+          return std::sqrt(square(w));
+        if (patience == max_cg_iterations)
+          break;
       }
-    return norm;
+    return std::numeric_limits<double>::infinity();
   }
 
 

@@ -452,6 +452,7 @@ namespace Viscoplastic
 
   double
   SchurSolver::confirmed_dual_norm(const Vector<double> &force,
+                                   const double /*limit*/,
                                    unsigned int & /*iterations*/)
   {
     return dual_norm(force);

@@ -186,13 +186,14 @@ namespace Viscoplastic
             // That there is one solution is all that is known then.
           }
       }
-    difference /= u.linfty_norm();
+    // A body that has lifted off may be at rest where it was made.
+    difference /= std::max(u.linfty_norm(), first_u.linfty_norm());
     std::ostringstream text;
     text << report.doubt;
     if (difference > several_solutions)
       text << "; from another start there is another solution, whose "
               "displacement differs by "
-           << difference << " of the largest";
+           << difference << " of the largest there is or was";
     else
       text << "; the starts without friction and without slip end in no other "
               "solution";

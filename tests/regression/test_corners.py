@@ -232,6 +232,85 @@ class Corners(TestCase):
         )
         self.check_edge(result, matrix)
 
+    def test_90_degrees_edge_coulomb_3d(self):
+        """Both planes press by lambda 0.08 t = 0.6/13 t, as the cube gets shorter
+        along the edge but not across, and friction follows from these pressures,
+        along the edge from both."""
+        scene = {
+            f"Boundary {i}/{name}": value
+            for i, coefficient in ((0, 0.5), (2, 2 / 3))
+            for name, value in (
+                ("Contact law", "unilateral"),
+                ("Friction law", "coulomb"),
+                ("Friction coefficient", coefficient),
+            )
+        }
+        scene["Boundary 1/Displacement"] = "0; free; t*(0.16 + 0.08*y - 0.08*z)"
+        scene["Boundary 3/Traction"] = "0; -0.6/13*t; 0.4/13*t"
+        scene["Boundary 4/Traction"] = "-0.3/13*t; -0.4/13*t; 1.4/13*t"
+        scene["Boundary 5/Traction"] = "0.3/13*t; 0.4/13*t; -1.4/13*t"
+        gradient = np.zeros((3, 3))
+        gradient[2] = 0.06, 0.08, -0.08
+        for ranks in 1, 2, 3:
+            with self.subTest(ranks=ranks):
+                result = run("corner_tresca_90_3d", scene, ranks)
+                self.check_displacement(result, (0, 0, 0.1), gradient)
+                pressed = -0.6 / 13 * result["t"]
+                for name in "contact_force_x", "contact_force_y":
+                    # side x = 1 is held in x, on y = 0, too
+                    self.assertClose(result[name], pressed, relative=1e-7, what=name)
+                self.check_identities(result)
+                self.assertLess(result["contact_iterations"].max(), 8)
+                self.assertEqual(result["bound_iterations"].max(), 0)
+
+    def test_cube_in_an_edge(self):
+        """Pressed into an edge between two planes with friction and drawn along
+        it: nodes of the edge stick, slip along it, or leave one plane; ranks and
+        solvers agree."""
+        boundary = {
+            0: {"Role": "contact", "Contact law": "unilateral"},
+            1: {"Role": "traction", "Traction": "-0.01*min(t, 1); 0; 0"},
+            2: {"Role": "contact", "Contact law": "unilateral"},
+            3: {"Role": "traction", "Traction": "0; -0.01*min(t, 1); 0"},
+            4: {"Role": "free"},
+            5: {
+                "Role": "displacement",
+                "Displacement": "free; free; 0.02*max(t - 1, 0)",
+            },
+        }
+        for friction in 0.3, 1:
+            for side in 0, 2:
+                boundary[side]["Friction law"] = "coulomb"
+                boundary[side]["Friction coefficient"] = friction
+            results = [
+                run(
+                    "edge",
+                    {
+                        "Dimension": 3,
+                        "Geometry/Generator": "subdivided_hyper_rectangle",
+                        "Geometry/Arguments": "6, 6, 6 : 0, 0, 0 : 1, 1, 1 : true",
+                        "Solver/Contact tolerance": 1e-10,
+                        "Time/Phases": "1: 2, 2: 4",
+                        **{
+                            f"Boundary {i}/{name}": value
+                            for i, entries in boundary.items()
+                            for name, value in entries.items()
+                        },
+                    },
+                    ranks,
+                    text="",
+                )
+                for ranks in (1, 3)
+            ]
+            with self.subTest(friction=friction):
+                for result in results:
+                    self.check_identities(result)
+                    self.assertLess(result["contact_iterations"].max(), 15)
+                for name in "stored_energy", "friction_force_z", "friction_dissipation":
+                    self.assertClose(
+                        results[0][name], results[1][name], 1e-5, 1e-9, name
+                    )
+
 
 if __name__ == "__main__":
     main()

@@ -3,6 +3,7 @@
 values that others give, found with the settings that one writes down first."""
 
 import json
+import re
 
 import numpy as np
 from scipy.optimize import brentq
@@ -125,11 +126,40 @@ class Published(TestCase):
                 self.assertGreater(bar["contraction"][last + 1], 1)
                 t = f"{bar['t'][last + 1]:.6g}"
                 self.assertIn(f"the step to t = {t} {warning}", bar.stdout)
+                self.assertNotIn("from another start", bar.stdout)
                 record = json.loads((bar.directory / "run.json").read_text())
                 self.assertRegex(
                     " ".join(record["doubtful_steps"]),
                     r"most at \([0-9.]+ 0\) \(friction coefficient: 1 at most\)",
                 )
+
+    def test_several_solutions(self):
+        """Klarbring's two nodes, pushed on while the plane goes down in one step:
+        the foot slips with all of its friction, though the bar as it was made
+        would not touch the plane any more, and that is said."""
+        friction = 1.2
+        bar = run(
+            "literature/leaning_bar",
+            {
+                "Boundary 2/Friction coefficient": friction,
+                "Boundary 2/Foundation motion": "0.01*min(max(t - 1, 0), 1)"
+                " + 0.0118*max(t - 2, 0); 0",
+                "Geometry/Global refinements": 0,
+                "Solver/Contact tolerance": 1e-10,
+                "Time/Phases": "2: 4, 2.334: 1",
+            },
+        )
+        self.check_identities(bar)
+        p, q = -bar["contact_force_y"][-1], abs(bar["friction_force_x"][-1])
+        self.assertGreater(p, 1e-4)
+        self.assertClose(q, friction * p, relative=1e-9)
+        plane = -0.001 + 0.005 * (bar["t"][-1] - 2)
+        self.assertGreater(plane, 0)  # so u = 0 is a solution, too
+        at_least = bar["max_displacement"][-1] / bar["max_displacement"].max()
+        found = re.search(
+            r"another solution, whose displacement differs by ([0-9.]+) of", bar.stdout
+        )
+        self.assertGreater(float(found[1]), 0.99 * at_least)
 
     def test_jump_that_is_not_found(self):
         """With too few iterations for it, the run ends where the bar would jump."""

@@ -26,11 +26,30 @@ namespace
   /// Nodes on rigid foundations, mu at most @p largest. Half of the problems
   /// are ties: no load, no distance, a start in equilibrium, mu that vanishes
   /// or varies along the face.
+  enum class Nodes
+  {
+    plain,
+    oblique, // rows that are no components of the node
+    corners  // at some of the nodes two pieces meet
+  };
+
+
+
+  Nodes
+  nodes_of(const unsigned int seed)
+  {
+    return seed % 5 == 4 ? Nodes::oblique :
+           seed % 5 == 3 ? Nodes::corners :
+                           Nodes::plain;
+  }
+
+
+
   CoulombProblem
   random_coulomb_problem(const unsigned int seed,
                          const unsigned int n_tangents,
                          const double       largest,
-                         const bool         oblique = false)
+                         const Nodes        nodes = Nodes::plain)
   {
     Random             random(seed);
     CoulombProblem     result;
@@ -40,15 +59,29 @@ namespace
     for (unsigned int n = 0; n < n_nodes; ++n)
       {
         std::vector<Tensor<1, 3>> rows = random_rows(random, n_dofs, n_dofs);
-        if (!oblique) // some component of the node for each row
+        if (nodes == Nodes::plain) // some component of the node for each row
           for (unsigned int i = 0; i < n_dofs; ++i)
             {
               rows[i]                   = Tensor<1, 3>();
               rows[i][(i + n) % n_dofs] = random.integer(0, 1) ? 1. : -1.;
             }
-        const Tensor<1, 3> normal = rows.back();
-        rows.pop_back();
-        problem.add_node(n_dofs, {rows}, {normal});
+        std::vector<std::vector<Tensor<1, 3>>> planes;
+        std::vector<Tensor<1, 3>>              normals;
+        const unsigned int                     n_pieces =
+          nodes == Nodes::corners ? random.integer(1, 2) : 1;
+        for (unsigned int piece = 0; piece < n_pieces; ++piece)
+          {
+            if (piece > 0) // at a right angle, or at any
+              {
+                if (random.integer(0, 1))
+                  std::swap(rows[0], rows.back());
+                else
+                  rows = random_rows(random, n_dofs, n_dofs);
+              }
+            normals.push_back(rows.back());
+            planes.emplace_back(rows.begin(), rows.end() - 1);
+          }
+        problem.add_node(n_dofs, planes, normals);
       }
     fill_at_random(problem, random, random.integer(2, 6), 0., 1.);
     const unsigned int tie = seed % 2 == 1 ? random.integer(0, 4) : 9;
@@ -65,12 +98,19 @@ namespace
             std::max(0., problem.bounds[p] - 0.5) * random.integer(0, 1) :
             0.;
         result.law.given.push_back(0.);
+        const unsigned int node = problem.face.points[p].node;
         result.law.of_pressure.emplace_back();
         if (!is_obstacle)
-          result.law.of_pressure.back().push_back(
-            tie == 3 ? mu * random.integer(0, 1) :
-            tie == 4 ? random.uniform(0., mu) :
-                       mu);
+          {
+            result.law.of_pressure.back().resize(
+              problem.face.first_point[node + 1] -
+                problem.face.first_obstacle(node),
+              0.);
+            result.law.of_pressure.back()[p - problem.face.first_point[node]] =
+              tie == 3 ? mu * random.integer(0, 1) :
+              tie == 4 ? random.uniform(0., mu) :
+                         mu;
+          }
       }
     return result;
   }
@@ -141,8 +181,11 @@ namespace
         for (unsigned int p = 0; p < problem.bounds.size(); ++p)
           if (!problem.face.points[p].is_obstacle)
             {
-              const double bound =
-                coulomb.law.of_pressure[p][0] * solution.multipliers[p + 1][0];
+              unsigned int o =
+                problem.face.first_obstacle(problem.face.points[p].node);
+              double bound = 0.;
+              for (const double coefficient : coulomb.law.of_pressure[p])
+                bound += coefficient * solution.multipliers[o++][0];
               change += std::abs(bound - problem.bounds[p]);
               sum += bound;
               problem.bounds[p] += share * (bound - problem.bounds[p]);
@@ -164,12 +207,12 @@ TEST(CoulombSolver, SolvesAllRandomProblems)
   for (unsigned int seed = 0; seed < 1000; ++seed)
     {
       const CoulombProblem coulomb =
-        random_coulomb_problem(seed, 1 + seed / 2 % 2, 2., seed % 5 == 4);
+        random_coulomb_problem(seed, 1 + seed / 2 % 2, 2., nodes_of(seed));
       const bool condensed = seed / 4 % 2 == 0;
       SCOPED_TRACE("seed " + std::to_string(seed));
       const Result result = solve(coulomb, condensed, 1e-9);
       expect_laws(coulomb, result, 1e-7);
-      if (seed % 5 == 4)
+      if (nodes_of(seed) != Nodes::plain)
         continue;
       // The price: corrections with the bounds that have come out.
       n_corrections += result.report.iterations;
@@ -194,7 +237,7 @@ TEST(CoulombSolver, FindsTheFixedPointOfBounds)
   for (unsigned int seed = 0; seed < 24; ++seed)
     {
       const CoulombProblem coulomb =
-        random_coulomb_problem(seed, 1 + seed / 2 % 2, 0.4, seed % 5 == 4);
+        random_coulomb_problem(seed, 1 + seed / 2 % 2, 0.4, nodes_of(seed));
       SCOPED_TRACE("seed " + std::to_string(seed));
       Solution reference;
       ASSERT_TRUE(find_fixed_point(coulomb, 1., reference));

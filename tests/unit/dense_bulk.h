@@ -128,6 +128,7 @@ namespace Viscoplastic::Testing
 
     double
     confirmed_dual_norm(const Vector<double> &force,
+                        const double /*limit*/,
                         unsigned int & /*iterations*/) override
     {
       return dual_norm(force);

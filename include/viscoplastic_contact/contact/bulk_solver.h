@@ -121,9 +121,11 @@ namespace Viscoplastic
     dual_norm(const Vector<double> &force) = 0;
 
     /// dual_norm() without the quality of a preconditioner in it, for the
-    /// final word; adds its iterations to @p iterations.
+    /// final word; adds its iterations to @p iterations. Of a norm above @p
+    /// limit something between both may be all that is found out.
     virtual double
     confirmed_dual_norm(const Vector<double> &force,
+                        const double          limit,
                         unsigned int         &iterations) = 0;
 
     /**

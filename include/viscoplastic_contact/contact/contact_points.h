@@ -8,6 +8,8 @@
 
 namespace Viscoplastic
 {
+  struct CoulombLaw;
+
   /**
    * The frictional problem of a single point: the multiplier that minimizes
    * 1/2 lambda . C lambda - q . lambda over |lambda| <= rho, with C the
@@ -27,19 +29,30 @@ namespace Viscoplastic
                        const unsigned int  n_tangents,
                        const double        bound);
 
+  /// The same for point @p p, friction or obstacle, of a node that moves by
+  /// @p start and @p flexibility times the forces of its points and @p force.
+  PointSolution
+  solve_point(const ContactLayout &face,
+              unsigned int         p,
+              const Tensor<2, 3>  &flexibility,
+              const Tensor<1, 3>  &force,
+              const ContactState  &state,
+              const Tensor<1, 3>  &start = {});
+
   /**
    * Admissible multipliers that fit @p residual = l - A u on the face best and
    * obey the laws exactly: rho s/|s| where slipping, zero off an obstacle, that
    * of its compliance where it gives way, the residual clipped where sticking
-   * and touching. Where pieces meet, the fit
-   * may leave a choice: the one of least norm is taken. Gives the face vector
-   * of their forces, too.
+   * and touching. Where pieces meet, the fit may leave a choice (NodeForces).
+   * Gives the face vector of their forces, too. With a @p law bounds are those
+   * of the pressures, and are set.
    */
   void
   fit_multipliers(const ContactLayout  &face,
                   const Vector<double> &residual,
                   ContactState         &state,
-                  Vector<double>       &force);
+                  Vector<double>       &force,
+                  const CoulombLaw     *law = nullptr);
 
 
   /**

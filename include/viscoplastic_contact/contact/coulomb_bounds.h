@@ -43,12 +43,9 @@ namespace Viscoplastic
       return n_stalls == 0;
     }
 
-    /// Let bounds and multipliers be those of the pressures that fit @p
-    /// residual, if they follow, and find out what they miss otherwise.
+    /// Find out what bounds miss at these pressures.
     void
-    update(const Vector<double> &residual,
-           ContactState         &state,
-           Vector<double>       &force);
+    measure(const ContactState &state);
 
     /// Let bounds be those to which the correction @p w of the face leads.
     void

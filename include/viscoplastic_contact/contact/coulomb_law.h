@@ -19,9 +19,6 @@ namespace Viscoplastic
    * solver of given bounds one of this law: a Gauss-Seidel step at a node, and
    * how the linear system of a Newton step knows that bounds change with the
    * pressure.
-   *
-   * Where pieces meet at a node, the bounds there follow the pressures from one
-   * iteration to the next; everywhere else they are solved for with them.
    */
   struct CoulombLaw
   {
@@ -38,13 +35,8 @@ namespace Viscoplastic
           const ContactState  &state,
           const unsigned int   point) const;
 
-    /// Let all bounds be those of the pressures of @p state. Returns whether
-    /// any has changed.
-    bool
-    set_bounds(const ContactLayout &face, ContactState &state) const;
-
     /// relax_node() with the bounds of the pressures that come out, which are
-    /// set.
+    /// set. Where pieces meet, one after the other obeys the law.
     Tensor<1, 3>
     relax_node(const ContactLayout &face,
                const unsigned int   node,
@@ -53,10 +45,11 @@ namespace Viscoplastic
                ContactState        &state) const;
 
     /**
-     * A slipping point has lambda = mu p d, d = s/|s|, with the pressure of the
-     * same equation: of the residual r of its node, what r_tau - mu (n . r) d
-     * leaves is zero. Adds the matrices I - mu d n^T of such nodes to @p
-     * truncation.
+     * A slipping point has lambda = g d + mu p d, d = s/|s|, with the pressure
+     * p = c . r of the same equation: of the residual r of its node, what
+     * r - mu (c . r) d leaves is zero in the directions that are free (c is the
+     * unit normal; where pieces meet, NodeForces has it). Adds the matrices
+     * I - mu d c^T of such nodes to @p truncation.
      */
     void
     tilt(const ContactLayout &face,
@@ -64,7 +57,7 @@ namespace Viscoplastic
          FaceTruncation      &truncation) const;
 
     /// Let bounds be those of the pressures in the nodes' forces @p residual,
-    /// wherever pieces do not meet.
+    /// wherever nodes can move.
     void
     predict_bounds(const ContactLayout  &face,
                    const Vector<double> &residual,
@@ -75,8 +68,19 @@ namespace Viscoplastic
     largest_coefficient(const ContactLayout &face) const;
 
   private:
-    /// Whether the friction of a node follows from its only obstacle.
-    bool
-    is_plain(const ContactLayout &face, const unsigned int node) const;
+    /// The obstacle whose pressure most of a point's bound follows, across it;
+    /// an invalid number if there is none.
+    unsigned int
+    own_obstacle(const ContactLayout &face, const unsigned int point) const;
+
+    /// The pressure of this obstacle @p o of @p point if it alone held the node
+    /// with it (coulomb_pressure()).
+    double
+    own_pressure(const ContactLayout &face,
+                 const unsigned int   point,
+                 const unsigned int   o,
+                 const Tensor<2, 3>  &inverse_diagonal,
+                 const Tensor<1, 3>  &force,
+                 const ContactState  &state) const;
   };
 } // namespace Viscoplastic

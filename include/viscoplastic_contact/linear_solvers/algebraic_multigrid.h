@@ -52,6 +52,13 @@ namespace Viscoplastic
                       const DistributedVector &x) const override;
 
     void
+    vmult_whole(DistributedVector       &y,
+                const DistributedVector &x) const override;
+
+    unsigned int
+    iterations_for_whole() const override;
+
+    void
     learn(const unsigned int iterations, const double decades) override;
 
     std::optional<PreconditionerState>
@@ -62,8 +69,15 @@ namespace Viscoplastic
 
   private:
     /// Build the hierarchy for the present truncation.
+    std::unique_ptr<SmoothedAggregation>
+    make(const FaceTruncation &truncation) const;
+
     void
     build();
+
+    /// What ML costs in iterations of conjugate gradients.
+    unsigned int
+    price() const;
 
     /// See damping.
     void
@@ -88,6 +102,8 @@ namespace Viscoplastic
     mutable DistributedVector damped;
 
     std::unique_ptr<SmoothedAggregation> amg;
+    /// That of the matrix without truncation and springs.
+    mutable std::unique_ptr<SmoothedAggregation> whole;
     /// The truncation for which it was built.
     FaceTruncation built_for;
     /// Iterations a decade right after a set-up, the best so far; iterations

@@ -68,6 +68,7 @@ namespace Viscoplastic
 
     double
     confirmed_dual_norm(const Vector<double> &force,
+                        const double          limit,
                         unsigned int         &iterations) override;
 
     double
@@ -105,9 +106,9 @@ namespace Viscoplastic
     make_face_matrix();
 
     /// The dual norm of the vector in product, without the quality of the
-    /// preconditioner in it.
+    /// preconditioner in it, or some lower bound above @p limit.
     double
-    dual_norm_of_product(unsigned int &iterations);
+    dual_norm_of_product(const double limit, unsigned int &iterations);
 
     const DistributedMatrix          &matrix;
     const std::vector<bool>          &excluded;

@@ -48,6 +48,21 @@ namespace Viscoplastic
     vmult_untruncated(DistributedVector       &y,
                       const DistributedVector &x) const = 0;
 
+    /// The same with a preconditioner that has never known a truncation: it is
+    /// made at the first call, which is worth iterations_for_whole() iterations
+    /// with the other one.
+    virtual void
+    vmult_whole(DistributedVector &y, const DistributedVector &x) const
+    {
+      vmult_untruncated(y, x);
+    }
+
+    virtual unsigned int
+    iterations_for_whole() const
+    {
+      return numbers::invalid_unsigned_int;
+    }
+
     /// y := K x to some ten digits, zero on excluded components, if this takes
     /// less time than with the matrix itself; otherwise nothing, and false.
     virtual bool

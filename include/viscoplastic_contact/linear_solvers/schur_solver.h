@@ -74,6 +74,7 @@ namespace Viscoplastic
 
     double
     confirmed_dual_norm(const Vector<double> &force,
+                        const double          limit,
                         unsigned int         &iterations) override;
 
     double

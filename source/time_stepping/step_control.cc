@@ -42,6 +42,8 @@ namespace Viscoplastic
     /// How far contributions of steps may be trusted to go on to cancel, and
     /// what is left of a budget that has been exceeded.
     constexpr double least_cancellation = 0.1, least_rest = 0.05;
+    /// The part of what is left that a new mesh may take in its first step.
+    constexpr double most_of_new_mesh = 0.15;
     /// Of the logarithm of the step size that the error allows: a jump by more
     /// says nothing of further ones.
     constexpr double most_telling_growth = 0.3;
@@ -313,7 +315,12 @@ namespace Viscoplastic
         return true;
       }
     const double new_size = std::max(present.size, errors.size);
-    const double allowed  = allowed_error(step, errors, new_size);
+    const double all      = tolerance_of_run * new_size;
+    // Of the same length as on the mesh before.
+    const bool is_repeated = verdict && step.t == verdict->t;
+    double     allowed     = allowed_error(step, errors, new_size);
+    if (is_repeated)
+      allowed = std::max(allowed, most_of_new_mesh * (all - errors.before));
     const double ratio =
       errors.indicator > 0. ? errors.indicator / allowed : 0.;
     const double least = smallest(step.t_old) * (1. + 1e-9);
@@ -343,9 +350,15 @@ namespace Viscoplastic
 
     if (ratio > 1.)
       ++n.unresolved;
-    before       = present;
-    present.size = new_size;
-    present.unsigned_sum += errors.indicator;
+    before = present;
+    if (is_repeated)
+      present = *verdict;
+    verdict.reset();
+    present.t            = step.t;
+    present.size         = new_size;
+    present.unsigned_sum = before.unsigned_sum + errors.indicator;
+    if (is_repeated)
+      return true;
     double factor   = largest_growth;
     present.allowed = infinity;
     if (ratio > 0.)

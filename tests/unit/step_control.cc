@@ -138,11 +138,20 @@ namespace
         while (!control.accepts(step, errors, false))
           step = control.propose(n, t, infinity);
         const TimeStep next = control.propose(n + 1, step.t, infinity);
-        control.undo();
+        control.repeat();
         const TimeStep again = control.propose(n, t, infinity);
         EXPECT_EQ(again.k, step.k);
-        EXPECT_TRUE(control.accepts(again, errors, false));
+        // What relaxes on the new mesh makes steps neither be rejected nor
+        // shorter, unless it takes too much of what is left.
+        StepErrors shock = errors;
+        shock.indicator  = 0.01;
+        EXPECT_TRUE(control.accepts(again, shock, false));
         EXPECT_EQ(control.propose(n + 1, step.t, infinity).k, next.k);
+        control.repeat();
+        shock.indicator = 0.02;
+        EXPECT_FALSE(control.accepts(again, shock, false));
+        EXPECT_LT(control.propose(n, t, infinity).k, step.k);
+        EXPECT_TRUE(control.accepts(again, errors, false));
         t = step.t;
       }
   }

@@ -75,9 +75,12 @@ namespace Viscoplastic
       {
         carried.push_back(stress);
         old_samples.push_back(sampled_stress(old_stress_space, state));
-        // z is the first field.
-        for_children =
-          reconstruct_history(old_stress_space, state.z, old_samples.back());
+        // z is the first field. Cell means stay as they are; what is wrong in
+        // them is for the error bar.
+        if (n_samples > 1 || old_stress_space.space.scene.parameters
+                               .error_control.error_estimator)
+          for_children =
+            reconstruct_history(old_stress_space, state.z, old_samples.back());
       }
     old_cell.resize(triangulation.n_active_cells());
     unsigned int index = 0;

@@ -313,7 +313,7 @@ namespace Viscoplastic
         return false;
       }
     change_mesh();
-    control.undo();
+    control.repeat();
     std::ostringstream text;
     text << "  mesh " << std::setprecision(3) << mesh_controller.excess()
          << " times too coarse for step " << step.time_step.n << ", refined to "

@@ -254,7 +254,7 @@ namespace Viscoplastic
     u = method.solver.initial_guess(problem, old, solution.state.contact);
     DistributedVector ahead(problem.old_u());
     d.space.to_frames(old.velocity, ahead);
-    ahead.sadd(std::min(problem.time_step.k, old.k), 1., problem.old_u());
+    ahead.sadd(problem.time_ahead(old), 1., problem.old_u());
     at = zero;
     d.space.to_cartesian(ahead, at);
     z = stress(at, old.z);

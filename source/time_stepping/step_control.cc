@@ -42,6 +42,12 @@ namespace Viscoplastic
     /// How far contributions of steps may be trusted to go on to cancel, and
     /// what is left of a budget that has been exceeded.
     constexpr double least_cancellation = 0.1, least_rest = 0.05;
+    /// The part of what is left that a new mesh may take in its first step.
+    constexpr double most_of_new_mesh = 0.15;
+    /// Step sizes that are chosen by the error are fractions 2^(-i/n) of the
+    /// whole time, so that what solvers leave of a solution does not choose
+    /// others, which differ the more from step to step.
+    constexpr double n_sizes_per_octave = 16.;
     /// Of the logarithm of the step size that the error allows: a jump by more
     /// says nothing of further ones.
     constexpr double most_telling_growth = 0.3;
@@ -49,6 +55,18 @@ namespace Viscoplastic
     /// More steps than that up to a time of the phases are a stiff scene, not a
     /// short step.
     constexpr double most_divisions = 1e7;
+
+
+
+    /// The next smaller one, or @p k itself up to rounding.
+    double
+    chosen_step_size(const double k, const double whole_time)
+    {
+      return whole_time * std::exp2(std::floor(n_sizes_per_octave *
+                                                 std::log2(k / whole_time) +
+                                               1e-6) /
+                                    n_sizes_per_octave);
+    }
 
 
 
@@ -313,7 +331,12 @@ namespace Viscoplastic
         return true;
       }
     const double new_size = std::max(present.size, errors.size);
-    const double allowed  = allowed_error(step, errors, new_size);
+    const double all      = tolerance_of_run * new_size;
+    // Of the same length as on the mesh before.
+    const bool is_repeated = verdict && step.t == verdict->t;
+    double     allowed     = allowed_error(step, errors, new_size);
+    if (is_repeated)
+      allowed = std::max(allowed, most_of_new_mesh * (all - errors.before));
     const double ratio =
       errors.indicator > 0. ? errors.indicator / allowed : 0.;
     const double least = smallest(step.t_old) * (1. + 1e-9);
@@ -327,8 +350,10 @@ namespace Viscoplastic
         present.was_rejected = true;
         present.wanted =
           std::max(smallest(step.t_old),
-                   step.k *
-                     std::clamp(std::pow(aim / ratio, 1. / order), 0.1, 0.9));
+                   chosen_step_size(
+                     step.k *
+                       std::clamp(std::pow(aim / ratio, 1. / order), 0.1, 0.9),
+                     schedule.end_time()));
         return false;
       }
     if (has_event && parameters.resolve_events != EventResolution::off &&
@@ -343,9 +368,15 @@ namespace Viscoplastic
 
     if (ratio > 1.)
       ++n.unresolved;
-    before       = present;
-    present.size = new_size;
-    present.unsigned_sum += errors.indicator;
+    before = present;
+    if (is_repeated)
+      present = *verdict;
+    verdict.reset();
+    present.t            = step.t;
+    present.size         = new_size;
+    present.unsigned_sum = before.unsigned_sum + errors.indicator;
+    if (is_repeated)
+      return true;
     double factor   = largest_growth;
     present.allowed = infinity;
     if (ratio > 0.)
@@ -380,9 +411,11 @@ namespace Viscoplastic
                                                   largest_growth);
     // A step that a time has cut short does not tell the next one.
     const double uncut = before.was_rejected ? 0. : before.wanted;
+    const double next =
+      factor == 1. ? step.k :
+                     chosen_step_size(factor * step.k, schedule.end_time());
     present.wanted =
-      std::min(std::max(factor * step.k, factor >= 1. ? uncut : 0.),
-               largest(step.t_old));
+      std::min(std::max(next, factor >= 1. ? uncut : 0.), largest(step.t_old));
     present.was_rejected = false;
     if (schedule.phase_ending_at(step.t) > 0)
       {

@@ -87,8 +87,7 @@ namespace Viscoplastic
     const DistributedVector &old_u = problem.old_u();
     DistributedVector        u(old_u), velocity(old_u);
     space.to_frames(guess.velocity, velocity);
-    // Not beyond the last increment: it may have been a jump in a tiny step.
-    u.add(std::min(problem.time_step.k, guess.k), velocity);
+    u.add(problem.time_ahead(guess), velocity);
     if (d.face)
       {
         const ContactLayout &face = d.face->layout();

@@ -365,17 +365,20 @@ namespace Viscoplastic
                estimate.irreversible_change);
     // What the iterations leave of both states changes G by up to r times as
     // much, and is all that there is of a smaller change: no shorter step has
-    // less of it.
+    // less of it. It is a bound: a change twice as large counts as it is, and
+    // steps do not depend on how far iterations have gone.
     const double left  = step.report.error + accepted.report.error;
     const bool   moves = errors.change > left;
     const bool   is_of_quantity =
       scene.quantity && scene.parameters.error_control.has_tolerance();
     if (moves)
-      errors.indicator =
-        std::max(0.,
-                 (is_of_quantity ? estimate.remembered_indicator :
-                                   estimate.time_indicator) -
-                   0.5 * step.stiffness() * left);
+      {
+        const double indicator = is_of_quantity ?
+                                   estimate.remembered_indicator :
+                                   estimate.time_indicator;
+        errors.indicator =
+          std::clamp(2. * indicator - step.stiffness() * left, 0., indicator);
+      }
     errors.size   = scene.parameters.error_control.has_tolerance() ?
                       estimate.energy_norm :
                       std::max(estimate.energy_norm, estimate.irreversible_norm);

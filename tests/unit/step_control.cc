@@ -138,11 +138,23 @@ namespace
         while (!control.accepts(step, errors, false))
           step = control.propose(n, t, infinity);
         const TimeStep next = control.propose(n + 1, step.t, infinity);
-        control.undo();
+        control.repeat();
         const TimeStep again = control.propose(n, t, infinity);
         EXPECT_EQ(again.k, step.k);
-        EXPECT_TRUE(control.accepts(again, errors, false));
+        // What relaxes on the new mesh makes steps neither be rejected nor
+        // shorter, unless it takes too much of what is left.
+        StepErrors shock = errors;
+        shock.indicator  = 0.01;
+        EXPECT_TRUE(control.accepts(again, shock, false));
         EXPECT_EQ(control.propose(n + 1, step.t, infinity).k, next.k);
+        if (step.k > 2e-5) // the smallest step is accepted anyway
+          {
+            control.repeat();
+            shock.indicator = 0.09;
+            EXPECT_FALSE(control.accepts(again, shock, false));
+            EXPECT_LT(control.propose(n, t, infinity).k, step.k);
+            EXPECT_TRUE(control.accepts(again, errors, false));
+          }
         t = step.t;
       }
   }
@@ -182,6 +194,28 @@ namespace
     EXPECT_EQ(schedule.phase_ending_at(0.1), 1u);
     EXPECT_EQ(schedule.phase_ending_at(3.3), 2u);
     EXPECT_EQ(schedule.phase_ending_at(0.2), 0u);
+  }
+
+
+
+  TEST(StepControl, WhatSolversLeaveChoosesNoOtherSteps)
+  {
+    const TimeSchedule schedule("10: 10");
+    const auto         parameters = with_tolerance(0.1);
+    const auto         run        = [&](const double noise) {
+      StepControl control(parameters, StiffnessPolicy::refuse, schedule, 1, 0.);
+      unsigned int n = 0;
+      return steps(control, 10., [&](const TimeStep &step) {
+        const double c = 2. + std::sin(step.t);
+        return StepErrors{c * step.k * step.k * (1. + noise * std::cos(++n)),
+                          step.k,
+                          step.t};
+      });
+    };
+    const auto exact = run(0.), noisy = run(1e-5);
+    ASSERT_EQ(exact.size(), noisy.size());
+    for (unsigned int i = 0; i < exact.size(); ++i)
+      EXPECT_EQ(exact[i].t, noisy[i].t);
   }
 
 

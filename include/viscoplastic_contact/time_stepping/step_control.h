@@ -149,9 +149,12 @@ namespace Viscoplastic
             const bool        has_event);
 
     /// The step that has just been accepted is to be repeated on another mesh.
+    /// There it may do more: what the finer mesh finds in the stress relaxes at
+    /// once, a change of rates that shorter steps do not make smaller.
     void
-    undo()
+    repeat()
     {
+      verdict = present;
       present = before;
     }
 
@@ -204,6 +207,8 @@ namespace Viscoplastic
     /// What it remembers of the steps.
     struct Memory
     {
+      /// The end of the last accepted step.
+      double t = 0.;
       /// The step size that is tried next; 0 for that of the phase.
       double wanted = 0.;
       /// Error over allowed error of the last accepted step; 0 for none.
@@ -247,7 +252,9 @@ namespace Viscoplastic
     bool                         has_estimate = true;
 
     /// Now, and before the last step was accepted.
-    Memory     present, before;
-    StepCounts n;
+    Memory present, before;
+    /// What a step that is repeated has left on the mesh before.
+    std::optional<Memory> verdict;
+    StepCounts            n;
   };
 } // namespace Viscoplastic

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/error/evaluated_state.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -52,6 +53,15 @@ namespace Viscoplastic
     std::vector<double> given_bounds           = {};
     /// At t_{n-1}, at which bounds depend on them; empty where none does.
     std::vector<double> slip_rates = {};
+
+    /// How long a body may be expected to go on with the velocity of a state:
+    /// for this step, but not far beyond the increment that it is of, which may
+    /// have been a jump in a tiny step. Steps grow by a factor of two.
+    double
+    time_ahead(const State<dim> &state) const
+    {
+      return std::min(time_step.k, 2. * state.k);
+    }
 
     /// u_{n-1} in frames.
     const DistributedVector &

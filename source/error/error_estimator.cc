@@ -257,6 +257,7 @@ namespace Viscoplastic
                               const ContactReport       &report,
                               const double               turning,
                               const double               missed_work,
+                              const Swing               &swing,
                               const bool                 is_fresh,
                               const EvaluatedState<dim> &accepted,
                               const FlowRate            *accepted_rate,
@@ -292,6 +293,11 @@ namespace Viscoplastic
                    end);
         estimate.creep_path += estimate.irreversible_change;
       }
+    estimate.swing       = std::hypot(before.swing, swing.energy_norm);
+    estimate.swing_share = std::hypot(before.swing_share, swing.share);
+    estimate.time        = std::hypot(estimate.time, estimate.swing);
+    estimate.time_indicator =
+      std::hypot(estimate.time_indicator, swing.energy_norm);
 
     // With d = u_n - u_{n-1} and v = du_{n-1}, from a(u, .) of both states:
     // |d/k - v|^2 = a(d, d)/k^2 - 2 a(d, v)/k + a(v, v).

@@ -265,7 +265,14 @@ namespace Viscoplastic
     estimate.time_correction  = estimate.settled_time + time;
     estimate.space = std::max(safety * std::abs(estimate.space_correction),
                               estimate.space_of_creep);
-    estimate.time  = std::abs(estimate.time_correction);
+    // A part of all forces changes forces by that part, also where the dual
+    // solution is zero, as where all points slip.
+    const auto of_swing = [&](const double energy_norm, const double share) {
+      return std::max(energy_norm * estimate.dual_norm,
+                      share * std::abs(estimate.value));
+    };
+    estimate.time = std::abs(estimate.time_correction) +
+                    of_swing(errors.swing, errors.swing_share);
     // What the step has added to slip that turns, or comes to rest.
     const double bound = errors.friction * estimate.dual_norm,
                  added = (errors.friction - accepted.errors.friction) *
@@ -285,6 +292,9 @@ namespace Viscoplastic
           std::min(estimate.turning - before.turning, added) +
           estimate.resting - before.resting;
       }
+    estimate.friction_indicator +=
+      of_swing(errors.swing, errors.swing_share) -
+      of_swing(accepted.errors.swing, accepted.errors.swing_share);
     // Of refined cells it would be a product of errors that is not known.
     if (!d.scene().keeps_history_at_points())
       estimate.history = errors.history * estimate.dual_error;

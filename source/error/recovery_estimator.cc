@@ -6,7 +6,11 @@
 
 #include <viscoplastic_contact/error/recovery_estimator.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <set>
+#include <tuple>
 
 namespace Viscoplastic
 {
@@ -35,6 +39,8 @@ namespace Viscoplastic
     values.reinit(dof_handler.locally_owned_dofs(),
                   relevant,
                   space.communicator);
+    sums.reinit(values);
+    maxima.reinit(values);
     const auto place = [&](const types::global_dof_index dof) {
       return values.get_partitioner()->global_to_local(dof);
     };
@@ -46,8 +52,15 @@ namespace Viscoplastic
       if (space.scene.is_present(cell->material_id()))
         part_of.emplace(cell->material_id(), part_of.size());
     parts.resize(part_of.size());
-    for (Part &part : parts)
+    for (const auto &[id, p] : part_of)
       {
+        Part &part = parts[p];
+        // Strains grow at most like r^(-n/(n+1)) with the exponent n of a power
+        // law (Hutchinson, Rice and Rosengren, 1968), with 9 for all that are
+        // not linear.
+        const auto  &law   = space.scene.material(id).law;
+        const double n     = law && !law->has_constant_tangents() ? 9. : 1.;
+        part.largest_share = std::exp2(-2. / (n + 1.));
         part.inverse_volume.reinit(values);
         part.inverse_inner_volume.reinit(values);
       }
@@ -120,11 +133,56 @@ namespace Viscoplastic
           }
       }
 
+    find_across();
     const QGauss<dim> points(2);
     const FE_Q<dim>   scalar(1);
     for (unsigned int q = 0; q < n_points; ++q)
       for (unsigned int v = 0; v < n_vertices; ++v)
         shape_values[q][v] = scalar.shape_value(v, points.point(q));
+  }
+
+
+
+  template <int dim>
+  void
+  RecoveryEstimator<dim>::find_across()
+  {
+    // All cells around a vertex of an owned cell are here.
+    std::map<unsigned int, std::vector<unsigned int>> around;
+    for (unsigned int c = 0; c < local.cells.size(); ++c)
+      for (const unsigned int node : local.cells[c].nodes)
+        around[node].push_back(c);
+    const auto volume = [this](const unsigned int c) {
+      return local.shapes[local.cells[c].shape].volume;
+    };
+    for (unsigned int c = 0; c < nodes.size(); ++c)
+      {
+        across.emplace_back();
+        across.back().fill(numbers::invalid_unsigned_int);
+        const auto &mine = local.cells[c].nodes;
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          {
+            const auto &cells      = around.at(mine[v]);
+            bool        is_regular = cells.size() == n_vertices;
+            for (const unsigned int other : cells)
+              is_regular &=
+                local.cells[other].is_present &&
+                local.cells[other].material_id == local.cells[c].material_id &&
+                volume(other) < 1.5 * volume(c) &&
+                volume(c) < 1.5 * volume(other);
+            if (!is_regular)
+              continue;
+            for (const unsigned int other : cells)
+              {
+                const auto  &its      = local.cells[other].nodes;
+                unsigned int n_common = 0;
+                for (const unsigned int node : its)
+                  n_common += std::count(mine.begin(), mine.end(), node);
+                if (n_common == 1)
+                  across.back()[v] = other;
+              }
+          }
+      }
   }
 
 
@@ -263,6 +321,152 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  RecoveryEstimator<dim>::energy_density(
+    const unsigned int             c,
+    const SymmetricTensor<2, dim> &strain) const
+  {
+    SymmetricTensor<2, 3> e;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int j = i; j < dim; ++j)
+        e[i][j] = strain[i][j];
+    return local.cells[c].stiffness.stress(e) * e;
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, dim>
+  RecoveryEstimator<dim>::recovered(const unsigned int node) const
+  {
+    SymmetricTensor<2, dim> result;
+    for (unsigned int i = 0; i < n_components; ++i)
+      result.access_raw_entry(i) = values.local_element(node + i);
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::optional<typename RecoveryEstimator<dim>::Patch>
+  RecoveryEstimator<dim>::patch(const Part        &part,
+                                const unsigned int c,
+                                const unsigned int vertex) const
+  {
+    if (across[c][opposite(vertex)] == numbers::invalid_unsigned_int)
+      return {};
+    const unsigned int            node = nodes[c][opposite(vertex)];
+    const SymmetricTensor<2, dim> mean = recovered(node);
+    const double volume  = 1. / part.inverse_volume.local_element(node);
+    const double density = energy_density(c, mean);
+    return Patch{mean,
+                 density,
+                 density * volume,
+                 std::max(0., sums.local_element(node) - density * volume),
+                 sums.local_element(node + 1)};
+  }
+
+
+
+  template <int dim>
+  void
+  RecoveryEstimator<dim>::raise_at_singular_points(
+    const Part              &part,
+    const DistributedVector &u,
+    std::vector<double>     &squares) const
+  {
+    // Strains that grow less than r^(-1/4) are recovered well enough.
+    const double     least_growth = std::sqrt(2.), least_curvature = 0.25;
+    constexpr double nearly = 1. - 1e-6; // what is equal but for rounding
+    const auto       node   = [this](NodalVector       &field,
+                             const unsigned int c,
+                             const unsigned int v,
+                             const unsigned int i) -> double         &{
+      return field.local_element(nodes[c][v] + i);
+    };
+    std::vector<double> densities(local.cells.size());
+    sums = 0.;
+    for (const unsigned int c : part.cells)
+      {
+        densities[c] = energy_density(c, mean_strain(c, u));
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          {
+            node(sums, c, v, 0) += densities[c] * local.stress_space.volume(c);
+            node(sums, c, v, 1) += squares[c];
+          }
+      }
+    sums.compress(VectorOperation::add);
+    sums.update_ghost_values();
+
+    // A point is singular if the strain of the cell with the largest one there
+    // has grown towards it, not towards another of its vertices, and not as it
+    // does in bending or around holes: K + O - 2 P of the means in the cell,
+    // across the patch and in it is zero for linear strains and for those that
+    // vary in one direction.
+    const auto is_of_a_point =
+      [&](const unsigned int c, const unsigned int v, const Patch &patch) {
+        const SymmetricTensor<2, dim> here = mean_strain(c, u),
+                                      there =
+                                        mean_strain(across[c][opposite(v)], u);
+        return energy_density(c, here + there - 2. * patch.mean) >
+               least_curvature * energy_density(c, here - patch.mean);
+      };
+    maxima = 0.;
+    for (const unsigned int c : part.cells)
+      {
+        std::array<double, n_vertices> growth{};
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          if (const auto around = patch(part, c, v);
+              around && densities[c] > least_growth * around->density &&
+              is_of_a_point(c, v, *around))
+            growth[v] = densities[c] / around->density;
+        const double largest = *std::max_element(growth.begin(), growth.end());
+        for (unsigned int v = 0; v < n_vertices; ++v)
+          {
+            const auto raise = [&](const unsigned int i) {
+              node(maxima, c, v, i) =
+                std::max(node(maxima, c, v, i), densities[c]);
+            };
+            raise(0);
+            if (largest > 0. && growth[v] >= nearly * largest)
+              raise(1);
+          }
+      }
+    maxima.compress(VectorOperation::max);
+    maxima.update_ghost_values();
+    const auto is_singular = [&](const unsigned int c, const unsigned int v) {
+      const double largest = node(maxima, c, v, 0);
+      return largest > 0. && node(maxima, c, v, 1) >= nearly * largest;
+    };
+
+    std::vector<std::tuple<unsigned int, unsigned int, Patch>> cells;
+    for (const unsigned int c : part.cells)
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        if (is_singular(c, v))
+          if (const auto around = patch(part, c, v))
+            cells.emplace_back(c, v, *around);
+    sums = 0.;
+    for (const auto &[c, v, around] : cells)
+      {
+        node(sums, c, v, 0) += densities[c] * local.stress_space.volume(c);
+        node(sums, c, v, 1) += around.energy;
+      }
+    sums.compress(VectorOperation::add);
+    sums.update_ghost_values();
+    const std::vector<double> before = squares;
+    for (const auto &[c, v, around] : cells)
+      {
+        const double q = std::min(node(sums, c, v, 0) / node(sums, c, v, 1),
+                                  part.largest_share);
+        squares[c]     = std::max(squares[c],
+                              q / (1. - q) *
+                                (around.variation + around.error - before[c]));
+      }
+  }
+
+
+
+  template <int dim>
   Vector<double>
   RecoveryEstimator<dim>::estimate(const DistributedVector &u) const
   {
@@ -278,6 +482,7 @@ namespace Viscoplastic
             for (unsigned int q = 0; q < n_points; ++q)
               squares[c] += weights[q] * (cell.stiffness.stress(e[q]) * e[q]);
           }
+        raise_at_singular_points(part, u, squares);
       }
     return local.by_active_index(squares);
   }

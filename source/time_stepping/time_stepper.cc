@@ -323,6 +323,8 @@ namespace Viscoplastic
     TimerOutput::Scope         phase(timer, "estimate");
     std::optional<SlipDefects> slip_defects;
     double                     missed_work = 0.;
+    // Equal at both ends, they may be others in between.
+    const Swing swing = swing_of_data(discretization, accepted, end);
     if (discretization.face && scene.has_bounds_of_step_before())
       missed_work = discretization.face->missed_bounds(state).work;
     // What slip turns by on a new mesh, it does in any step, and what it has
@@ -349,6 +351,7 @@ namespace Viscoplastic
                             step.report,
                             slip_defects ? slip_defects->work : 0.,
                             missed_work,
+                            swing,
                             control.has_kink_at(step.time_step.t_old),
                             accepted,
                             old_rate,

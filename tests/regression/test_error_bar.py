@@ -201,6 +201,25 @@ class Estimate(TestCase):
             if not name.startswith("wall_"):
                 np.testing.assert_array_equal(self.result[name], column, name)
 
+    def test_data_that_swing_within_steps(self):
+        """Equal at the ends of all steps, or rising all along them."""
+        for bound, least, most in (
+            ("0.03*(1 + 0.5*sin(16*pi*t))", 0.1, 1),
+            ("0.03*(1 + 0.5*t)", 0, 0),
+        ):
+            result = run(
+                "slab",
+                {
+                    **SLAB,
+                    "Material/Law": "elastic",
+                    "Boundary 2/Friction bound": bound,
+                },
+            )
+            share = result["estimate_time"][1:9] / result["energy_norm"].max()
+            with self.subTest(bound=bound):
+                self.assertGreaterEqual(share[-1], least)
+                self.assertLessEqual(share[-1], most)
+
     def test_elastic_scene_has_no_time_error(self):
         result = run("elastic_frictionless")
         self.assertEqual(result["estimate_time"].max(), 0)

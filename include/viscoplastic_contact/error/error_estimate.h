@@ -18,7 +18,7 @@ namespace Viscoplastic
     /// of cell means, and of cells that have been refined since.
     double history = 0.;
     /// The error of the time steps up to now, (int E^-1 D : D)^{1/2}, with D
-    /// the sum of their defects (see ErrorEstimator).
+    /// the sum of their defects (see ErrorEstimator), and `swing', by squares.
     double time = 0.;
     /// The error of slip that has turned its direction within steps, and of
     /// friction bounds that follow the step before.
@@ -80,7 +80,7 @@ namespace Viscoplastic
     double space_of_creep = 0.;
     /// Of slip that turns and that comes to rest within steps, summed.
     double turning = 0., resting = 0.;
-    /// What the step has added to `friction'.
+    /// What the step has added to `friction', and by data that swing to `time'.
     double friction_indicator = 0.;
     /// a(w, w)^{1/2} of the dual solution w, and its own estimated error.
     double dual_norm = 0., dual_error = 0.;
@@ -107,7 +107,10 @@ namespace Viscoplastic
     /// That of `Error control/Quantity'; zero without one.
     QuantityEstimate quantity;
 
-    /// What this step alone has added to D, in the norm of `time'.
+    /// What data have done within steps and not shown at their ends, see
+    /// swing_of_data(); the squares of all steps add up.
+    double swing = 0., swing_share = 0.;
+    /// What this step alone has added to `time'.
     double time_indicator = 0.;
     /// What of it a force as quantity of interest will remember.
     double remembered_indicator = 0.;
@@ -132,8 +135,8 @@ namespace Viscoplastic
     {
       ErrorParts::exchange(archive);
       quantity.exchange(archive);
-      archive &time_indicator &velocity_variation &energy_norm &velocity_square
-        &creep_path;
+      archive &swing &swing_share &time_indicator &velocity_variation
+        &energy_norm &velocity_square &creep_path;
     }
   };
 

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
+#include <viscoplastic_contact/error/swing_of_data.h>
 #include <viscoplastic_contact/parameters/choices.h>
 
 namespace Viscoplastic
@@ -110,8 +111,9 @@ namespace Viscoplastic
      * forces and space estimate, and with viscosity the rates of both states,
      * have been evaluated. @p defect: of the scheme of the step. @p turning:
      * the turning_work() of the step; @p missed_work: that of friction bounds
-     * which it has missed (ContactFace::missed_bounds()). @p is_fresh: at its
-     * beginning data have a kink, so that G may have one, too. Collective.
+     * which it has missed (ContactFace::missed_bounds()); @p swing: the
+     * swing_of_data() of the step. @p is_fresh: at its beginning data have a
+     * kink, so that G may have one, too. Collective.
      */
     void
     assess(const FlowLaws<dim>       &laws,
@@ -119,6 +121,7 @@ namespace Viscoplastic
            const ContactReport       &report,
            const double               turning,
            const double               missed_work,
+           const Swing               &swing,
            const bool                 is_fresh,
            const EvaluatedState<dim> &accepted,
            const FlowRate            *accepted_rate,

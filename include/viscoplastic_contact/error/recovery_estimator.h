@@ -6,6 +6,7 @@
 
 #include <viscoplastic_contact/error/local_cells.h>
 
+#include <optional>
 #include <utility>
 
 namespace Viscoplastic
@@ -22,6 +23,16 @@ namespace Viscoplastic
    * blind to what goes on in the law of friction; but without a constant, and
    * exact in the limit where solutions are smooth and meshes regular. Cells of
    * absent materials count for nothing.
+   *
+   * At singular points means around nodes miss most of it: of strains like
+   * r^(beta), beta > -dim/2, the scales below the cell hold a part that has no
+   * bound as beta tends to -dim/2, as it does at the corners of bodies that
+   * creep by a power law. A self-similar strain tells it. What it varies by
+   * between the cells of a patch twice as large as the cell K at its singular
+   * corner, D, and the errors S of the others there, return within K at each
+   * scale times the share q that K has of the energy of means in the patch:
+   *
+   *     eta_K^2 = (q + q^2 + ...) (D + S),   q = 2^(-2 beta - dim).
    */
   template <int dim>
   class RecoveryEstimator
@@ -77,6 +88,7 @@ namespace Viscoplastic
     struct Part
     {
       std::vector<unsigned int> cells;
+      double                    largest_share;  // q of singular points
       NodalVector               inverse_volume; // of the cells around
       /// Of those around a node at the boundary with a vertex inside opposite
       /// to it.
@@ -85,6 +97,41 @@ namespace Viscoplastic
       /// between them.
       std::vector<HangingNode> hanging_nodes;
     };
+
+    /// Cells around a node, twice as large as one of them: their mean strain
+    /// and its energy, by volume and in all, what their means vary by around
+    /// it, and the sum of their eta_K^2.
+    struct Patch
+    {
+      SymmetricTensor<2, dim> mean;
+      double                  density, energy, variation, error;
+    };
+
+    /// That around the vertex of cell @p c opposite to @p vertex, from what is
+    /// recovered and summed; none where cells are not those of a regular mesh.
+    std::optional<Patch>
+    patch(const Part        &part,
+          const unsigned int c,
+          const unsigned int vertex) const;
+
+    /// Raise eta_K^2 by index of cell at singular points.
+    void
+    raise_at_singular_points(const Part              &part,
+                             const DistributedVector &u,
+                             std::vector<double>     &squares) const;
+
+    /// Twice the energy of a strain in the plane or in space, by volume.
+    double
+    energy_density(const unsigned int             cell,
+                   const SymmetricTensor<2, dim> &strain) const;
+
+    /// What is recovered at a node.
+    SymmetricTensor<2, dim>
+    recovered(const unsigned int node) const;
+
+    /// Find the cells across vertices.
+    void
+    find_across();
 
     /// The vertex of a cell that is farthest from this one.
     static unsigned int
@@ -105,7 +152,7 @@ namespace Viscoplastic
     void
     interpolate_hanging_nodes(const Part &part) const;
 
-    /// The mean strain of an owned cell.
+    /// The mean strain of a cell.
     SymmetricTensor<2, dim>
     mean_strain(const unsigned int cell, const DistributedVector &u) const;
 
@@ -126,6 +173,9 @@ namespace Viscoplastic
     /// The vertices of owned cells on faces where the part ends, as far as the
     /// opposite one is not on such a face.
     std::vector<std::vector<unsigned char>> ends;
+    /// The cells that share a vertex of owned cells and nothing else with them,
+    /// where the mesh around the vertex is regular; invalid elsewhere.
+    std::vector<std::array<unsigned int, n_vertices>> across;
     /// Shape functions at the points of a cell.
     std::array<std::array<double, n_vertices>, n_points> shape_values;
     std::vector<Part>                                    parts;
@@ -133,5 +183,7 @@ namespace Viscoplastic
     /// eps* at the nodes; kept, since a new vector for each step costs as much
     /// as to fill it.
     mutable NodalVector values;
+    /// Sums and maxima over the cells around nodes.
+    mutable NodalVector sums, maxima;
   };
 } // namespace Viscoplastic

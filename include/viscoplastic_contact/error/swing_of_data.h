@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/error/evaluated_state.h>
+
+namespace Viscoplastic
+{
+  /// What data do within a step and do not show at its ends.
+  struct Swing
+  {
+    /// As a part of the forces of the body; times the norm of its stress.
+    double share = 0., energy_norm = 0.;
+  };
+
+  /**
+   * How far loads and friction bounds are, at the quarters of a step, from all
+   * that is between their values at its ends. Points that slip meanwhile
+   * remember it, and a body that creeps the part that relaxes in the step.
+   * Bounds are those of the pressure at the beginning.
+   *
+   * Zero, and with data that do not depend on time for nothing, where each
+   * datum rises or falls all along the step; of second order where it turns.
+   * Prescribed displacements and the motion of foundations are not looked at.
+   * Collective.
+   */
+  template <int dim>
+  Swing
+  swing_of_data(const Discretization<dim> &discretization,
+                const EvaluatedState<dim> &accepted,
+                const EvaluatedState<dim> &end);
+} // namespace Viscoplastic

@@ -442,8 +442,9 @@ namespace Viscoplastic
           bulk.confirmed_dual_norm(certificate.force,
                                    limit,
                                    report.linear_iterations);
-        error     = bound(confirmed, certificate);
-        misjudged = std::clamp(confirmed / estimate, 1., largest_misjudgment);
+        error = bound(confirmed, certificate);
+        if (estimate > 0.)
+          misjudged = std::clamp(confirmed / estimate, 1., largest_misjudgment);
       }
     AssertThrow(std::isfinite(error),
                 ExcMessage("The contact solver met a value that is not "

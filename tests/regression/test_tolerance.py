@@ -199,7 +199,8 @@ class Kinks(TestCase):
         self.assertNotIn("Steps end at kinks", missed.stdout)
         for column in "friction_force_x", "friction_dissipation", "point0_x":
             self.assertClose(found[column][-1], fine[column][-1], 1e-8)
-            self.assertGreater(abs(missed[column][-1] / fine[column][-1] - 1), 0.1)
+            # More, were what loads do within steps not counted.
+        self.assertGreater(abs(missed[column][-1] / fine[column][-1] - 1), 0.02)
 
     def test_jumps_get_steps_of_their_own(self):
         scene = {

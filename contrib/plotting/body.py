@@ -104,9 +104,8 @@ class Body2D(Body):
                 artist.set_clip_on(True)
         low, high = self.limits()
         for text in axes.texts:
-            place = text.get_position()
-            if text.get_transform() == axes.transData:
-                text.set_visible(all(low <= place) and all(place <= high))
+            place = np.array(getattr(text, "xy", text.get_position()))  # of annotations
+            text.set_visible(all(low <= place) and all(place <= high))
         whole = axes.inset_axes([0.72, 0.7, 0.26, 0.28])
         whole.add_collection(LineCollection(outline, colors=style.OUTLINE, linewidths=0.8))
         whole.add_patch(Rectangle(low, *(high - low), fill=False, ec="#d55e00", lw=1.2))

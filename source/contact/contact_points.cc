@@ -309,11 +309,11 @@ namespace Viscoplastic
 
 
   void
-  fit_multipliers(const ContactLayout  &face,
-                  const Vector<double> &residual,
-                  ContactState         &state,
-                  Vector<double>       &force,
-                  const CoulombLaw     *law)
+  fit_multipliers(const ContactLayout       &face,
+                  const Vector<double>      &residual,
+                  ContactState              &state,
+                  Vector<double>            &force,
+                  const CoulombCoefficients *law)
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {

@@ -12,20 +12,6 @@
 
 namespace Viscoplastic
 {
-  double
-  CoulombLaw::bound(const ContactLayout &face,
-                    const ContactState  &state,
-                    const unsigned int   point) const
-  {
-    double       result = given[point];
-    unsigned int o      = face.first_obstacle(face.points[point].node);
-    for (const double coefficient : of_pressure[point])
-      result += coefficient * state.multiplier[o++][0];
-    return result;
-  }
-
-
-
   unsigned int
   CoulombLaw::own_obstacle(const ContactLayout &face,
                            const unsigned int   point) const

@@ -38,11 +38,11 @@ namespace Viscoplastic
 
 
 
-  NodeForces::NodeForces(const ContactLayout &face,
-                         const unsigned int   node,
-                         const ContactState  &state,
-                         const CoulombLaw    *law,
-                         const bool           with_springs)
+  NodeForces::NodeForces(const ContactLayout       &face,
+                         const unsigned int         node,
+                         const ContactState        &state,
+                         const CoulombCoefficients *law,
+                         const bool                 with_springs)
     : face(face)
     , node(node)
     , begin(face.first_point[node])

@@ -10,11 +10,22 @@ namespace Viscoplastic
 {
   namespace
   {
-    /// How far a value is from the range of two others.
+    /// How far a vector of @p n components is from the ball that has two others
+    /// as the ends of a diameter: from the range of two numbers, and for
+    /// vectors the same in all frames.
     double
-    beyond(const double value, const double a, const double b)
+    beyond(const double      *value,
+           const double      *a,
+           const double      *b,
+           const unsigned int n)
     {
-      return std::max({0., value - std::max(a, b), std::min(a, b) - value});
+      double distance = 0., diameter = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          distance += Utilities::fixed_power<2>(value[i] - 0.5 * (a[i] + b[i]));
+          diameter += Utilities::fixed_power<2>(a[i] - b[i]);
+        }
+      return std::max(0., std::sqrt(distance) - 0.5 * std::sqrt(diameter));
     }
 
 
@@ -103,11 +114,13 @@ namespace Viscoplastic
             const Load<dim> load = d.loads.assemble(time);
             const double   *now = load.values.begin(), *left = before.begin(),
                          *right = after.begin();
-            for (unsigned int i = 0; i < before.locally_owned_size(); ++i)
+            // Node by node.
+            for (unsigned int i = 0; i < before.locally_owned_size(); i += dim)
               {
-                sums[0] +=
-                  Utilities::fixed_power<2>(beyond(now[i], left[i], right[i]));
-                sums[1] += Utilities::fixed_power<2>(now[i]);
+                sums[0] += Utilities::fixed_power<2>(
+                  beyond(now + i, left + i, right + i, dim));
+                for (unsigned int d = 0; d < dim; ++d)
+                  sums[1] += Utilities::fixed_power<2>(now[i + d]);
               }
           }
         if (bounds_vary)
@@ -116,7 +129,7 @@ namespace Viscoplastic
             for (unsigned int p = 0; p < contact.n_points(); ++p)
               if (!d.face->layout().points[p].is_obstacle)
                 sums[2] += Utilities::fixed_power<2>(
-                  beyond(now[p], bounds_before[p], bounds_after[p]));
+                  beyond(&now[p], &bounds_before[p], &bounds_after[p], 1));
           }
         Utilities::MPI::sum(sums, d.space.communicator, sums);
         largest = std::max(largest, sums[0] + sums[2]);

@@ -144,9 +144,9 @@ namespace Viscoplastic
                                            ContactState            &contact)
   {
     const ContactFace<dim> &face = *discretization.face;
-    const CoulombLaw        law{problem.given_bounds,
-                         face.bounds_of_pressure(problem.time_step.t,
-                                                 problem.slip_rates),
+    const CoulombLaw        law{{problem.given_bounds,
+                                 face.bounds_of_pressure(problem.time_step.t,
+                                                  problem.slip_rates)},
                          [&face](const unsigned int node) {
                            std::ostringstream place;
                            place << '(' << face.position(node) << ')';

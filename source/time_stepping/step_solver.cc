@@ -175,6 +175,21 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  StepSolver<dim>::load_size(const Data &data) const
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    double                      sum   = 0.;
+    for (std::size_t i = 0; i < space.excluded().size(); ++i)
+      if (!space.excluded()[i])
+        sum += Utilities::fixed_power<2>(data.right_side.begin()[i]) /
+               diagonal.begin()[i];
+    return std::sqrt(Utilities::MPI::sum(sum, space.communicator));
+  }
+
+
+
+  template <int dim>
   void
   StepSolver<dim>::add_rounding(const Data        &data,
                                 DistributedVector &u,
@@ -185,10 +200,13 @@ namespace Viscoplastic
     // square.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const double     size    = bulk_solver->size();
-    const double     ratio = rounding_error(data, u) / (100. * epsilon * size);
-    // Of a body that moves without strain nothing but rounding is left.
+    const double     floor   = rounding_error(data, u),
+                 ratio       = floor / (100. * epsilon * size);
+    // Of a body that moves without strain, under no loads, nothing but rounding
+    // is left, of its energy, too.
     if (!(epsilon * ratio * ratio > report.tolerance) ||
-        size <= bulk_solver->rounding_error())
+        size <= bulk_solver->rounding_error() ||
+        (epsilon * ratio * ratio > 1. && load_size(data) <= floor))
       return;
     bulk_solver->begin(data.right_side, u);
     const double       rounding = bulk_solver->rounding_of_residual();

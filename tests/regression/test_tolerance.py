@@ -199,8 +199,13 @@ class Kinks(TestCase):
         self.assertNotIn("Steps end at kinks", missed.stdout)
         for column in "friction_force_x", "friction_dissipation", "point0_x":
             self.assertClose(found[column][-1], fine[column][-1], 1e-8)
-            # More, were what loads do within steps not counted.
-        self.assertGreater(abs(missed[column][-1] / fine[column][-1] - 1), 0.02)
+        # What the load does within steps is counted, and found by shorter ones; not
+        # exactly.
+        self.assertGreater(len(missed["t"]), len(found["t"]))
+        for column in "friction_force_x", "friction_dissipation":
+            error = abs(missed[column][-1] / fine[column][-1] - 1)
+            self.assertGreater(error, 1e-4)
+            self.assertLess(error, 0.05)
 
     def test_jumps_get_steps_of_their_own(self):
         scene = {

@@ -57,7 +57,7 @@ namespace
     const auto lines = read_output_lines<2>(scene.parameters.output.lines);
     EXPECT_EQ(lines[0].end, Point<2>(1., 0.));
     const auto integrals =
-      read_output_integrals("roof: pressure; salt: energies", names);
+      read_output_integrals("roof: contact pressure; salt: energies", names);
     EXPECT_EQ(integrals[0].name(), "boundary_3");
     EXPECT_EQ(integrals[1].name(), "material_1");
   }
@@ -101,7 +101,7 @@ namespace
         },
         why);
     };
-    refuses("salt", "which material 1 is called already");
+    refuses("salt", "which boundary 1 is called already");
     refuses("2nd roof", "begins with a digit");
     refuses("roof, left", "has one of the characters");
     refuses("point 4", "is what a place without a name is called");

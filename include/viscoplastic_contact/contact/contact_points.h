@@ -8,7 +8,7 @@
 
 namespace Viscoplastic
 {
-  struct CoulombLaw;
+  struct CoulombCoefficients;
 
   /**
    * The frictional problem of a single point: the multiplier that minimizes
@@ -48,11 +48,11 @@ namespace Viscoplastic
    * of the pressures, and are set.
    */
   void
-  fit_multipliers(const ContactLayout  &face,
-                  const Vector<double> &residual,
-                  ContactState         &state,
-                  Vector<double>       &force,
-                  const CoulombLaw     *law = nullptr);
+  fit_multipliers(const ContactLayout       &face,
+                  const Vector<double>      &residual,
+                  ContactState              &state,
+                  Vector<double>            &force,
+                  const CoulombCoefficients *law = nullptr);
 
 
   /**

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/contact/contact_layout.h>
+#include <viscoplastic_contact/contact/coulomb_coefficients.h>
 
 #include <functional>
 #include <string>
@@ -10,30 +11,15 @@
 namespace Viscoplastic
 {
   /**
-   * Coulomb's law with the pressure of the step itself: the bound of a point of
-   * friction is
-   *
-   *     rho_c = g_c + sum_k mu_ck p_k
-   *
-   * with the forces p_k >= 0 of the obstacles of its node. What is here makes a
+   * Coulomb's law with the pressure of the step itself. What is here makes a
    * solver of given bounds one of this law: a Gauss-Seidel step at a node, and
    * how the linear system of a Newton step knows that bounds change with the
    * pressure.
    */
-  struct CoulombLaw
+  struct CoulombLaw : CoulombCoefficients
   {
-    /// g_c, point by point; of no meaning for obstacles.
-    std::vector<double> given;
-    /// mu_ck, in the order of the obstacles of the node.
-    std::vector<std::vector<double>> of_pressure;
     /// Where a node is, for messages.
     std::function<std::string(unsigned int)> place;
-
-    /// The bound of a point of friction at the pressures of @p state.
-    double
-    bound(const ContactLayout &face,
-          const ContactState  &state,
-          const unsigned int   point) const;
 
     /// relax_node() with the bounds of the pressures that come out, which are
     /// set. Where pieces meet, one after the other obeys the law.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/coulomb_law.h>
+#include <viscoplastic_contact/contact/contact_layout.h>
+#include <viscoplastic_contact/contact/coulomb_coefficients.h>
 
 namespace Viscoplastic
 {
@@ -19,11 +20,11 @@ namespace Viscoplastic
   public:
     /// All arguments stay in use. @p law: null where bounds are given. With
     /// @p with_springs obstacles that give way count as if they held the node.
-    NodeForces(const ContactLayout &face,
-               unsigned int         node,
-               const ContactState  &state,
-               const CoulombLaw    *law,
-               bool                 with_springs = false);
+    NodeForces(const ContactLayout       &face,
+               unsigned int               node,
+               const ContactState        &state,
+               const CoulombCoefficients *law,
+               bool                       with_springs = false);
 
     /// Set the node's multipliers, and with a law its bounds, in @p state to
     /// what fits @p residual best. Returns what is missing of it.
@@ -87,11 +88,11 @@ namespace Viscoplastic
     Tensor<1, 3>
     invert_gram(const Tensor<1, 3> &x) const;
 
-    const ContactLayout &face;
-    const unsigned int   node, begin, end, obstacle;
-    const ContactState  &state;
-    const CoulombLaw    *law;
-    const bool           with_springs;
+    const ContactLayout       &face;
+    const unsigned int         node, begin, end, obstacle;
+    const ContactState        &state;
+    const CoulombCoefficients *law;
+    const bool                 with_springs;
 
     /// The force of a unit of pressure, obstacle by obstacle.
     std::vector<Tensor<1, 3>> push;

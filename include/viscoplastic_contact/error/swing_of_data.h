@@ -20,7 +20,8 @@ namespace Viscoplastic
    * Bounds are those of the pressure at the beginning.
    *
    * Zero, and with data that do not depend on time for nothing, where each
-   * datum rises or falls all along the step; of second order where it turns.
+   * datum rises or falls all along the step and no force turns by more than
+   * half a circle; of second order where a datum turns back.
    * Prescribed displacements and the motion of foundations are not looked at.
    * Collective.
    */

@@ -153,6 +153,11 @@ namespace Viscoplastic
     void
     add_rounding(const Data &data, DistributedVector &u, ContactReport &report);
 
+    /// The loads and stresses of the data in the dual norm of the diagonal.
+    /// Collective.
+    double
+    load_size(const Data &data) const;
+
     /// The largest of what the data contribute to the energy norm, without
     /// squares. Collective.
     double

@@ -248,6 +248,8 @@ def draw_panels(results, panels, statistics, what):
         alone = i == len(panels) - 1 and column == 0  # takes the whole row
         axes = figure.add_subplot(grid[row, :] if alone else grid[row, column])
         draw_panel(axes, panel, names, statistics, units)
+        if panel is (QUANTITY if QUANTITY in [p for p, _ in panels] else ERROR):
+            draw_tolerance(axes, results)
         axes.set_xlim(*padded(statistics["t"]))
         show(axes.xaxis, "time $t$", time)
         if row < rows - 1:
@@ -256,6 +258,26 @@ def draw_panels(results, panels, statistics, what):
             axes.tick_params(labelbottom=False)
     figure.suptitle(style.title(results.name, what), fontsize="large")
     return figure
+
+
+def place_legend(axes, handles, labels):
+    axes.legend(
+        handles,
+        labels,
+        loc="center left",
+        bbox_to_anchor=(1.0, 0.5),
+        frameon=False,
+        handlelength=1.4,
+    )
+
+
+def draw_tolerance(axes, results):
+    tolerance = float(results.data.get(("Error control", "Tolerance"), 0.0))
+    if tolerance > 0.0:
+        axes.axhline(100.0 * tolerance, color="#222222", lw=1.0, ls=":", label="tolerance")
+        handles, labels = axes.get_legend_handles_labels()
+        if axes.get_legend():
+            place_legend(axes, handles, labels)
 
 
 def padded(t):
@@ -291,6 +313,9 @@ def draw_panel(axes, panel, names, statistics, units):
         color, dashes = style.SERIES[i % 7], ("-", "--", ":", "-.")[i // 7 % 4]
         if panel.logarithmic:
             values = np.where(np.isfinite(values) & (values > 0.0), values, np.nan)
+        if name == "step_limit" and "k" in names:
+            # At first it may be that of nothing at all.
+            values = np.where(values < 1e3 * statistics["k"].max(), values, np.nan)
         if name == "slip_area":
             axes.fill_between(
                 t, values, step="pre", color=style.SLIP, alpha=0.2, lw=0
@@ -321,9 +346,4 @@ def draw_panel(axes, panel, names, statistics, units):
             axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
         show(axes.yaxis, panel.label, unit, integer=counted)
     if len(names) > 1 or panel.columns != names:
-        axes.legend(
-            loc="center left",
-            bbox_to_anchor=(1.0, 0.5),
-            frameon=False,
-            handlelength=1.4,
-        )
+        place_legend(axes, *axes.get_legend_handles_labels())

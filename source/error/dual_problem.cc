@@ -9,7 +9,8 @@ namespace Viscoplastic
   namespace
   {
     /// Of the dual solution in the energy norm. An estimate needs no more than
-    /// 1e-3, but meshes are refined by it, which are to be those of other ranks.
+    /// 1e-3, but meshes are refined by it, which are to be those of other
+    /// ranks.
     constexpr double dual_tolerance = 1e-6;
     /// A spring that many times as stiff as its node holds it as well as an
     /// estimate needs. In short steps rho/|s| is beyond all measure, and the

@@ -26,8 +26,9 @@ namespace Viscoplastic
               const std::string &name,
               const std::string &value)
     {
-      out << "  " << std::left << std::setw(26) << name << std::right << value
-          << '\n';
+      // Names of places may be longer than the column.
+      out << "  " << std::left << std::setw(25) << name << std::right << ' '
+          << value << '\n';
     }
 
 

@@ -270,7 +270,7 @@ class Kept(TestCase):
             for ranks in 2, 3:
                 several = run("slab", of(column, 0.005, **scene), ranks=ranks)
                 self.assertEqual(list(several["cells"]), list(one["cells"]))
-                # Steps are chosen by the dual problem, which is solved to 1e-3,
+                # Steps are chosen by the dual problem, which is solved to 1e-6,
                 # and each begins where the one before has ended.
                 self.assertClose(several["t"], one["t"], 5e-3)
                 # Where signs cancel, what is left is as inexact as its parts.

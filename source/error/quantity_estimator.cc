@@ -55,11 +55,19 @@ namespace Viscoplastic
     , solver_of_tangents(solver_of_tangents)
     , dual_problem(discretization, *discretization.scene().quantity)
   {
-    const Scene<dim> &scene = discretization.scene();
-    if (scene.has_viscosity() &&
-        scene.quantity->kind == QuantityOfInterest::Kind::displacement)
+    if (is_of_creep(discretization.scene()))
       tangent = std::make_unique<TangentMatrix<dim>>(discretization.laws,
                                                      discretization.matrix);
+  }
+
+
+
+  template <int dim>
+  bool
+  QuantityEstimator<dim>::is_of_creep(const Scene<dim> &scene)
+  {
+    return scene.has_viscosity() && scene.quantity &&
+           scene.quantity->kind == QuantityOfInterest::Kind::displacement;
   }
 
 
@@ -81,9 +89,34 @@ namespace Viscoplastic
                          tangent->matrix(),
                          state.contact,
                          law);
-    return space_estimator.multiply_recovered(state,
-                                              dual,
-                                              tangent->at_samples());
+    typename RecoveryEstimator<dim>::Linearization linearization{
+      tangent->at_samples(), k / state.t, {}};
+    std::vector<SymmetricTensor<2, 3>> strains;
+    if (!tangent->is_constant)
+      linearization.remainder = [&, now = discretization.laws.at(state.t)](
+                                  const std::size_t            c,
+                                  const unsigned int           s,
+                                  const SymmetricTensor<2, 3> &e) {
+        const StressSpace<dim> &stress_space = discretization.stress_space;
+        const unsigned int      n            = stress_space.n_samples;
+        const ViscoplasticLaw  *flow         = now.law(c);
+        if (flow == nullptr)
+          return SymmetricTensor<2, 3>();
+        const Stiffness &stiffness = stress_space.moduli(c);
+        strains.resize(n);
+        stress_space.strains(c, state.u.begin(), strains.data());
+        const SymmetricTensor<2, 3> stress = stiffness.stress(strains[s]) +
+                                             state.z[c * n + s],
+                                    change =
+                                      tangent->at_samples()[c * n + s] * e;
+        const LawPoint point = now.point(c, s);
+        // C e = E e + k dG to first order.
+        return stiffness.strain(
+          change - stiffness.stress(e) -
+          k * (flow->rate(stress + change, strains[s] + e, stiffness, point) -
+               flow->rate(stress, strains[s], stiffness, point)));
+      };
+    return space_estimator.multiply_recovered(state, dual, linearization);
   }
 
 

@@ -493,10 +493,9 @@ namespace Viscoplastic
 
   template <int dim>
   Vector<double>
-  RecoveryEstimator<dim>::multiply(
-    const DistributedVector                  &u,
-    const DistributedVector                  &w,
-    const std::vector<SymmetricTensor<4, 3>> &tangents) const
+  RecoveryEstimator<dim>::multiply(const DistributedVector &u,
+                                   const DistributedVector &w,
+                                   const Linearization     &law) const
   {
     const unsigned int  n_samples = local.stress_space.n_samples;
     std::vector<double> products(local.cells.size());
@@ -510,17 +509,28 @@ namespace Viscoplastic
         recover(part, w, /* from_inside = */ true);
         for (unsigned int i = 0; i < part.cells.size(); ++i)
           {
-            const unsigned int c = part.cells[i];
-            const auto &weights  = local.shapes[local.cells[c].shape].weights;
-            const auto  of_w     = defects(c, w);
+            const unsigned int c       = part.cells[i];
+            const Cell        &cell    = local.cells[c];
+            const auto        &weights = local.shapes[cell.shape].weights;
+            const auto         of_w    = defects(c, w);
             const auto delta_u = dilatations(c, u), delta_w = dilatations(c, w);
+            const auto strains =
+              local.strains(cell, local.displacements(cell, w.begin()));
             for (unsigned int q = 0; q < n_points; ++q)
               {
+                const unsigned int           s = n_samples == 1 ? 0 : q;
                 const SymmetricTensor<4, 3> &C =
-                  tangents[c * n_samples + (n_samples == 1 ? 0 : q)];
-                products[c] +=
-                  weights[q] * ((of_u[i][q] - delta_u[q]) * (C * of_w[q]) -
-                                of_u[i][q] * (C * delta_w[q]));
+                  law.tangents[c * n_samples + s];
+                const SymmetricTensor<2, 3> &e = of_u[i][q];
+                // Of a shorter step; creep changes no volumes.
+                const SymmetricTensor<2, 3> of_step =
+                  e - (1. - law.share) * deviator(e);
+                double product = (e - delta_u[q]) * (C * of_w[q]) -
+                                 of_step * (C * delta_w[q]) / law.share;
+                if (law.remainder)
+                  product +=
+                    law.remainder(c, s, of_step) * (C * strains[q]) / law.share;
+                products[c] += weights[q] * product;
               }
           }
       }

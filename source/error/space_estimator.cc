@@ -89,11 +89,11 @@ namespace Viscoplastic
   template <int dim>
   Vector<double>
   SpaceEstimator<dim>::multiply_recovered(
-    const State<dim>                         &state,
-    const DualSolution<dim>                  &dual,
-    const std::vector<SymmetricTensor<4, 3>> &tangents) const
+    const State<dim>                                     &state,
+    const DualSolution<dim>                              &dual,
+    const typename RecoveryEstimator<dim>::Linearization &law) const
   {
-    return recovery_estimator->multiply(state.u, dual.cartesian, tangents);
+    return recovery_estimator->multiply(state.u, dual.cartesian, law);
   }
 
 

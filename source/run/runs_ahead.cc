@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace Viscoplastic
 {
@@ -74,11 +75,23 @@ namespace Viscoplastic
         return expectation;
       std::ostream &out = console.stream();
       out << "First without files, to find a mesh for all times:" << std::endl;
-      ViscoplasticContact<dim> first(parameters, console, [&](auto &) {
-        return expectation;
-      });
-      first.run_without_files();
-      refine_like(first.mesh(), triangulation);
+      std::unique_ptr<ViscoplasticContact<dim>> run, before;
+      do
+        {
+          before = std::move(run);
+          if (before)
+            out << "Again from the beginning:" << std::endl;
+          run = std::make_unique<ViscoplasticContact<dim>>(
+            parameters, console, [&](auto &first_mesh) {
+              if (before)
+                refine_like(before->mesh(), first_mesh);
+              before.reset();
+              return expectation;
+            });
+          run->run_without_files();
+        }
+      while (!run->is_finished());
+      refine_like(run->mesh(), triangulation);
       out << "Again from the beginning, on the mesh that has been found:"
           << std::endl;
       return expectation;

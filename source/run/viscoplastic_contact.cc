@@ -4,6 +4,7 @@
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/error/quantity_estimator.h>
 #include <viscoplastic_contact/error/solution_errors.h>
 #include <viscoplastic_contact/results/step_quantities.h>
 #include <viscoplastic_contact/run/scene_check.h>
@@ -107,7 +108,12 @@ namespace Viscoplastic
           adapt_mesh();
         AcceptedStep<dim> step = time_stepper->next(accepted);
         if (refine_for(step))
-          continue;
+          {
+            if (signals == nullptr && accepted.state.n > 0 &&
+                QuantityEstimator<dim>::is_of_creep(scene))
+              return ""; // to begin again
+            continue;
+          }
         announcer.announce_solver(time_stepper->method().solver_name());
         recorder.record(accepted,
                         step,

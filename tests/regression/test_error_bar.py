@@ -156,6 +156,7 @@ class LongCreep(TestCase):
         )
         self.assertIn("has been kept", result.stdout)
         self.assertClose(self.velocity(result), self.VELOCITY, relative=0.02)
+        self.assertClose(result["point0_x"][-1], self.fine["point0_x"][-1], 0.02)
         # one mesh from the beginning
         self.assertEqual(result["cells"][0], result["cells"][-1])
 

@@ -284,8 +284,8 @@ namespace
       tangents.insert(tangents.end(),
                       body.stress_space->n_samples,
                       body.stress_space->moduli(c).tensor());
-    const auto products =
-      RecoveryEstimator<dim>(cells).multiply(u, w, tangents);
+    const RecoveryEstimator<dim> estimator(cells);
+    const auto   products = estimator.multiply(u, w, {tangents, 1., {}});
     const double mu = 1. / 2.8, K = 1. / 0.6, lambda = K - 2. / 3. * mu;
     for (const auto &cell : body.space->cells)
       {
@@ -303,6 +303,42 @@ namespace
                     expected * cell->measure(),
                     1e-9 * cell->measure());
       }
+
+    // What a law takes beyond its tangents works on w, and a step that is half
+    // as long makes half of the deviatoric errors.
+    SymmetricTensor<2, 3> strain;
+    strain[0][0] = strain[0][1] = 1.;
+    std::vector<SymmetricTensor<2, 3>> errors, halves;
+    const auto                         remainder = [&](auto &list) {
+      return [&](const std::size_t, const unsigned int, const auto &e) {
+        list.push_back(e);
+        return strain;
+      };
+    };
+    const auto more =
+                 estimator.multiply(u, w, {tangents, 1., remainder(errors)}),
+               half = estimator.multiply(u, w, {tangents, 0.5, {}}),
+               half_more =
+                 estimator.multiply(u, w, {tangents, 0.5, remainder(halves)});
+    ASSERT_EQ(errors.size(), halves.size());
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      EXPECT_NEAR((errors[i] - 0.5 * deviator(errors[i]) - halves[i]).norm(),
+                  0.,
+                  1e-12);
+    for (const auto &cell : body.space->cells)
+      if (cell->center()[0] > 2. * cell->extent_in_direction(0))
+        {
+          const Point<dim>   x = cell->center();
+          const unsigned int i = cell->active_cell_index();
+          // At the center the interpolant has the gradient of the field.
+          const double xx = 4. * x[0] + x[1], yy = -4. * x[0] + x[1],
+                       xy = 0.5 * (2. * x[1] + x[0] - 2. * x[0] - 4. * x[1]);
+          const double expected =
+            (lambda * (xx + yy) + 2. * mu * xx + 4. * mu * xy) *
+            cell->measure();
+          EXPECT_NEAR(more[i] - products[i], expected, 1e-9);
+          EXPECT_NEAR(half_more[i] - half[i], 2. * expected, 1e-9);
+        }
   }
 
 

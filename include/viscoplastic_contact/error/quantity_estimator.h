@@ -66,6 +66,10 @@ namespace Viscoplastic
     using TangentSolver =
       std::function<BulkSolver &(const TangentMatrix<dim> &, const bool)>;
 
+    /// Whether the quantity is a displacement of a body that creeps.
+    static bool
+    is_of_creep(const Scene<dim> &scene);
+
     /// All arguments stay in use. Collective.
     QuantityEstimator(const Discretization<dim> &discretization,
                       const SpaceEstimator<dim> &space_estimator,

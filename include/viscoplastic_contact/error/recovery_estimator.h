@@ -6,6 +6,7 @@
 
 #include <viscoplastic_contact/error/local_cells.h>
 
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -38,6 +39,22 @@ namespace Viscoplastic
   class RecoveryEstimator
   {
   public:
+    /// A creeping body, linearized as one step of backward Euler.
+    struct Linearization
+    {
+      /// The tangent C at each sample.
+      const std::vector<SymmetricTensor<4, 3>> &tangents;
+      /// The size of the step as a part of the time that the body has crept,
+      /// and so that of its deviatoric strains. At most 1.
+      double share;
+      /// The strain at a sample of a cell that a stress error C e takes beyond
+      /// the strain error e; empty if the law is linear.
+      std::function<SymmetricTensor<2, 3>(const std::size_t            cell,
+                                          const unsigned int           sample,
+                                          const SymmetricTensor<2, 3> &e)>
+        remainder;
+    };
+
     /// The argument stays in use. Collective.
     explicit RecoveryEstimator(const LocalCells<dim> &cells);
 
@@ -47,9 +64,15 @@ namespace Viscoplastic
     estimate(const DistributedVector &u) const;
 
     /**
-     * int e_u : C e_w by active cell, of the strain errors of two displacements
-     * with their signs and a tensor C at each sample; arguments and result as
-     * of estimate().
+     * a(e_u, e_w) by active cell in the form of the tangents C, of the strain
+     * errors of a displacement and a dual solution with their signs; arguments
+     * and result as of estimate().
+     *
+     *     int e_u : C e_w + int r(e_u) : C eps(w_h)
+     *
+     * since u_h solves the equations of the law and not those of its tangents:
+     * its error is a-orthogonal to w_h but for the remainder r of the law,
+     * which is of the order of the first term.
      *
      * Signs leave little of the sum, so that two things count here that do not
      * in squares. Means at a boundary miss half of what a strain varies by in a
@@ -63,9 +86,9 @@ namespace Viscoplastic
      * Collective.
      */
     Vector<double>
-    multiply(const DistributedVector                  &u,
-             const DistributedVector                  &w,
-             const std::vector<SymmetricTensor<4, 3>> &tangents) const;
+    multiply(const DistributedVector &u,
+             const DistributedVector &w,
+             const Linearization     &law) const;
 
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,

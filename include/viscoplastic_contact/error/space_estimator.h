@@ -67,12 +67,12 @@ namespace Viscoplastic
              const double             memory) const;
 
     /// The same by RecoveryEstimator, which sees what creep has made of errors
-    /// of the rates, with a tangent at each sample. Collective.
+    /// of the rates. Collective.
     Vector<double>
     multiply_recovered(
-      const State<dim>                         &state,
-      const DualSolution<dim>                  &dual,
-      const std::vector<SymmetricTensor<4, 3>> &tangents) const;
+      const State<dim>                                     &state,
+      const DualSolution<dim>                              &dual,
+      const typename RecoveryEstimator<dim>::Linearization &law) const;
 
   private:
     const Discretization<dim> &discretization;

@@ -12,7 +12,9 @@ namespace Viscoplastic
    * eight steps for each phase tells the size. For the tolerance of a quantity
    * of interest on adaptive meshes, all steps are made once, and the first
    * mesh is refined as the last one of this run: what creeps or slips remembers
-   * each mesh, as the estimate of a quantity does not. Arguments stay in use.
+   * each mesh, as the estimate of a quantity does not. The displacement of a
+   * body that creeps does so most of all, so that this run begins again on each
+   * new mesh. Arguments stay in use.
    */
   template <int dim>
   RunsAhead<dim>

@@ -60,9 +60,17 @@ namespace Viscoplastic
         const RunSummary<dim>     *coarser = nullptr);
 
     /// Run without files and without the words at the beginning; returns what
-    /// is known at the end.
+    /// is known at the end. A body that creeps is left on a mesh that is fine
+    /// enough for one step more, for a new run, if the tolerance is that of a
+    /// displacement.
     RunSummary<dim>
     run_without_files();
+
+    bool
+    is_finished() const
+    {
+      return accepted.state.t >= scene.schedule.end_time();
+    }
 
     const parallel::distributed::Triangulation<dim> &
     mesh() const
@@ -89,12 +97,6 @@ namespace Viscoplastic
     /// Returns a sentence if a signal has ended the run early.
     std::string
     make_steps(const SignalRequests *signals);
-
-    bool
-    is_finished() const
-    {
-      return accepted.state.t >= scene.schedule.end_time();
-    }
 
     /// Make everything that depends on the mesh.
     void

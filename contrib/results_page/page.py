@@ -82,8 +82,8 @@ many cells: order one is the best that bilinear elements can do, with any mesh.
 ## What an error costs
 
 Three scenes without known solutions, whose errors are differences to a run to a
-tolerance. Below each are the fits $C_h h^p+C_k k^q$ and the factor by which they miss
-the runs, as root mean square and at worst. The price list of all three:
+tolerance. The fits $C_h h^p+C_k k^q$ and the factor by which they miss the runs, as root
+mean square and at worst, are in `doc/accuracy_<scene>.csv`. The price list of all three:
 
 {prices}
 {diagrams}

@@ -35,7 +35,7 @@ def make(name, runner, images):
     style.set_up()
     if name in tables.SHORTENED:
         rows, about = SHORTENED[name](runner)
-        write_rows(images.parent, name, rows)
+        write_csv(images.parent, name, [tables.SHORTENED[name][0], *rows])
         return tables.shortened(name, rows) + stamp(runner, about)
     if name == "tolerance":
         return tolerance(runner)
@@ -51,14 +51,13 @@ def csv_file(folder, name):
     return folder / f"accuracy_{name}.csv"
 
 
-def write_rows(folder, name, rows):
-    header = tables.SHORTENED[name][0]
+def write_csv(folder, name, lines):
     with open(csv_file(folder, name), "w", newline="", encoding="utf-8") as file:
-        csv.writer(file, lineterminator="\n").writerows([header, *rows])
+        csv.writer(file, lineterminator="\n").writerows(lines)
 
 
 def read_rows(folder, name):
-    """What write_rows() has written."""
+    """The rows that are shown in short."""
     with open(csv_file(folder, name), newline="", encoding="utf-8") as file:
         _, *rows = csv.reader(file)
     return rows
@@ -216,15 +215,15 @@ def draw_diagram(name, study, images):
 
 
 def diagram(name, runner, images):
-    """Pictures and fits of one scene."""
+    """Pictures of one scene; its fits go to a file."""
     study = diagram_study(name, runner)
     error = study.error()
     pictures = draw_diagram(name, study, images)
+    write_csv(images.parent, name, [tables.FIT_HEADER, *tables.fit_rows(study, error)])
     return (
         f"![Error over seconds]({pictures[work_precision]})\n\n"
         + f"![Error over mesh width and time step]({pictures[convergence]})\n\n"
-        + f"![Seconds by phase]({pictures[cost]})\n\n"
-        + tables.fit_table(study, error)
+        + f"![Seconds by phase]({pictures[cost]})\n"
         + stamp(runner, study.about)
     )
 

@@ -346,12 +346,12 @@ def price_rows(name, study, tolerances, error):
     ]
 
 
-FIT_HEADER = (*VARIANT, "$C_h$", "$p$", "$C_k$", "$q$", "off by", "at worst")
+FIT_HEADER = (*VARIANT, "C_h", "p", "C_k", "q", "off by", "at worst")
 
 
-def fit_table(study, error):
+def fit_rows(study, error):
     """C_h h^p + C_k k^q of each variant, and the factors by which it misses the
-    runs, or nothing where no fit is known."""
+    runs, as far as they are known."""
     rows = []
     for variant in study.variants():
         fit = study.fit(variant, error)
@@ -366,7 +366,7 @@ def fit_table(study, error):
                     number(fit.get("worst_factor")),
                 ]
             )
-    return table(FIT_HEADER, rows) if rows else ""
+    return rows
 
 
 KNOWN_TO_TOLERANCE_HEADER = (

@@ -4,6 +4,9 @@ Python's in formulas, anchors and lists."""
 
 import re
 from html import escape
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
 
 FORMULA = re.compile(
     r"(?P<keep>^```(?!math)[^\n]*\n[\s\S]*?^```$|^ {4}.*$|`[^`\n]+`)"
@@ -56,10 +59,13 @@ def with_wide_lists(text):
 
 def on_page_markdown(markdown, page, **_):
     kept = formulas[page.file.src_path] = []
-    text = without_formulas(markdown, kept)
-    # Directories of the repository are none of the site.
-    text = LINK.sub(lambda m: m["text"] if m["target"].endswith("/hard") else m[0], text)
-    return with_wide_lists(text)
+    folder = (SOURCE / page.file.src_path).parent
+
+    def link(match):
+        # Directories of the repository are none of the site.
+        return match["text"] if (folder / match["target"]).is_dir() else match[0]
+
+    return with_wide_lists(LINK.sub(link, without_formulas(markdown, kept)))
 
 
 def on_page_content(html, page, **_):

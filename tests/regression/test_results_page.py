@@ -135,7 +135,8 @@ class Tables(Folder):
             for scene, eps in (("a", 4), ("a", 2), ("a", 1), ("b", 8))
         ]
         lines = tables.smallest_tolerances(reached)
-        self.assertEqual([line[:2] for line in lines], [["a", "2 %"], ["a", "1 %"], ["b", "8 %"]])
+        shown = [["a", "2 %"], ["a", "1 %"], ["b", "8 %"]]
+        self.assertEqual([line[:2] for line in lines], shown)
         self.assertEqual(lines[0][-2:], ["2 seconds", "2 uniform meshes"])
         values = [("c", "m", 1.0, "q", 1.001, 1.0), ("c", "m", 2.0, "q", 1.01, 1.0)]
         rows = [tables.reference_row(*row) for row in values]

@@ -83,7 +83,11 @@ many cells: order one is the best that bilinear elements can do, with any mesh.
 
 Three scenes without known solutions, whose errors are differences to a run to a
 tolerance. The fits $C_h h^p+C_k k^q$ and the factor by which they miss the runs, as root
-mean square and at worst, are in `doc/accuracy_<scene>.csv`. The price list of all three:
+mean square and at worst, are in `doc/accuracy_<scene>.csv`. All have
+
+{every_way}
+
+The price list:
 
 {prices}
 {diagrams}
@@ -158,11 +162,13 @@ def marked(name, text):
 
 def settings(overrides):
     """Overrides as they would stand on the command line."""
-    return "\n".join(
-        f"    --set '{name}={value}'"
-        for name, value in overrides.items()
-        if not name.startswith("Study/Budget")
-    )
+    return "\n".join(f"    --set '{name}={value}'" for name, value in overrides.items())
+
+
+def own_settings(overrides):
+    """Those of a scene that the others do not have."""
+    common = {"Study/Budget": None, **plan.EVERY_WAY}
+    return settings({name: v for name, v in overrides.items() if name not in common})
 
 
 def render(parts):
@@ -183,11 +189,16 @@ def render(parts):
     }
     diagrams = "\n".join(
         DIAGRAM.format(
-            title=title, name=name, settings=settings(overrides), part=parts[name]
+            title=title, name=name, settings=own_settings(overrides), part=parts[name]
         )
         for name, (title, overrides) in plan.DIAGRAMS.items()
     )
-    return TEMPLATE.format(diagrams=diagrams, fixed=plan.FIXED_TOLERANCE, **parts)
+    return TEMPLATE.format(
+        diagrams=diagrams,
+        every_way=settings(plan.EVERY_WAY),
+        fixed=plan.FIXED_TOLERANCE,
+        **parts,
+    )
 
 
 def write(file, name=None, text=None):

@@ -309,11 +309,24 @@ class Jobs:
         directory.mkdir(exist_ok=True)
         return directory / f"{stem}.{suffix}"
 
+    def source(self):
+        """What a PNG says of where it comes from."""
+        try:
+            about = self.results.info
+        except UserError:
+            about = {}
+        words = (about.get(name) for name in ("version", "git_revision", "date"))
+        return ", ".join([self.results.name, *filter(None, words)])
+
     def save(self, figure, name, index=None):
         for suffix in self.options.formats:
             path = self.path(name, suffix, index)
             figure.savefig(
-                path, dpi=self.options.dpi, bbox_inches="tight", pad_inches=0.15
+                path,
+                dpi=self.options.dpi,
+                bbox_inches="tight",
+                pad_inches=0.15,
+                metadata={"Source": self.source()} if suffix == "png" else None,
             )
             print(path)
         plt.close(figure)

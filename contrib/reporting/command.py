@@ -21,8 +21,8 @@ estimated error, where the seconds went, balances, warnings and how to do it
 again. The page needs nothing beside it, no network, and a browser of 2023 or
 later.
 
-The directory of a study (with study.md) or of a study of effects (effects.md)
-gets a page with its tables and pictures.
+The directory of a study (with study.md), of a price (price.md) or of a study of
+effects (effects.md) gets a page with its tables and pictures.
 """
 EPILOG = """\
 examples:

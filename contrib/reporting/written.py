@@ -10,7 +10,11 @@ from plotting.results import UserError
 from .markup import listing, picture, table
 from .page import Page
 
-TITLES = {"study": "Study: what accuracy costs", "effects": "What each effect changes"}
+TITLES = {
+    "study": "Study: what accuracy costs",
+    "price": "Price: what an error costs",
+    "effects": "What each effect changes",
+}
 INLINE = re.compile(
     r"`(?P<code>[^`]+)`"
     r"|!\[(?P<words>[^\]]*)\]\((?P<file>[^)]+)\)"
@@ -21,7 +25,7 @@ INLINE = re.compile(
 
 
 def kind_of(directory):
-    """"study" or "effects", or None: the directory holds neither."""
+    """"study", "price" or "effects", or None: the directory holds none of them."""
     for kind in TITLES:
         if (directory / f"{kind}.md").exists():
             return kind

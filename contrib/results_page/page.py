@@ -23,73 +23,37 @@ each part names version, machine and date. Errors are relative: the largest of
 all steps over the largest norm of the solution; where they are differences to a
 finer run, of the steps that end a phase of `Time/Phases`.
 
-- [How to read this page](#how-to-read-this-page)
-- [Orders of convergence](#orders-of-convergence)
-- [What an error costs](#what-an-error-costs)
-- [Runs to a tolerance](#runs-to-a-tolerance)
-- [What the tolerance of the solver is worth](#what-the-tolerance-of-the-solver-is-worth)
-- [Reference cases](#reference-cases)
-
-A study of your own scene makes the same pictures and prices:
-
-    contrib/study scene.prm
-    contrib/plot output/scene/study
+`contrib/study scene.prm` makes the same pictures and prices of your own scene.
 
 ## How to read this page
 
 **A study** runs a scene on a ladder of mesh widths $h$ and time steps $k$, each
 half of the one before: $h$ alone with the finest steps, $k$ alone on the finest
-mesh, and both. Where the scene has an exact solution, errors are those of the
-discrete one; elsewhere they are differences to a run with half of the finest
-$h$ and $k$, so that an error of the finest run of a first-order method comes
-out about half as large as it is. That run has a uniform mesh: near
-singularities adaptive runs can be better than it, and their curves level out at
-its error. Scenes with `Error control/Tolerance` are compared with a run to half
-of it instead, which has the cells where they matter.
+mesh, and both. Errors are those of an exact solution, or differences to a run with
+half of the finest $h$ and $k$ (so that errors of the finest runs come out about half
+as large as they are), or, of scenes with `Error control/Tolerance`, to a run to half
+of it ([study.md](study.md)).
 
-**Convergence.** In logarithmic scales an error $C h^p$ is a straight line with
-slope $p$, which the triangles show. A curve that becomes flat has met the part
-of the error that its ladder leaves alone: where the curve of $h$ alone levels
-out, smaller cells buy nothing before the steps become smaller, too. The dotted
-line is the fit $C_h h^p+C_k k^q$ of all runs of a way to compute, drawn where it is
-within 10 % of the finest runs; prices are read off it, and the tables of fits say
-how far it misses the others. In the gray below, differences say more of the error
-that the reference itself is estimated to have than of the run: curves level out
-there, or fall without a reason.
+**Convergence.** An error $C h^p$ is a straight line of slope $p$. Where a curve is flat
+the error is the part that its ladder leaves alone. The dotted line is the fit
+$C_h h^p+C_k k^q$ of all runs of a way to compute, drawn where it is within 10 % of the
+finest; prices are read off it. In the gray below, differences say more of the
+reference than of the run.
 
-**Pictures show the best of each strategy**, the scheme that is cheapest at the
-smallest error that all schemes of that strategy reach; the tables have all of them.
+**Work and precision.** Each point is a run: to the left is cheap, below is accurate.
+Along the horizontal line of the error that you want, the curve that is met first from
+the left is the way to compute. Yellow is the efficient frontier: the runs that no
+other one beats in both time and error. Pictures show the best of each strategy.
 
-**Work and precision.** Each point is a run: to the left is cheap, below is
-accurate. Compare curves along a horizontal line, at the error that you want:
-the one that is met first, coming from the left, is the way to compute. Parallel
-curves mean a fixed factor, curves that cross that the answer depends on the
-error. A method of higher order is steeper; it pays beyond the crossing only. A
-point far to the upper right of its curve was refined in one of $h$ and $k$
-alone, and paid for the wrong one.
-
-**The efficient frontier**, in yellow, joins the runs drawn that no other one beats
-in both time and error, without those that gain little: an error less than a tenth
-smaller than that of the one before, or more than a fifth above the line between its
-neighbors. Whatever does not touch it is not worth running; which ways to compute
-do is the answer to "which scheme, which mesh".
-
-**Cost by phase.** The share of each phase in the time of a run, and its total
-on a logarithmic scale. Where the contact problem takes most of the time a
-better solver or fewer steps would help, where the error estimate does it can be
-switched off (`Error control/Error bar = false`) at the price of not knowing.
+**Cost by phase.** The share of each phase in the time of a run, and its total.
 
 **Prices.** For each tolerance the cheapest run of the study that is at least so
-accurate. *Italics* mark predictions for runs that nobody made, from the fits of
-error and time: expect them within a factor of about two, and less the further
-they are from the measured runs. Their seconds are those of the linear solver
-that they would have, which a few steps on finer meshes have timed. What would
-take more than an hour or 16 GB is out of reach. **Bold** is the cheapest of a
-scene for an error, of measured ones if there are any. Between
-runs of a ladder prices jump by what one refinement costs; the run that is named
-may therefore be more accurate than asked. To halve an error of first order in
-$h$ and $k$ takes four times as many cells in two dimensions, eight times as many
-in three, and twice as many steps: at least 8 and 16 times the seconds.
+accurate. *Italics* are predictions for runs that nobody made, from the fits of
+error and time: good to a factor of about two, and worse the further they are from
+the measured runs. More than an hour or 16 GB is out of reach. **Bold** is the
+cheapest of a scene for an error, of measured ones if there are any. Half of an error
+of first order in $h$ and $k$ takes at least 8 times the seconds in two dimensions, 16
+times in three.
 
 ## Orders of convergence
 
@@ -99,27 +63,31 @@ the direction of slip turns. Orders are those between the two finest runs of a
 ladder: of the error of $u$ in the energy norm, of $\\sigma$ in $L^2$ and of
 $\\lambda$ on $\\Gamma_3$, the least and the largest of all meshes (uniform, distorted,
 locally refined), schemes and laws of friction; each way is a row of
-[accuracy_orders.csv](accuracy_orders.csv). The paper proves first order in $h$ and
-$k$ for $u$ and $\\sigma$ where the solution is smooth, (5.14) and (5.20); the
-$h^{{3/4}}$ of (5.13) is what remains with less, a lower bound. Of $k$ alone orders are
-shown where the error is not that of the finest mesh. The effectivity is the
-estimated over the true error, the largest of all steps each, over all runs of the
-study.
+[accuracy_manufactured.csv](accuracy_manufactured.csv). The paper proves first order in
+$h$ and $k$ for $u$ and $\\sigma$ where the solution is smooth, (5.14) and (5.20); the
+$h^{{3/4}}$ of (5.13) is a lower bound. Of $k$ alone orders are shown where the error is
+not that of the finest mesh. The effectivity is the estimated over the true error.
 
 {manufactured}
 ### Solutions that are not smooth
 
-No solution is known here; errors are differences to a finer run. Theorem 4.4
-promises convergence without a rate. In adaptive runs $h$ is the width of a
-uniform mesh with as many cells: order one in $h$ is the best that bilinear
-elements can do, with any mesh.
+A kink of the load in time and a jump of the bound (`kinked_load_2d`), clamped and
+loaded pieces of one side (`junction_2d`), a re-entrant corner. Errors are differences
+to a finer run, orders those in the energy norm (all norms:
+[accuracy_low_regularity.csv](accuracy_low_regularity.csv)). Theorem 4.4 promises
+convergence without a rate. In adaptive runs $h$ is the width of a uniform mesh with as
+many cells: order one is the best that bilinear elements can do, with any mesh.
 
 {low_regularity}
 ## What an error costs
 
 Three scenes without known solutions, whose errors are differences to a run to a
-tolerance. Below each are the fits $C_h h^p+C_k k^q$ and the factor by which they miss
-the runs, as root mean square and at worst. The price list of all three:
+tolerance. The fits $C_h h^p+C_k k^q$ and the factor by which they miss the runs, as root
+mean square and at worst, are in `doc/accuracy_<scene>.csv`. All have
+
+{every_way}
+
+The price list:
 
 {prices}
 {diagrams}
@@ -127,7 +95,9 @@ the runs, as root mean square and at worst. The price list of all three:
 
 With `Error control/Tolerance` the run chooses meshes and steps by itself
 ([error_bar.md](error_bar.md#7-runs-to-a-tolerance)). Manufactured solutions: the largest
-error in the energy norm of all steps, estimated and true, over the largest norm.
+true error in the energy norm of all steps over the tolerance; size and seconds at the
+smallest tolerance; the others are in
+[accuracy_known_to_tolerance.csv](accuracy_known_to_tolerance.csv).
 
 {known_to_tolerance}
 Bodies that creep for 1 / 10 / 100 / 1000 relaxation times, with steps of backward
@@ -138,25 +108,19 @@ counts for both.
 
 {long_creep}
 The scenes of the pictures above and others, from their coarsest meshes, with
-Heun's scheme. Errors are differences to a run to half of the smallest tolerance
-at the ends of phases; cells are means over the steps, and the rate is the power
-of their number by which the error has fallen from the line above: with smooth
-solutions it would be 1/2 in the plane and 1/3 in space. Beside the error of the
-multiplier $\\lambda$ on $\\Gamma_3$ is that of a uniform mesh with as many cells,
-and beside the seconds, with the share of new meshes and estimates in them, what
-uniform meshes take for the same error: between the best uniform runs of the
-study, and beyond them, in *italics*, by its predictions.
+Heun's scheme, to the two smallest tolerances (others, errors of $\\lambda$ and shares of
+the seconds: [accuracy_to_tolerance.csv](accuracy_to_tolerance.csv)). Errors are
+differences to a run to half of the smallest tolerance at the ends of phases; cells are
+means over the steps. The last column is what uniform meshes take for the same error:
+between the best uniform runs of the study, and beyond them, in *italics*, by its
+predictions.
 
 {to_tolerance}
-The rates are those of smooth solutions, which uniform meshes miss: 0.27 to 0.37 in
-the plane, 0.24 in space. Cells that follow the front where stick turns into slip,
-and the ends of the face, are what $\\lambda$ gains from; an error in the energy
-norm alone asks for few of them as long as it is large. Runs of less than a tenth
-of a second take up to two and a half times as long as one uniform mesh: the pilot
-run and each mesh have their price, and a scene of one step
-(`half_clamped_block`) pays for all of its meshes within that step. Most of the
-time goes into new meshes wherever steps are few; runs with forward Euler, which
-need ten times as many, spend a fifth on them and take longer in all.
+The error falls with the powers of smooth solutions, 1/2 of the number of cells in the
+plane and 1/3 in space, which uniform meshes miss. Runs of less than a tenth of a second
+take up to two and a half times as long as one uniform mesh, since the pilot run and
+each mesh have their price. Most of the time goes into new meshes wherever steps are
+few.
 
 ## What the tolerance of the solver is worth
 
@@ -169,16 +133,17 @@ last column is the largest relative change of an error of any of them.
 {tolerance}
 ## Reference cases
 
-Values of an independent solver in the same discretization, at equal mesh and
-steps ([testing.md](testing.md) says more); the shear layer has a closed form,
-from which the second of its rows differs by the error in time.
+The largest relative difference from values of an independent solver in the same
+discretization, at equal mesh and steps ([testing.md](testing.md)); the shear layer has
+a closed form, from which it differs by the error in time. All values:
+[accuracy_references.csv](accuracy_references.csv).
 
 {references}"""
 
 DIAGRAM = """\
 ### {title}
 
-The scene is `prm/verification/{name}.prm`, its coarsest run with
+`prm/verification/{name}.prm`, its coarsest run with
 
 {settings}
 
@@ -197,11 +162,13 @@ def marked(name, text):
 
 def settings(overrides):
     """Overrides as they would stand on the command line."""
-    return "\n".join(
-        f"    --set '{name}={value}'"
-        for name, value in overrides.items()
-        if not name.startswith("Study/Budget")
-    )
+    return "\n".join(f"    --set '{name}={value}'" for name, value in overrides.items())
+
+
+def own_settings(overrides):
+    """Those of a scene that the others do not have."""
+    common = {"Study/Budget": None, **plan.EVERY_WAY}
+    return settings({name: v for name, v in overrides.items() if name not in common})
 
 
 def render(parts):
@@ -222,11 +189,16 @@ def render(parts):
     }
     diagrams = "\n".join(
         DIAGRAM.format(
-            title=title, name=name, settings=settings(overrides), part=parts[name]
+            title=title, name=name, settings=own_settings(overrides), part=parts[name]
         )
         for name, (title, overrides) in plan.DIAGRAMS.items()
     )
-    return TEMPLATE.format(diagrams=diagrams, fixed=plan.FIXED_TOLERANCE, **parts)
+    return TEMPLATE.format(
+        diagrams=diagrams,
+        every_way=settings(plan.EVERY_WAY),
+        fixed=plan.FIXED_TOLERANCE,
+        **parts,
+    )
 
 
 def write(file, name=None, text=None):

@@ -33,23 +33,34 @@ ABOUT = {
 def make(name, runner, images):
     """The Markdown of a piece."""
     style.set_up()
-    if name == "manufactured":
-        return manufactured(runner, images.parent / "accuracy_orders.csv")
-    if name == "low_regularity":
-        return low_regularity(runner)
-    if name == "references":
-        return references.section(runner) + stamp(runner)
+    if name in tables.SHORTENED:
+        rows, about = SHORTENED[name](runner)
+        write_csv(images.parent, name, [tables.SHORTENED[name][0], *rows])
+        return tables.shortened(name, rows) + stamp(runner, about)
     if name == "tolerance":
         return tolerance(runner)
-    if name == "known_to_tolerance":
-        return known_to_tolerance(runner)
     if name == "long_creep":
         return long_creep(runner)
-    if name == "to_tolerance":
-        return to_tolerance(runner)
     if name == "prices":
         return prices(runner)
     return diagram(name, runner, images)
+
+
+def csv_file(folder, name):
+    """All that was computed for a piece of which the page shows less."""
+    return folder / f"accuracy_{name}.csv"
+
+
+def write_csv(folder, name, lines):
+    with open(csv_file(folder, name), "w", newline="", encoding="utf-8") as file:
+        csv.writer(file, lineterminator="\n").writerows(lines)
+
+
+def read_rows(folder, name):
+    """The rows that are shown in short."""
+    with open(csv_file(folder, name), newline="", encoding="utf-8") as file:
+        _, *rows = csv.reader(file)
+    return rows
 
 
 def stamp(runner, about=None):
@@ -143,7 +154,7 @@ def facts(scene, law, mesh):
     }
 
 
-def manufactured(runner, csv_file):
+def manufactured(runner):
     cases = manufactured_cases()
     if not cases:
         raise UserError(f"there are no scenes in {SCENES / 'manufactured'}")
@@ -164,11 +175,7 @@ def manufactured(runner, csv_file):
         print(f"Left out: {error}", file=sys.stderr)
     if not found:
         raise errors[0]
-    rows = [row for rows, _ in found for row in rows]
-    with open(csv_file, "w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([tables.CONVERGENCE_HEADER, *rows])
-    lines = tables.orders_by_law(rows)
-    return tables.table(tables.ORDERS_HEADER, lines) + stamp(runner, found[0][1])
+    return [row for rows, _ in found for row in rows], found[0][1]
 
 
 def low_regularity(runner):
@@ -185,10 +192,7 @@ def low_regularity(runner):
     found, errors = both_cores(one, plan.LOW_REGULARITY.items())
     if errors:
         raise errors[0]
-    rows = [row for rows, _ in found for row in rows]
-    return tables.table(tables.LOW_REGULARITY_HEADER, rows) + stamp(
-        runner, found[0][1]
-    )
+    return [row for rows, _ in found for row in rows], found[0][1]
 
 
 def diagram_study(name, runner):
@@ -211,15 +215,15 @@ def draw_diagram(name, study, images):
 
 
 def diagram(name, runner, images):
-    """Pictures and fits of one scene."""
+    """Pictures of one scene; its fits go to a file."""
     study = diagram_study(name, runner)
     error = study.error()
     pictures = draw_diagram(name, study, images)
+    write_csv(images.parent, name, [tables.FIT_HEADER, *tables.fit_rows(study, error)])
     return (
         f"![Error over seconds]({pictures[work_precision]})\n\n"
         + f"![Error over mesh width and time step]({pictures[convergence]})\n\n"
-        + f"![Seconds by phase]({pictures[cost]})\n\n"
-        + tables.fit_table(study, error)
+        + f"![Seconds by phase]({pictures[cost]})\n"
         + stamp(runner, study.about)
     )
 
@@ -260,7 +264,7 @@ def known_to_tolerance(runner):
                     facts_of["scene"], facts_of["law"], eps, columns
                 )
             )
-    return tables.table(tables.KNOWN_TO_TOLERANCE_HEADER, rows) + stamp(runner)
+    return rows, None
 
 
 def long_creep(runner):
@@ -324,7 +328,7 @@ def to_tolerance(runner):
             study.error(),
             plan.TO_TOLERANCE_SCHEME,
         )
-    return tables.table(tables.TO_TOLERANCE_HEADER, rows) + stamp(runner, about)
+    return rows, about
 
 
 def tolerance(runner):
@@ -337,3 +341,13 @@ def tolerance(runner):
         fixed = runner.study(f"tolerance/{name}_fixed", files, overrides)
         rows.append(tables.saving_row(f"`{name}`", coupled, fixed))
     return tables.table(tables.SAVING_HEADER, rows) + stamp(runner)
+
+
+# What is computed for the pieces of tables.SHORTENED: rows, and about.
+SHORTENED = {
+    "manufactured": manufactured,
+    "low_regularity": low_regularity,
+    "known_to_tolerance": known_to_tolerance,
+    "to_tolerance": to_tolerance,
+    "references": lambda runner: (references.rows(runner), None),
+}

@@ -218,6 +218,12 @@ def low_regularity_rows(name, why, study):
     ]
 
 
+def without_other_norms(rows):
+    """Lines of the page from low_regularity_rows(): orders in the energy norm alone."""
+    energy = lambda cell: cell.split(" / ")[NORMS.index("error_energy")]
+    return [[row[0], *row[2:4], *map(energy, row[4:7]), row[7]] for row in rows]
+
+
 def offer(study, variant, tolerance, error):
     """The line of the price list of study.json for a variant, or None."""
     for offered in study.about.get("prices", ()):
@@ -340,12 +346,12 @@ def price_rows(name, study, tolerances, error):
     ]
 
 
-FIT_HEADER = (*VARIANT, "$C_h$", "$p$", "$C_k$", "$q$", "off by", "at worst")
+FIT_HEADER = (*VARIANT, "C_h", "p", "C_k", "q", "off by", "at worst")
 
 
-def fit_table(study, error):
+def fit_rows(study, error):
     """C_h h^p + C_k k^q of each variant, and the factors by which it misses the
-    runs, or nothing where no fit is known."""
+    runs, as far as they are known."""
     rows = []
     for variant in study.variants():
         fit = study.fit(variant, error)
@@ -360,7 +366,7 @@ def fit_table(study, error):
                     number(fit.get("worst_factor")),
                 ]
             )
-    return table(FIT_HEADER, rows) if rows else ""
+    return rows
 
 
 KNOWN_TO_TOLERANCE_HEADER = (
@@ -406,6 +412,34 @@ def known_to_tolerance_row(scene, law, tolerance, columns):
         percent(error),
         number(error / tolerance, 2),
         *size_cells(columns),
+    ]
+
+
+def in_groups(rows, n_columns):
+    """{the first cells: the rows that have them}"""
+    groups = {}
+    for row in rows:
+        groups.setdefault(tuple(row[:n_columns]), []).append(row)
+    return groups
+
+
+def span(texts):
+    """From the first to the last, or the one that they are."""
+    texts = list(texts)
+    return texts[0] if texts[0] == texts[-1] else f"{texts[0]} to {texts[-1]}"
+
+
+def known_by_law(rows):
+    """Lines of the page from known_to_tolerance_row(): one for each scene and law."""
+    column = KNOWN_TO_TOLERANCE_HEADER.index
+    return [
+        [
+            *group,
+            span(row[column("tolerance")] for row in lines),
+            span(sorted((row[column("of the tolerance")] for row in lines), key=float)),
+            *lines[-1][column("cells") :],
+        ]
+        for group, lines in in_groups(rows, 2).items()
     ]
 
 
@@ -470,6 +504,26 @@ TO_TOLERANCE_HEADER = (
     "uniform meshes",
     "times as long",
 )
+TO_TOLERANCE_SHOWN = (
+    "scene",
+    "tolerance",
+    "estimated",
+    "error",
+    "cells",
+    "steps",
+    "seconds",
+    "uniform meshes",
+)
+
+
+def smallest_tolerances(rows):
+    """Lines of the page from to_tolerance_rows(): the two smallest of each scene."""
+    shown = [TO_TOLERANCE_HEADER.index(name) for name in TO_TOLERANCE_SHOWN]
+    return [
+        [row[i] for i in shown]
+        for lines in in_groups(rows, 1).values()
+        for row in lines[-2:]
+    ]
 
 
 def uniform_multiplier(cells, study):
@@ -588,6 +642,15 @@ def reference_row(case, size, t, quantity, computed, independent):
     ]
 
 
+def by_case(rows):
+    """Lines of the page from reference_row(): the largest difference of each case."""
+    difference = lambda row: float(row[-1])
+    return [
+        [*group, len(lines), max(lines, key=difference)[-1]]
+        for group, lines in in_groups(rows, 2).items()
+    ]
+
+
 def matched(first, second):
     """Pairs of rows of two studies with the same variant, ladder and levels."""
 
@@ -649,3 +712,32 @@ def largest_change(first, first_rows, second, second_rows):
             if worst is None or change > worst[0]:
                 worst = change, name.removeprefix("error_")
     return worst
+
+
+# Pieces of which the page shows less than was computed: the columns of the file
+# accuracy_<piece>.csv, those of the page, and how the lines of the page follow.
+SHORTENED = {
+    "manufactured": (CONVERGENCE_HEADER, ORDERS_HEADER, orders_by_law),
+    "low_regularity": (
+        LOW_REGULARITY_HEADER,
+        ("scene", "strategy", "scheme", "h alone", "k alone", "h and k", "smallest error"),
+        without_other_norms,
+    ),
+    "known_to_tolerance": (
+        KNOWN_TO_TOLERANCE_HEADER,
+        ("scene", "law", "tolerances", "true error over it", "cells", "steps", "seconds"),
+        known_by_law,
+    ),
+    "to_tolerance": (TO_TOLERANCE_HEADER, TO_TOLERANCE_SHOWN, smallest_tolerances),
+    "references": (
+        REFERENCE_HEADER,
+        ("case", "mesh and steps", "values", "largest difference"),
+        by_case,
+    ),
+}
+
+
+def shortened(piece, rows):
+    """The table of the page."""
+    _, header, shorten = SHORTENED[piece]
+    return table(header, shorten(rows))

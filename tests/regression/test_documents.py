@@ -6,6 +6,9 @@ so do the entries of the parameter file that are mentioned.
 """
 
 import ast
+import csv
+import importlib.machinery
+import importlib.util
 import os
 import re
 import shutil
@@ -19,6 +22,10 @@ from pathlib import Path
 import numpy as np
 
 from harness import EXECUTABLE, SOURCE, Run, TestCase, main, run
+
+sys.path.insert(0, str(SOURCE / "contrib"))
+from results_page import page as accuracy
+from results_page import pieces, tables
 
 PAGES = sorted(
     [
@@ -233,6 +240,88 @@ class Approximations(unittest.TestCase):
                 self.assertLessEqual(set(counted), columns)
                 if not counted:
                     self.assertRegex(error, "none|not counted|data|counted, and")
+
+
+def rows_of(file):
+    with open(file, newline="", encoding="utf-8") as text:
+        return list(csv.reader(text))
+
+
+def tables_of(text):
+    """The tables of a page, or a part of one, as lists of rows of cells."""
+    found = re.findall(r"(?:^\|.*\|\n)+", text, re.M)
+    return [
+        [
+            [cell.strip() for cell in line.strip("|").split("|")]
+            for i, line in enumerate(lines.splitlines())
+            if i != 1
+        ]
+        for lines in found
+    ]
+
+
+class Quoted(TestCase):
+    """Numbers of pages that are in a file, too: both say the same."""
+
+    DOC = SOURCE / "doc"
+
+    def test_accuracy(self):
+        parts = accuracy.parts_of((self.DOC / "accuracy.md").read_text())
+        for piece in tables.SHORTENED:
+            with self.subTest(piece=piece):
+                rows = pieces.read_rows(self.DOC, piece)
+                self.assertIn(tables.shortened(piece, rows), parts[piece])
+
+    def test_effects_of_the_gallery(self):
+        path = str(SOURCE / "contrib" / "make_gallery")
+        loader = importlib.machinery.SourceFileLoader("make_gallery", path)
+        spec = importlib.util.spec_from_loader(loader.name, loader)
+        gallery = importlib.util.module_from_spec(spec)
+        loader.exec_module(gallery)
+        effects = gallery.read_effects()
+        parts = re.findall(
+            r"<!-- effects (\w+) -->\n(.*?)<!-- end -->",
+            (self.DOC / "gallery.md").read_text(),
+            re.S,
+        )
+        self.assertEqual([name for name, _ in parts], list(effects))
+        for name, text in parts:
+            with self.subTest(scene=name):
+                self.assertEqual(text, gallery.effects_in_words(effects[name]) + "\n")
+
+    def test_hard_cases(self):
+        _, *rows = rows_of(self.DOC / "hard_cases.csv")
+        values = {}
+        for _, case, figure, value, *_ in rows:
+            values.setdefault((case, figure), []).append(float(value))
+        shown = re.findall(
+            r"^\| `(\w+)` \| .* \| (.*): (\S+) \([<>]=.*\) \| \d+ \|$",
+            (self.DOC / "hard_cases.md").read_text(),
+            re.M,
+        )
+        self.assertGreater(len(shown), 30)
+        for case, figure, value in shown:
+            with self.subTest(case=case, figure=figure):
+                near = np.isclose(values.get((case, figure), np.nan), float(value), 1e-3)
+                self.assertTrue(near.any(), value)
+
+    def test_benchmarks(self):
+        folder = SOURCE / "benchmarks"
+        sections = (folder / "results.md").read_text().split("\n## ")[1:]
+        self.assertEqual(len(sections), len(list((folder / "results").glob("*.csv"))))
+        for section in sections:
+            name = section.splitlines()[0].lower()
+            rows = rows_of(folder / "results" / f"{name}.csv")
+            (shown,) = tables_of(section)
+            self.assertEqual(shown[0], rows[0])
+            self.assertEqual(len(shown), len(rows))
+            for cells, values in zip(shown[1:], rows[1:]):
+                for column, cell, value in zip(rows[0], cells, values):
+                    with self.subTest(table=name, row=cells[0], column=column):
+                        if cell == "-":
+                            self.assertEqual(value, "nan")
+                        elif value != cell:
+                            self.assertClose(float(cell), float(value), relative=5.1e-3)
 
 
 class Readme(TestCase):

@@ -334,9 +334,10 @@ class Voice(Manners):
         self.assertIn("'Dimension' is '7'", (self.work / "log.txt").read_text())
 
     def test_closing_words(self):
-        """They agree with the last row of the table, and end with the place of
-        the results."""
-        text = self.call(SLAB, *SHORT).stdout
+        """They agree with the last row of the table, also where a name is longer than
+        its column, and end with the place of the results."""
+        top = "the glued upper side of the slab"
+        text = self.call(SLAB, *SHORT, "--set", f"Boundary 3/Name={top}").stdout
         results = self.work / "output/slab"
         self.assertEqual(text.splitlines()[-1], "Results in output/slab/")
 
@@ -359,7 +360,7 @@ class Voice(Manners):
             )
         for name, column in (
             ("friction force", "friction_force"),
-            ("reaction of boundary 3", "reaction_3"),
+            (f"reaction of {top}", "reaction_3"),
         ):
             for value, axis in zip(words(name).split(";"), "xy"):
                 self.assertClose(

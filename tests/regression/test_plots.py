@@ -672,6 +672,8 @@ class Pictures(TestCase):
         self.assertEqual(pdf.read_bytes()[:4], b"%PDF")
         file = result.directory / "loop"
         self.assertEqual(self.draw(result, "hysteresis", "--output", file), {"loop.png"})
+        source = f"results, {result.info['version']}, {result.info['git_revision']}, 20"
+        self.assertIn(f"Source\0{source}".encode(), file.with_suffix(".png").read_bytes())
 
     def test_contact_that_opens(self):
         """A block on a bent foundation, with and without friction."""

@@ -2,6 +2,7 @@
 """The Python module of contrib/python: scenes from dictionaries, runs and
 refusals, results against what general readers find in the same files."""
 
+import os
 import re
 import shutil
 import sys
@@ -194,6 +195,38 @@ class Runs(TestCase):
         shutil.copy(self.results.directory / "statistics.csv", bare)
         with self.assertRaisesRegex(NotAvailable, "no solution.pvd"):
             Results(bare).body()
+
+
+class Notebook(TestCase):
+    def test_gives_what_it_shows(self):
+        """Executed anew, it prints the same numbers and draws."""
+        try:
+            import nbformat
+            from nbclient import NotebookClient
+        except ImportError:
+            self.skipTest("there is no nbclient")
+        shown = nbformat.read(SOURCE / "doc" / "sweep.ipynb", 4)
+        notebook = nbformat.read(SOURCE / "doc" / "sweep.ipynb", 4)
+        environment = {
+            "VISCOPLASTIC_CONTACT": str(EXECUTABLE),
+            "PYTHONPATH": str(SOURCE / "contrib" / "python"),
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
+        with tempfile.TemporaryDirectory() as directory:
+            resources = {"metadata": {"path": directory}}
+            with mock.patch.dict(os.environ, environment):
+                NotebookClient(notebook, timeout=120, resources=resources).execute()
+
+        def printed(book):
+            outputs = [o for cell in book.cells for o in cell.get("outputs", ())]
+            (text,) = (output["text"] for output in outputs if "text" in output)
+            (picture,) = (o for o in outputs if "image/png" in o.get("data", {}))
+            return np.array([line.split() for line in text.splitlines()[1:]], float)
+
+        found, expected = printed(notebook), printed(shown)
+        self.assertEqual(expected.shape, (10, 4))
+        # by digits that are printed
+        self.assertClose(found, expected, relative=1e-3, absolute=0.0015)
 
 
 if __name__ == "__main__":

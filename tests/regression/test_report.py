@@ -18,7 +18,7 @@ import numpy as np
 from harness import SOURCE, TestCase, main, run
 from plot_process import run_script
 
-sys.path.insert(0, str(SOURCE / "contrib"))
+sys.path[:0] = [str(SOURCE / "contrib"), str(SOURCE / "contrib" / "python")]
 
 from plotting.body_base import field
 from plotting.history import finite
@@ -26,6 +26,7 @@ from plotting.results import Results
 from reporting import bill, body, thinning, written
 from reporting.markup import formula
 from reporting.surface import Surface
+from viscoplastic_contact.study import price_report
 
 UNITS = {"Units/Length": "mm", "Units/Time": "s", "Units/Stress": "MPa"}
 MOST_BYTES = 5_000_000
@@ -402,8 +403,19 @@ Two *words* and **more**, a < b, [a link](place.md), 2*3*4.
         with tempfile.TemporaryDirectory() as directory:
             directory = Path(directory)
             self.assertIsNone(written.kind_of(directory))
-            (directory / "effects.md").write_text("# Effects\n")
-            self.assertEqual(written.kind_of(directory), "effects")
+            for kind in "effects", "price":
+                (directory / f"{kind}.md").write_text("# Title\n")
+                self.assertEqual(written.kind_of(directory), kind)
+
+    def test_price(self):
+        """What the console says becomes paragraphs, points and options."""
+        said = "Pilots:\n  a: 8 cells,   1 s\n  b: 9 cells\nNow with\n  --set A/B=1\n\nEnd\n"
+        text = written.html(price_report.as_markdown(said), Path())
+        self.assertEqual(
+            re.sub(r"\n", "", text),
+            "<p>Pilots:</p><ul><li>a: 8 cells, 1 s</li><li>b: 9 cells</li></ul>"
+            "<p>Now with</p><pre>--set A/B=1</pre><p>End</p>",
+        )
 
 
 class Parts(TestCase):

@@ -113,6 +113,37 @@ class Tables(Folder):
             self.assertEqual(len(row), len(tables.LOW_REGULARITY_HEADER))
             self.assertEqual(row[:4], ["x", "why", variant[0], variant[1]])
             self.assertEqual(row[6], "1.00 / 1.00 / 1.00 / 1.00")
+        for row, variant in zip(tables.without_other_norms(rows), variants):
+            self.assertEqual((row[:3], row[5]), (["x", *variant[:2]], "1.00"))
+
+    def test_lines_of_the_page(self):
+        """They are taken from rows as they are computed."""
+        known = [
+            ["a", "maxwell", "20 %", "15 %", "10 %", "0.6", "9", "3", "1 s"],
+            ["a", "maxwell", "10 %", "9 %", "5 %", "0.5", "90", "5", "2 s"],
+            ["a", "norton", "10 %", "8 %", "4 %", "0.4", "70", "6", "3 s"],
+        ]
+        self.assertEqual(
+            tables.known_by_law(known),
+            [
+                ["a", "maxwell", "20 % to 10 %", "0.5 to 0.6", "90", "5", "2 s"],
+                ["a", "norton", "10 %", "0.4", "70", "6", "3 s"],
+            ],
+        )
+        reached = [
+            [scene, f"{eps} %", *(f"{eps} {name}" for name in tables.TO_TOLERANCE_HEADER[2:])]
+            for scene, eps in (("a", 4), ("a", 2), ("a", 1), ("b", 8))
+        ]
+        lines = tables.smallest_tolerances(reached)
+        shown = [["a", "2 %"], ["a", "1 %"], ["b", "8 %"]]
+        self.assertEqual([line[:2] for line in lines], shown)
+        self.assertEqual(lines[0][-2:], ["2 seconds", "2 uniform meshes"])
+        values = [("c", "m", 1.0, "q", 1.001, 1.0), ("c", "m", 2.0, "q", 1.01, 1.0)]
+        rows = [tables.reference_row(*row) for row in values]
+        self.assertEqual(tables.by_case(rows), [["c", "m", 2, "1.0e-02"]])
+        for header, shown, shorten in tables.SHORTENED.values():
+            self.assertEqual(shorten([]), [])
+            self.assertGreater(len(header), len(shown) - 2)
 
     def test_prices_are_those_of_the_cheapest_sufficient_run(self):
         study = self.study(variants=(UNIFORM, ADAPTIVE))
@@ -251,10 +282,10 @@ class Tables(Folder):
 
     def test_fits(self):
         study = self.study(variants=(UNIFORM, ADAPTIVE))
-        _, _, *rows = cells(tables.fit_table(study, "error_energy"))
+        rows = tables.fit_rows(study, "error_energy")
         self.assertEqual(rows[0][3:], ["0.3", "1", "0.2", "1", "1.01", "1.5"])
         self.assertEqual(rows[1][3:], ["0.15", "1", "0.2", "1", "1.01", "1.5"])
-        self.assertEqual(tables.fit_table(study, "error_stress"), "")
+        self.assertEqual(tables.fit_rows(study, "error_stress"), [])
 
     def test_savings(self):
         """Half of the seconds, one error changed by 4 %; a run that only one

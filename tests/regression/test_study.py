@@ -19,6 +19,8 @@ sys.path[:0] = [str(SOURCE / "contrib"), str(SOURCE / "contrib" / "python")]
 
 from plotting import cost
 from plotting.results import read_statistics
+from reporting import run as report_of_run
+from reporting import written
 from viscoplastic_contact.study import solvers
 from viscoplastic_contact.study.record import PHASES
 
@@ -604,6 +606,11 @@ class Price(TestCase):
             self.assertLess(max(predicted / actual, actual / predicted), 2)
             self.assertRegex(process.stdout, r"seconds +\S+ predicted, \S+ found")
             self.assertTrue((folder.results / "statistics.csv").exists())
+            # It is in the report of the run, and a page by itself.
+            page = report_of_run.page(folder.results).html()
+            self.assertIn("Price: what an error costs", page)
+            self.assertIn(found.group(0).replace("error    ", "error "), page)
+            self.assertIn("Pilot runs:", written.page(folder.results / "price").html())
             # The same again needs no pilots.
             before = folder.finished()
             self.assertEqual(folder.run("price", "0.05", "--check").returncode, 0)

@@ -88,10 +88,16 @@ def run(task, options, program):
     from .console import Console
     from .effects import EffectsStudy
     from .ladder import Study
+    from .price_report import directory_of
     from .pricing import run_at_price
     from .runs import StudyRuns
 
     console = Console(options.quiet, options.log)
+
+    def tell(directory):
+        if options.directory:
+            Path(options.directory).write_text(str(Path(directory).resolve()))
+
     if task == "price":
         of_run = [
             f"--{name}" for name in ("quiet", "verbose") if getattr(options, name)
@@ -100,14 +106,14 @@ def run(task, options, program):
             of_run.append(RESTART[options.restart])
         runs = StudyRuns(program, options.files, options.set)
         run_at_price(runs, options.error, console, options.check, of_run)
+        tell(directory_of(runs.scene))
         return
     if task == "study":
         study = Study(StudyRuns(program, options.files, options.set), console)
     else:
         study = EffectsStudy(program, options.files, options.set, console)
     study.run()
-    if options.directory:
-        Path(options.directory).write_text(str(Path(study.directory).resolve()))
+    tell(study.directory)
 
 
 def main(arguments):

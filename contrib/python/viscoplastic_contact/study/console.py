@@ -18,9 +18,11 @@ class Console:
             self.log.write_text("", encoding="utf-8")
         self.has_status = not quiet and sys.stdout.isatty()
         self.shown = ""
+        self.said = []
 
     def say(self, text, end="\n"):
         self.clear()
+        self.said.append(text + end)
         if not self.quiet:
             print(text, end=end, flush=True)
         if self.log:

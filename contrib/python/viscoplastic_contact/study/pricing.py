@@ -28,6 +28,7 @@ from .price import (
     next_refinement,
     price_in_words,
 )
+from .price_report import write_price
 from .record import RunKey
 from .runs import Interrupted, launch, set_options
 from .scene import LARGEST_TOLERANCE
@@ -353,10 +354,14 @@ def compare(predicted, actual):
 
 def run_at_price(runs, eps, console, only_price=False, options=()):
     """A run with the mesh and the steps that reach the error eps at the lowest cost,
-    as short runs predict it; says both before and afterwards what it costs and gives.
-    With only_price it only says what it would cost. Options of the program go to the
-    run. Raises Interrupted, and UserError."""
+    as short runs predict it; says both before and afterwards what it costs and gives,
+    which price.md has, too. With only_price it only says what it would cost. Options of
+    the program go to the run. Raises Interrupted, and UserError."""
     scene = runs.scene
+
+    def report():
+        write_price(scene, eps, "".join(console.said), runs.program.origin())
+
     if (
         not scene["Exact solution/Displacement"]
         and scene["Error control/Error bar"] != "true"
@@ -367,6 +372,7 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
         )
     choose = choose_tolerance if scene.has_tolerance else choose_mesh_and_steps
     chosen = choose(runs, eps, console)
+    report()
     if only_price:
         return
 
@@ -402,3 +408,4 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
         after = {"seconds": ", without field output", "memory": " MB"}.get(name, "")
         text += f"  {name:7}  {compare(predicted, found[name])}{after}\n"
     console.say(text, end="")
+    report()

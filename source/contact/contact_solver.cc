@@ -719,8 +719,14 @@ namespace Viscoplastic
                           part > 0.)
                   .iterate(max_iterations);
               }
-            return Iteration(bulk, face, tolerance, x, state, law, true)
-              .solve(max_iterations);
+            ContactReport report =
+              Iteration(bulk, face, tolerance, x, state, law, true)
+                .solve(max_iterations);
+            if (report.doubt.empty())
+              report.doubt = "from the last step no solution was found, but "
+                             "one along those for smaller friction "
+                             "coefficients";
+            return report;
           }
         catch (const ExceptionBase &)
           {

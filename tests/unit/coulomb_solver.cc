@@ -233,10 +233,10 @@ TEST(CoulombSolver, SolvesAllRandomProblems)
 
 TEST(CoulombSolver, SolvesWherePiecesMeet)
 {
-  // Of 20 000 problems those that have been refused, though a search over what
-  // each point may do finds a solution of every one: nodes wedged between two
-  // pieces, slips along an edge that turn, nodes whose pieces do not settle one
-  // after the other, and what only a path from small mu finds.
+  // Of 20 000 problems those that were refused on the way here, though a search
+  // over what each point may do finds a solution of every one: nodes wedged
+  // between two pieces, slips along an edge that turn, nodes whose pieces do
+  // not settle one after the other, and what only a path from small mu finds.
   for (const unsigned int seed :
        {838, 2403, 2999, 3144, 3290, 4416, 5044, 5267, 12660, 15030})
     {

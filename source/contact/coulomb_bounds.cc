@@ -201,7 +201,8 @@ namespace Viscoplastic
                "coefficient is large (here up to "
             << largest_coefficient << "); friction and pressure fit worst at "
             << place_of_largest(of_nodes)
-            << ". Smaller steps may follow a solution; 'Solver/Coulomb "
+            << ". None was found on the way from smaller coefficients, either. "
+               "Smaller steps may follow a solution; 'Solver/Coulomb "
                "pressure' = lagged takes the pressure of the step before.";
     return message.str();
   }

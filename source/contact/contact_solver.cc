@@ -699,6 +699,8 @@ namespace Viscoplastic
       }
     catch (const ExceptionBase &)
       {
+        // Once more from the start, without friction at first, and then with
+        // more and more of it, each time near the last solution.
         const std::exception_ptr failure = std::current_exception();
         Vector<double>           back(first_x);
         face.add(-1., x, back);

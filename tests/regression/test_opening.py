@@ -209,9 +209,10 @@ class Greco(Contact):
             (64, 1, 2, 4e-4),
         ):
             with self.subTest(cells=cells, steps=steps, ranks=ranks):
+                size = "0, 0 : 0.04, 0.04 : true"
                 more = {
                     "Time/Phases": f"1: {steps}",
-                    "Geometry/Arguments": f"{cells}, {cells} : 0, 0 : 0.04, 0.04 : true",
+                    "Geometry/Arguments": f"{cells}, {cells} : {size}",
                 }
                 result = run("greco", {**self.PLATE, **more}, ranks, text="")
                 moved = [result[f"point{i}_x"][-1] for i in range(5)]

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -37,6 +38,13 @@ namespace Viscoplastic
     /// preconditioner is below the tolerance by any: that takes one whose
     /// condition number is less than 1e6.
     constexpr double beyond_doubt = 1e-3;
+    /// So many corrections may begin with nodes where pieces meet that have not
+    /// settled: that finds sets; later it takes the node from a solution.
+    constexpr unsigned int unsettled_corrections = 5;
+    /// Where no solution is found, it is sought along those for these parts of
+    /// the friction coefficients, to this tolerance.
+    constexpr std::array<double, 4> parts_of_friction{{0., 0.25, 0.5, 0.75}};
+    constexpr double                tolerance_of_parts = 1e-3;
     /// Estimates found too low are not taken for more than so many times too
     /// low: others will be less so.
     constexpr double largest_misjudgment = 10.;
@@ -138,10 +146,15 @@ namespace Viscoplastic
               const double         tolerance,
               Vector<double>      &x,
               ContactState        &state,
-              const CoulombLaw    *law);
+              const CoulombLaw    *law,
+              const bool           is_near = false);
 
     ContactReport
     solve(const unsigned int max_iterations);
+
+    /// All of it but what completes the displacement.
+    void
+    iterate(const unsigned int max_iterations);
 
   private:
     /// (1) Nonlinear Gauss-Seidel over the face nodes.
@@ -239,7 +252,8 @@ namespace Viscoplastic
                                       const double         tolerance,
                                       Vector<double>      &x,
                                       ContactState        &state,
-                                      const CoulombLaw    *law)
+                                      const CoulombLaw    *law,
+                                      const bool           is_near)
     : bulk(bulk)
     , face(face)
     , tolerance(tolerance)
@@ -264,13 +278,15 @@ namespace Viscoplastic
       }
     if (law != nullptr)
       bounds.emplace(*law, face, inverse_diagonal);
+    if (bounds && is_near)
+      bounds->begin_near_solution();
     report.tolerance = tolerance;
   }
 
 
 
-  ContactReport
-  ContactSolver::Iteration::solve(const unsigned int max_iterations)
+  void
+  ContactSolver::Iteration::iterate(const unsigned int max_iterations)
   {
     for (unsigned int iteration = 0;; ++iteration)
       {
@@ -290,6 +306,14 @@ namespace Viscoplastic
         if (!(-energy_change > least_descent * report.duality_gap))
           follow();
       }
+  }
+
+
+
+  ContactReport
+  ContactSolver::Iteration::solve(const unsigned int max_iterations)
+  {
+    iterate(max_iterations);
     const Timer timer;
     report.linear_iterations += bulk.finish();
     if (bounds)
@@ -370,15 +394,22 @@ namespace Viscoplastic
     const Tensor<1, 3> old      = face.node_values(x, node);
     const Tensor<1, 3> r        = face.node_values(residual, node);
     const Tensor<1, 3> f        = r + diagonal[node] * old;
-    const Tensor<1, 3> now =
+    const auto         now =
       bounds && bounds->nodes_obey_law() ?
-        law->relax_node(face, node, inverse_diagonal[node], f, state) :
-        Viscoplastic::relax_node(face, node, inverse_diagonal[node], f, state);
-    const Tensor<1, 3> step = now - old;
+                law->relax_node(face,
+                        node,
+                        inverse_diagonal[node],
+                        f,
+                        state,
+                        report.iterations >= unsettled_corrections) :
+                Viscoplastic::relax_node(face, node, inverse_diagonal[node], f, state);
+    if (!now)
+      return;
+    const Tensor<1, 3> step = *now - old;
     // What rounding of f makes is no step: the bulk would have to follow it.
     if (step.norm() <= rounding[node] * old.norm() && sets() == old_sets)
       return;
-    face.set_node_values(now, node, x);
+    face.set_node_values(*now, node, x);
     face.set_node_values(face.node_values(change, node) + step, node, change);
     matrix.subtract(node, step, residual);
   }
@@ -656,7 +687,53 @@ namespace Viscoplastic
   {
     AssertDimension(x.size(), face.n_dofs());
     AssertDimension(state.n_points(), face.points.size());
-    return Iteration(bulk, face, tolerance, x, state, law)
-      .solve(max_iterations);
+    if (law == nullptr)
+      return Iteration(bulk, face, tolerance, x, state, nullptr)
+        .solve(max_iterations);
+    const Vector<double> first_x(x);
+    const ContactState   first(state);
+    try
+      {
+        return Iteration(bulk, face, tolerance, x, state, law)
+          .solve(max_iterations);
+      }
+    catch (const ExceptionBase &)
+      {
+        // Once more from the start, without friction at first, and then with
+        // more and more of it, each time near the last solution.
+        const std::exception_ptr failure = std::current_exception();
+        Vector<double>           back(first_x);
+        face.add(-1., x, back);
+        bulk.move_face(back);
+        x     = first_x;
+        state = first;
+        try
+          {
+            for (const double part : parts_of_friction)
+              {
+                const CoulombLaw weaker = law->with_part(part);
+                Iteration(bulk,
+                          face,
+                          std::max(tolerance, tolerance_of_parts),
+                          x,
+                          state,
+                          &weaker,
+                          part > 0.)
+                  .iterate(max_iterations);
+              }
+            ContactReport report =
+              Iteration(bulk, face, tolerance, x, state, law, true)
+                .solve(max_iterations);
+            if (report.doubt.empty())
+              report.doubt = "from the last step no solution was found, but "
+                             "one along those for smaller friction "
+                             "coefficients";
+            return report;
+          }
+        catch (const ExceptionBase &)
+          {
+            std::rethrow_exception(failure);
+          }
+      }
   }
 } // namespace Viscoplastic

@@ -62,6 +62,16 @@ namespace Viscoplastic
     Vector<double> response(w.size()), after(residual);
     bulk.face_response(response);
     face.add(-1., response, after);
+    // Where pieces meet, a slip that turns takes part in what presses the
+    // other piece.
+    const FaceTruncation turning =
+      make_truncation(face, state, inverse_diagonal);
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      if (!face.has_plain_friction(node))
+        face.set_node_values(face.node_values(after, node) -
+                               turning.spring[node] * face.node_values(w, node),
+                             node,
+                             after);
     law.predict_bounds(face, after, state);
 
     double springs = 0.;
@@ -191,7 +201,8 @@ namespace Viscoplastic
                "coefficient is large (here up to "
             << largest_coefficient << "); friction and pressure fit worst at "
             << place_of_largest(of_nodes)
-            << ". Smaller steps may follow a solution; 'Solver/Coulomb "
+            << ". None was found on the way from smaller coefficients, either. "
+               "Smaller steps may follow a solution; 'Solver/Coulomb "
                "pressure' = lagged takes the pressure of the step before.";
     return message.str();
   }

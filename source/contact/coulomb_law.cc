@@ -9,9 +9,19 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
+#include <vector>
 
 namespace Viscoplastic
 {
+  namespace
+  {
+    /// A gap of less than this part of the motion of the free node is rounding.
+    constexpr double rounding_of_gap = 1e-12;
+  } // namespace
+
+
+
   unsigned int
   CoulombLaw::own_obstacle(const ContactLayout &face,
                            const unsigned int   point) const
@@ -74,18 +84,24 @@ namespace Viscoplastic
 
 
 
-  Tensor<1, 3>
+  std::optional<Tensor<1, 3>>
   CoulombLaw::relax_node(const ContactLayout &face,
                          const unsigned int   node,
                          const Tensor<2, 3>  &inverse_diagonal,
                          const Tensor<1, 3>  &force,
-                         ContactState        &state) const
+                         ContactState        &state,
+                         const bool           must_settle) const
   {
     constexpr unsigned int max_sweeps = 100;
     const unsigned int     begin      = face.first_point[node],
                        end            = face.first_point[node + 1],
                        obstacle       = face.first_obstacle(node);
-    Tensor<1, 3> remaining            = force;
+    const bool many_sweeps =
+      end - obstacle > 1 || !face.has_plain_friction(node);
+    std::vector<std::tuple<Tensor<1, 2>, double, bool>> old;
+    for (unsigned int p = begin; many_sweeps && p < end; ++p)
+      old.emplace_back(state.multiplier[p], state.bound[p], state.sticks[p]);
+    Tensor<1, 3> remaining = force;
     double       change, size;
     const auto   take_away = [&](const unsigned int p) {
       remaining += node_force(face.points[p], state.multiplier[p]);
@@ -101,7 +117,8 @@ namespace Viscoplastic
       remaining -= node_force(face.points[p], state.multiplier[p]);
 
     // Piece by piece, as often as the others change its forces.
-    for (unsigned int sweep = 0; sweep < max_sweeps; ++sweep)
+    bool has_settled = false;
+    for (unsigned int sweep = 0; sweep < max_sweeps && !has_settled; ++sweep)
       {
         std::vector<bool> is_done(end - begin, false);
         change = size = 0.;
@@ -125,14 +142,34 @@ namespace Viscoplastic
               state.bound[p] = bound(face, state, p);
             set(p, solve_point(face, p, inverse_diagonal, remaining, state));
           }
-        if (face.has_plain_friction(node) && end - obstacle <= 1)
-          break;
-        if (change <= 1e-14 * size)
-          break;
+        has_settled = !many_sweeps || change <= 1e-14 * size;
+      }
+    if (must_settle && !has_settled)
+      {
+        for (unsigned int p = begin; p < end; ++p)
+          {
+            const auto &[multiplier, bound, sticks] = old[p - begin];
+            state.multiplier[p]                     = multiplier;
+            state.bound[p]                          = bound;
+            state.sticks[p]                         = sticks;
+          }
+        return {};
       }
     // With the bounds of its pressures, the minimum at the node is what
     // Coulomb's law asks for.
-    return Viscoplastic::relax_node(face, node, inverse_diagonal, force, state);
+    const Tensor<1, 3> x =
+      Viscoplastic::relax_node(face, node, inverse_diagonal, force, state);
+    // Of two pieces between which friction wedges a node, one holds it as well
+    // as both; but each needs its own pressure for its bound.
+    if (end - obstacle > 1)
+      {
+        const double gap = rounding_of_gap * (inverse_diagonal * force).norm();
+        for (unsigned int o = obstacle; o < end; ++o)
+          if (!face.points[o].gives_way() &&
+              std::abs(face.points[o].map[0] * x - state.bound[o]) <= gap)
+            state.sticks[o] = true;
+      }
+    return x;
   }
 
 
@@ -205,6 +242,18 @@ namespace Viscoplastic
               state.bound[p] += of_pressure[p][k] * pressures[k];
           }
       }
+  }
+
+
+
+  CoulombLaw
+  CoulombLaw::with_part(const double part) const
+  {
+    CoulombLaw result(*this);
+    for (std::vector<double> &coefficients : result.of_pressure)
+      for (double &coefficient : coefficients)
+        coefficient *= part;
+    return result;
   }
 
 

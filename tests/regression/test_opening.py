@@ -202,19 +202,28 @@ class Greco(Contact):
     }
 
     def test_displacements(self):
-        for steps, ranks in ((1, 1), (5, 1), (1, 2)):
-            with self.subTest(steps=steps, ranks=ranks):
-                more = {"Time/Phases": f"1: {steps}"}
+        """The limit is extrapolated from 128 and 256 cells a side."""
+        for cells, steps, ranks, error in (
+            (256, 1, 1, 1e-4),
+            (64, 5, 1, 4e-4),
+            (64, 1, 2, 4e-4),
+        ):
+            with self.subTest(cells=cells, steps=steps, ranks=ranks):
+                size = "0, 0 : 0.04, 0.04 : true"
+                more = {
+                    "Time/Phases": f"1: {steps}",
+                    "Geometry/Arguments": f"{cells}, {cells} : {size}",
+                }
                 result = run("greco", {**self.PLATE, **more}, ranks, text="")
                 moved = [result[f"point{i}_x"][-1] for i in range(5)]
                 # the limit, and what the literature says
                 for i, (limit, other) in enumerate(
                     zip(
-                        (2.8603e-5, 2.7226e-5, 2.2868e-5, 1.9807e-5, 1.5414e-5),
+                        (2.8604e-5, 2.7227e-5, 2.2869e-5, 1.9808e-5, 1.5414e-5),
                         (2.86e-5, 2.72e-5, 2.28e-5, 1.98e-5, 1.54e-5),
                     )
                 ):
-                    self.assertLess(abs(moved[i] / limit - 1), 3e-4)
+                    self.assertLess(abs(moved[i] / limit - 1), error)
                     self.assertLess(abs(moved[i] / other - 1), 5e-3)
                 # 41 with a fixed point; then the load grows in proportion
                 self.assertLess(result["contact_iterations"][1], 14)
@@ -395,6 +404,37 @@ class HardCases(Contact):
         contact = {"Friction coefficient": "if(x < 0.5, 0.2, 0.8)"}
         more = {"Time/Phases": "1.5: 12"}
         self.check_both(check, contact, plate, more, ranks=(2, 1))
+
+    def test_price_of_reversal_and_turn(self):
+        """Load, slip to one side and back, in space in a circle: with the pressure
+        of the step at most 1.5 times what bounds of the same size take that are
+        given, those of the pressure before. Measured: 0.83 and 1.13 of the corrections,
+        0.96 and 1.32 of the linear iterations."""
+        push = "0.05*if(t < 0.5, 0, if(t < 1, t - 0.5, 1.5 - t))"
+        turn = "0.02*(1 - cos(2*pi*max(0, t - 0.5))); 0.02*sin(2*pi*max(0, t - 0.5))"
+        for place, along, down, refinements, mu in (
+            (PLANE, push, -0.02, 2, 0.4),
+            (SPACE, turn, -0.01, 1, 0.6),
+        ):
+            with self.subTest(dim=place[0]):
+                newton, lagged = (
+                    rub(
+                        place,
+                        {"Friction coefficient": mu},
+                        f"{along}; {down}*min(2*t, 1)",
+                        {
+                            "Geometry/Global refinements": refinements,
+                            "Solver/Linear solver": "multigrid",
+                            "Solver/Contact tolerance": 1e-8,
+                            "Time/Phases": "0.5: 4, 1.5: 12",
+                            **pressure,
+                        },
+                    )
+                    for pressure in ({}, LAGGED)
+                )
+                self.assertGreater(newton["slip_area"].max(), 0.5)
+                for name in "contact_iterations", "linear_iterations":
+                    self.assertLess(newton[name].sum(), 1.5 * lagged[name].sum(), name)
 
     def test_opening_as_it_turns_back(self):
         """The plate rises while it reverses, until nothing is left."""

@@ -34,13 +34,19 @@ namespace Viscoplastic
       return !rest;
     }
 
-    /// Whether the sweeps solve nodes with the law itself. Not after Newton's
-    /// method has stalled: of several solutions at a node, sweeps may choose
-    /// the one that is none of the step.
+    /// Whether the sweeps solve nodes with the law itself. Not near a solution,
+    /// and not after Newton's method has stalled: of several solutions at a
+    /// node, sweeps may choose the one that is none of the step.
     bool
     nodes_obey_law() const
     {
       return n_stalls == 0;
+    }
+
+    void
+    begin_near_solution()
+    {
+      n_stalls = 1;
     }
 
     /// Find out what bounds miss at these pressures.

@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/contact/coulomb_coefficients.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,13 +23,16 @@ namespace Viscoplastic
     std::function<std::string(unsigned int)> place;
 
     /// relax_node() with the bounds of the pressures that come out, which are
-    /// set. Where pieces meet, one after the other obeys the law.
-    Tensor<1, 3>
+    /// set. Where pieces meet, one after the other obeys the law, again and
+    /// again, which need not settle: if it @p must_settle, then nothing comes
+    /// out, and the state stays.
+    std::optional<Tensor<1, 3>>
     relax_node(const ContactLayout &face,
                const unsigned int   node,
                const Tensor<2, 3>  &inverse_diagonal,
                const Tensor<1, 3>  &force, // residual + D x
-               ContactState        &state) const;
+               ContactState        &state,
+               bool                 must_settle) const;
 
     /**
      * A slipping point has lambda = g d + mu p d, d = s/|s|, with the pressure
@@ -48,6 +52,10 @@ namespace Viscoplastic
     predict_bounds(const ContactLayout  &face,
                    const Vector<double> &residual,
                    ContactState         &state) const;
+
+    /// The same with a part of the coefficients.
+    CoulombLaw
+    with_part(double part) const;
 
     /// The largest sum of coefficients at a point. Collective.
     double

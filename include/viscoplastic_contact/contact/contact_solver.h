@@ -99,13 +99,13 @@ namespace Viscoplastic
 
     /**
      * @p increment: face part of u - u_prev at the start given to
-     * bulk.begin(), and of the solution on return; @p state: the bounds, and
-     * the sets and multipliers to start from, which become those of the
+     * BulkSolver::begin(), and of the solution on return; @p state: the bounds,
+     * and the sets and multipliers to start from, which become those of the
      * solution; @p tolerance: the relative error at which to stop.
      *
      * The report tells what a solve without contact would have taken from the
      * same start, from what this one has shown: of an exact solver, the
-     * completion of the displacement, to which the caller adds bulk.begin();
+     * completion of the displacement, to which the caller adds its beginning;
      * of an iterative one the seconds a decade of its corrections, times the
      * decades from the first error to the tolerance. Nothing is solved for it.
      *

@@ -141,7 +141,7 @@ namespace Viscoplastic
   class ContactSolver::Iteration
   {
   public:
-    Iteration(BulkSolver          &bulk,
+    Iteration(ContactSolve        &bulk,
               const ContactLayout &face,
               const double         tolerance,
               Vector<double>      &x,
@@ -202,7 +202,7 @@ namespace Viscoplastic
     double
     plain_seconds(const double seconds_to_finish) const;
 
-    BulkSolver          &bulk;
+    ContactSolve        &bulk;
     const ContactLayout &face;
     const double         tolerance;
     /// The increment of the face, and what contact does there.
@@ -247,7 +247,7 @@ namespace Viscoplastic
 
 
 
-  ContactSolver::Iteration::Iteration(BulkSolver          &bulk,
+  ContactSolver::Iteration::Iteration(ContactSolve        &bulk,
                                       const ContactLayout &face,
                                       const double         tolerance,
                                       Vector<double>      &x,
@@ -331,7 +331,7 @@ namespace Viscoplastic
   double
   ContactSolver::Iteration::plain_seconds(const double seconds_to_finish) const
   {
-    if (bulk.is_exact())
+    if (bulk.is_exact)
       return seconds_to_finish;
     return decades > 0. && first_ratio > 1. ?
              correction_seconds / decades * std::log10(first_ratio / safety) :
@@ -343,7 +343,7 @@ namespace Viscoplastic
   void
   ContactSolver::Iteration::relax(const unsigned int n_sweeps)
   {
-    bulk.face_residual(residual);
+    residual = bulk.face_residual();
     AssertThrow(!face.any(std::any_of(residual.begin(),
                                       residual.end(),
                                       [](const double r) {
@@ -368,11 +368,11 @@ namespace Viscoplastic
         for (unsigned int s = stages.size(); s-- > 0;)
           relax_stage(s, true);
       }
-    // rounding_error() is a hundred units of rounding.
+    // rounding_error is a hundred units of rounding.
     stop_rounding(
-      face, diagonal, 0.01 * bulk.rounding_error(), x, change, state);
+      face, diagonal, 0.01 * bulk.scale.rounding_error, x, change, state);
     bulk.move_face(change);
-    bulk.face_residual(residual);
+    residual = bulk.face_residual();
     update_slips(face, x, state);
   }
 
@@ -457,9 +457,9 @@ namespace Viscoplastic
     if (face.has_obstacles)
       last_sets = state.sticks;
     bulk.set_truncation(truncation);
-    const Certificate certificate =
-      certify(face, residual, diagonal, state, force, bulk.rounding_error());
-    size = std::max(bulk.size(), bulk.rounding_error() / tolerance);
+    const Certificate certificate = certify(
+      face, residual, diagonal, state, force, bulk.scale.rounding_error);
+    size = std::max(bulk.size(), bulk.scale.rounding_error / tolerance);
     const double estimate = bulk.dual_norm(certificate.force);
     error                 = bound(misjudged * estimate, certificate);
     if (error <= tolerance * size && error > beyond_doubt * tolerance * size)
@@ -509,7 +509,7 @@ namespace Viscoplastic
                          stiffness) :
               1.;
           if (state.multiplier[p][0] <=
-              share * bulk.rounding_error() * std::sqrt(stiffness))
+              share * bulk.scale.rounding_error * std::sqrt(stiffness))
             {
               state.multiplier[p][0] = 0.;
               state.sticks[p]        = false;
@@ -537,9 +537,9 @@ namespace Viscoplastic
     if (error > rounding_margin * rounding)
       return false;
     // Data are no better known than that.
-    error                 = std::max(error, rounding);
-    report.relative_error = error / size;
-    bulk.set_rounding_error(std::max(bulk.rounding_error(), error));
+    error                     = std::max(error, rounding);
+    report.relative_error     = error / size;
+    bulk.scale.rounding_error = std::max(bulk.scale.rounding_error, error);
     return true;
   }
 
@@ -575,7 +575,7 @@ namespace Viscoplastic
                  bulk.rounding_of_residual() / size :
                  0.;
              // Exact solvers come to rest for no other reason.
-             rounding > 0. && (bulk.is_exact() || best_error < 1e3 * rounding))
+             rounding > 0. && (bulk.is_exact || best_error < 1e3 * rounding))
       {
         message << "it has come to rest there, and rounding alone makes "
                 << rounding
@@ -585,9 +585,9 @@ namespace Viscoplastic
                                                   ", or a larger tolerance.");
       }
     else
-      message << (bulk.is_exact() ? "" :
-                                    "use 'Solver/Linear solver' = direct, on "
-                                    "one rank, ")
+      message << (bulk.is_exact ? "" :
+                                  "use 'Solver/Linear solver' = direct, on "
+                                  "one rank, ")
               << "raise 'Solver/Maximal contact iterations' or the tolerance.";
     AssertThrow(false, ExcMessage(message.str()));
   }
@@ -664,7 +664,7 @@ namespace Viscoplastic
     held.spring.resize(face.n_nodes());
     bulk.set_truncation(held, /* may_rebuild = */ false);
     report.linear_iterations += bulk.correct(force, loose_tolerance, w);
-    const BulkSolver::SearchTerms terms = bulk.search_terms(w);
+    const ContactSolve::SearchTerms terms = bulk.search_terms(w);
     if (terms.curvature > 0.)
       bulk.take_step(terms.slope / terms.curvature);
   }
@@ -678,7 +678,7 @@ namespace Viscoplastic
 
 
   ContactReport
-  ContactSolver::solve(BulkSolver          &bulk,
+  ContactSolver::solve(ContactSolve        &bulk,
                        const ContactLayout &face,
                        const double         tolerance,
                        Vector<double>      &x,

@@ -52,15 +52,15 @@ namespace Viscoplastic
 
 
   void
-  CoulombBounds::predict(BulkSolver           &bulk,
+  CoulombBounds::predict(ContactSolve         &bulk,
                          const FaceTruncation &truncation,
                          const Vector<double> &residual,
                          const Vector<double> &w,
                          ContactState         &state)
   {
-    double         stiffness = bulk.search_terms(w).curvature;
-    Vector<double> response(w.size()), after(residual);
-    bulk.face_response(response);
+    const auto [slope, curvature, response] = bulk.search_terms(w);
+    double         stiffness                = curvature;
+    Vector<double> after(residual);
     face.add(-1., response, after);
     // Where pieces meet, a slip that turns takes part in what presses the
     // other piece.

@@ -218,9 +218,9 @@ namespace Viscoplastic
      * that is as good up to inexact linear solves, 0 if there is no descent.
      */
     SearchResult
-    line_search(const BulkSolver::SearchTerms &bulk,
-                const FaceAlongLine           &face,
-                const double                   largest)
+    line_search(const ContactSolve::SearchTerms &bulk,
+                const FaceAlongLine             &face,
+                const double                     largest)
     {
       const auto at = [&](const double step) {
         return SearchResult{step,
@@ -264,7 +264,7 @@ namespace Viscoplastic
 
 
   SearchResult
-  search_along(BulkSolver           &bulk,
+  search_along(ContactSolve         &bulk,
                const ContactLayout  &face,
                const ContactState   &state,
                const Vector<double> &w)
@@ -277,10 +277,10 @@ namespace Viscoplastic
 
 
   double
-  repetitions(const BulkSolver::SearchTerms &terms,
-              const ContactLayout           &face,
-              const ContactState            &state,
-              const Vector<double>          &w)
+  repetitions(const ContactSolve::SearchTerms &terms,
+              const ContactLayout             &face,
+              const ContactState              &state,
+              const Vector<double>            &w)
   {
     // As it is, contact is in balance with the body but for the descent.
     const FaceAlongLine line = face_along(face, state, w);
@@ -352,7 +352,7 @@ namespace Viscoplastic
 
 
   std::optional<KinkStep>
-  step_from_kinks(BulkSolver                      &bulk,
+  step_from_kinks(ContactSolve                    &bulk,
                   const ContactLayout             &face,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
                   const Vector<double>            &residual,
@@ -366,8 +366,8 @@ namespace Viscoplastic
     Vector<double>       stop;
     const double         change_of_j = bring_to_kinks(face, w, x, state, stop);
     bulk.move_face(stop);
-    Vector<double> new_residual(x.size()), force(x.size());
-    bulk.face_residual(new_residual);
+    const Vector<double> new_residual = bulk.face_residual();
+    Vector<double>       force(x.size());
     // J is quadratic but for friction: its mean slope makes the change.
     const double energy_change =
       change_of_j -
@@ -393,7 +393,7 @@ namespace Viscoplastic
         result.search = search_along(bulk, face, state, result.correction);
         if (energy_change + result.search.energy_change < 0.)
           return result;
-        if (bulk.is_exact())
+        if (bulk.is_exact)
           break;
       }
 

@@ -208,9 +208,9 @@ namespace Viscoplastic
     forces.u           = start;
     forces.load.values = load;
     forces.elastic     = start;
-    solver.set_scale({energy_rounding(space, matrix, forces).size});
+    const SolutionScale scale{energy_rounding(space, matrix, forces).size};
     if (d.slipping_face() == nullptr && !is_zero)
-      solver.solve(load, dual.w, dual_tolerance);
+      solver.solve(load, dual.w, dual_tolerance, scale);
     else if (!is_zero)
       {
         const ContactLayout &face   = d.face->layout();
@@ -225,30 +225,22 @@ namespace Viscoplastic
         for (unsigned int node = 0; node < face.n_nodes(); ++node)
           inverse_diagonal.push_back(
             invert(solver.face_matrix().diagonal_block(node)));
-        const Vector<double> no_force(face.n_dofs());
-        Vector<double>       change(face.n_dofs());
-        solver.begin(load, dual.w);
         FaceTruncation truncation =
           make_truncation(face, linear, inverse_diagonal, stiffest_spring);
         if (law != nullptr)
           law->tilt(face, linear, truncation);
         truncation.transposed = true;
-        solver.set_truncation(truncation, /* may_rebuild = */ false);
         // The tolerance is relative to where it begins, which may have much
-        // more energy than w. What five corrections leave is beyond the digits
+        // more energy than w. What a few corrections leave is beyond the digits
         // of that, and asked for below.
-        constexpr unsigned int max_corrections = 5;
-        constexpr double       enough          = 30.;
-        for (unsigned int n = 0; n < max_corrections; ++n)
-          {
-            solver.correct(no_force, dual_tolerance, change);
-            const double curvature = solver.search_terms(change).curvature;
-            solver.take_step(1.);
-            if (solver.is_exact() || std::sqrt(std::max(0., curvature)) <=
-                                       enough * solver.energy_norm())
-              break;
-          }
-        solver.finish();
+        constexpr double enough = 30.;
+        solve_truncated(*solver.begin(load, dual.w, scale),
+                        face,
+                        truncation,
+                        /* is_kept = */ false,
+                        Vector<double>(face.n_dofs()),
+                        dual_tolerance,
+                        enough);
       }
 
     DistributedVector elastic = space.owned_vector();

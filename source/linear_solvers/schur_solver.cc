@@ -185,6 +185,219 @@ namespace Viscoplastic
 
 
 
+  /// A solve under way, after the forward substitution: the bulk follows the
+  /// face.
+  class SchurSolver::Solve : public ContactSolve
+  {
+  public:
+    Solve(const SchurSolver       &solver,
+          const DistributedVector &load,
+          DistributedVector       &u,
+          const SolutionScale     &scale)
+      : ContactSolve(solver.schur_complement.get(), true, scale)
+      , solver(solver)
+      , face(solver.face)
+      , load(load)
+      , u(u)
+      , face_load(face.n_dofs())
+      , face_change(face_load)
+      , correction(face_load)
+      , product(face_load)
+    {
+      DistributedVector residual(load);
+      solver.matrix.vmult(residual, u);
+      squared_norm = u * residual;
+      residual.sadd(-1., 1., load);
+      y = solver.forward(residual);
+      if (face.n_dofs() == 0)
+        return;
+      // y = (y_i, y_c); the face's load after condensation is L_cc y_c.
+      std::copy(y.end() - face.n_dofs(), y.end(), product.begin());
+      solver.face_factor.vmult(face_load, product);
+    }
+
+    Vector<double>
+    face_residual() const override
+    {
+      Vector<double> r(face.n_dofs());
+      solver.schur_complement->matrix().vmult(r, face_change);
+      r.sadd(-1., 1., face_load);
+      return r;
+    }
+
+    void
+    move_face(const Vector<double> &change) override
+    {
+      face_change += change;
+    }
+
+    void
+    set_truncation(const FaceTruncation &truncation_,
+                   const bool /*may_rebuild*/) override
+    {
+      truncation = truncation_;
+    }
+
+    double
+    dual_norm(const Vector<double> &force) override
+    {
+      // The bulk is in equilibrium, so the residual lives on the face, and its
+      // dual norm is that of the Schur complement.
+      product = face_residual();
+      product -= force;
+      solver.face_factor.solve(product);
+      return product.l2_norm();
+    }
+
+    double
+    rounding_of_residual() override
+    {
+      DistributedVector end(u);
+      solver.backward(change(), end);
+      return Viscoplastic::rounding_of_residual(
+        solver.matrix, load, end, [&](const DistributedVector &error) {
+          return solver.forward(error).norm_sqr();
+        });
+    }
+
+    double
+    energy_norm() const override;
+
+    unsigned int
+    correct(const Vector<double> &force,
+            const double          tolerance,
+            Vector<double>       &w) override;
+
+    SearchTerms
+    search_terms(const Vector<double> &w) override
+    {
+      correction = w;
+      solver.schur_complement->matrix().vmult(product, correction);
+      return {face_residual() * correction, product * correction, product};
+    }
+
+    void
+    take_step(const double step) override
+    {
+      face_change.add(step, correction);
+    }
+
+    unsigned int
+    finish() override
+    {
+      solver.backward(change(), u);
+      return 1;
+    }
+
+  private:
+    /// What this has added to the displacement from which it began, times L^T:
+    /// (y_i, L_cc^T face_change).
+    Vector<double>
+    change() const
+    {
+      Vector<double> c(face_change.size()), v(y);
+      solver.face_factor.Tvmult(c, face_change);
+      std::copy(c.begin(), c.end(), v.end() - c.size());
+      return v;
+    }
+
+    const SchurSolver       &solver;
+    const ContactLayout     &face;
+    const DistributedVector &load;
+    DistributedVector       &u;
+    Vector<double>           y, face_load, face_change, correction, product;
+    FaceTruncation           truncation;
+    double                   squared_norm; // of the start
+    /// L^{-1} load, once it has been asked for.
+    mutable Vector<double> forward_load;
+  };
+
+
+
+  double
+  SchurSolver::Solve::energy_norm() const
+  {
+    // Begun at g, u = g + L^{-T} v.
+    const Vector<double> v   = change();
+    double               sum = squared_norm + v.norm_sqr();
+    // Prescribed values that jump begin with a large energy in the cells beside
+    // them, which v takes back. Otherwise one of the two is much smaller, and
+    // the product of both, which takes another solve, does not count.
+    constexpr double apart = 1e-2;
+    if (std::min(squared_norm, v.norm_sqr()) >
+        apart * std::max(squared_norm, v.norm_sqr()))
+      {
+        // A g = load - r, and L y = r.
+        if (forward_load.size() == 0)
+          forward_load = solver.forward(load);
+        sum += 2. * (v * forward_load - v * y);
+      }
+    // Of a translation it is rounding, of either sign.
+    return std::sqrt(std::max(0., sum));
+  }
+
+
+
+  unsigned int
+  SchurSolver::Solve::correct(const Vector<double> &force,
+                              const double          tolerance,
+                              Vector<double>       &w)
+  {
+    product = face_residual();
+    product -= force;
+    truncation.tilt_equations(face, product);
+    truncation.project(face, product);
+    w                 = 0.;
+    const double size = product.l2_norm();
+    if (size == 0.)
+      return 0;
+
+    NodalBlocks blocks{face, std::vector<Tensor<2, 3>>(face.n_nodes())};
+    for (unsigned int n = 0; n < face.n_nodes(); ++n)
+      {
+        // Blocked directions get a multiple of the identity, which keeps the
+        // block regular, of the size of the others.
+        const Tensor<2, 3> &P = truncation.projector[n];
+        const Tensor<2, 3>  stiffness =
+          solver.schur_complement->diagonal_block(n);
+        const double one   = stiffness.norm();
+        Tensor<2, 3> block = P * (stiffness + truncation.spring[n]) * P;
+        for (unsigned int d = 0; d < 3; ++d)
+          for (unsigned int e = 0; e < 3; ++e)
+            block[d][e] += one * ((d == e ? 1. : 0.) - P[d][e]);
+        blocks.inverse[n] = P * invert(block) * P;
+      }
+    // A small face problem costs nothing: solve it to the end, and the active
+    // set iteration is finite in 2D. In a large one, follow the caller.
+    const double reduction =
+      face.n_dofs() <= 600 ? 1e-13 : std::max(1e-13, 0.01 * tolerance);
+    SolverControl control(std::max(100u, 4 * face.n_dofs()), reduction * size);
+    const TruncatedFace system{solver.schur_complement->matrix(),
+                               face,
+                               truncation};
+    try
+      {
+        if (truncation.tilt.empty())
+          SolverCG<Vector<double>>(control).solve(system, w, product, blocks);
+        else
+          SolverGMRES<Vector<double>>(
+            control,
+            SolverGMRES<Vector<double>>::AdditionalData(
+              /* max_n_tmp_vectors = */ 200,
+              /* right_preconditioning = */ true))
+            .solve(system, w, product, blocks);
+      }
+    catch (const SolverControl::NoConvergence &)
+      {
+        // Rounding stopped it; the line search and the error bound judge what
+        // came out.
+      }
+    truncation.tilt_motions(face, w);
+    return 0;
+  }
+
+
+
   SchurSolver::SchurSolver(const DistributedMatrix &matrix,
                            const std::vector<bool> &excluded,
                            const FaceRestriction   &restriction,
@@ -243,7 +456,6 @@ namespace Viscoplastic
     factor->L = cholmod_l_analyze(A, &common);
     factor->check("to analyse the matrix");
     cholmod_l_free_sparse(&A, &common);
-    y.reinit(unknowns.size());
   }
 
 
@@ -310,32 +522,6 @@ namespace Viscoplastic
     FullMatrix<double> S(n, n);
     S                = product_matrix;
     schur_complement = std::make_unique<DenseFaceMatrix>(face, std::move(S));
-
-    face_load.reinit(n);
-    face_change.reinit(n);
-    correction.reinit(n);
-    product.reinit(n);
-  }
-
-
-
-  std::string
-  SchurSolver::name() const
-  {
-    return "direct (CHOLMOD)";
-  }
-
-
-
-  void
-  SchurSolver::forward(const DistributedVector &load,
-                       const DistributedVector &start)
-  {
-    DistributedVector residual(load);
-    matrix.vmult(residual, start);
-    squared_norm = start * residual;
-    residual.sadd(-1., 1., load);
-    y = forward(residual);
   }
 
 
@@ -352,17 +538,6 @@ namespace Viscoplastic
 
 
 
-  Vector<double>
-  SchurSolver::change() const
-  {
-    Vector<double> c(face_change.size()), v(y);
-    face_factor.Tvmult(c, face_change);
-    std::copy(c.begin(), c.end(), v.end() - c.size());
-    return v;
-  }
-
-
-
   void
   SchurSolver::backward(Vector<double> v, DistributedVector &target) const
   {
@@ -373,221 +548,26 @@ namespace Viscoplastic
 
 
 
-  unsigned int
+  BulkSolver::Report
   SchurSolver::solve(const DistributedVector &load,
                      DistributedVector       &u,
-                     const double /*tolerance*/)
+                     const double /*tolerance*/,
+                     const SolutionScale &scale)
   {
-    forward(load, u);
-    backward(y, u);
-    return 1;
+    DistributedVector residual(load);
+    matrix.vmult(residual, u);
+    residual.sadd(-1., 1., load);
+    backward(forward(residual), u);
+    return {1, scale.rounding_error};
   }
 
 
 
-  void
-  SchurSolver::begin(const DistributedVector &load_, DistributedVector &u_)
+  std::unique_ptr<ContactSolve>
+  SchurSolver::begin(const DistributedVector &load,
+                     DistributedVector       &u,
+                     const SolutionScale     &scale)
   {
-    load = &load_;
-    u    = &u_;
-    forward(load_, u_);
-    forward_load.reinit(0);
-    // y = (y_i, y_c); the face's load after condensation is L_cc y_c.
-    const unsigned int n_interior = unknowns.size() - face.n_dofs();
-    for (unsigned int i = 0; i < face.n_dofs(); ++i)
-      face_load[i] = y[n_interior + i];
-    const Vector<double> y_face(face_load);
-    face_factor.vmult(face_load, y_face);
-    face_change = 0.;
-  }
-
-
-
-  const FaceMatrix &
-  SchurSolver::face_matrix() const
-  {
-    return *schur_complement;
-  }
-
-
-
-  void
-  SchurSolver::face_residual(Vector<double> &r)
-  {
-    schur_complement->matrix().vmult(r, face_change);
-    r.sadd(-1., 1., face_load);
-  }
-
-
-
-  void
-  SchurSolver::move_face(const Vector<double> &change)
-  {
-    face_change += change;
-  }
-
-
-
-  void
-  SchurSolver::set_truncation(const FaceTruncation &truncation_,
-                              const bool /*may_rebuild*/)
-  {
-    truncation = truncation_;
-  }
-
-
-
-  double
-  SchurSolver::dual_norm(const Vector<double> &force)
-  {
-    // The bulk is in equilibrium, so the residual lives on the face, and its
-    // dual norm is that of the Schur complement.
-    face_residual(product);
-    product -= force;
-    face_factor.solve(product);
-    return product.l2_norm();
-  }
-
-
-
-  double
-  SchurSolver::confirmed_dual_norm(const Vector<double> &force,
-                                   const double /*limit*/,
-                                   unsigned int & /*iterations*/)
-  {
-    return dual_norm(force);
-  }
-
-
-
-  double
-  SchurSolver::rounding_of_residual()
-  {
-    DistributedVector end(*u);
-    backward(change(), end);
-    return Viscoplastic::rounding_of_residual(
-      matrix, *load, end, [&](const DistributedVector &error) {
-        return forward(error).norm_sqr();
-      });
-  }
-
-
-
-  double
-  SchurSolver::energy_norm() const
-  {
-    // Begun at g, u = g + L^{-T} v.
-    const Vector<double> v   = change();
-    double               sum = squared_norm + v.norm_sqr();
-    // Prescribed values that jump begin with a large energy in the cells beside
-    // them, which v takes back. Otherwise one of the two is much smaller, and
-    // the product of both, which takes another solve, does not count.
-    constexpr double apart = 1e-2;
-    if (std::min(squared_norm, v.norm_sqr()) >
-        apart * std::max(squared_norm, v.norm_sqr()))
-      {
-        // A g = load - r, and L y = r.
-        if (forward_load.size() == 0 && load != nullptr)
-          forward_load = forward(*load);
-        if (forward_load.size() > 0)
-          sum += 2. * (v * forward_load - v * y);
-      }
-    // Of a translation it is rounding, of either sign.
-    return std::sqrt(std::max(0., sum));
-  }
-
-
-
-  unsigned int
-  SchurSolver::correct(const Vector<double> &force,
-                       const double          tolerance,
-                       Vector<double>       &w)
-  {
-    face_residual(product);
-    product -= force;
-    truncation.tilt_equations(face, product);
-    truncation.project(face, product);
-    w                 = 0.;
-    const double size = product.l2_norm();
-    if (size == 0.)
-      return 0;
-
-    NodalBlocks blocks{face, std::vector<Tensor<2, 3>>(face.n_nodes())};
-    for (unsigned int n = 0; n < face.n_nodes(); ++n)
-      {
-        // Blocked directions get a multiple of the identity, which keeps the
-        // block regular, of the size of the others.
-        const Tensor<2, 3> &P         = truncation.projector[n];
-        const Tensor<2, 3>  stiffness = schur_complement->diagonal_block(n);
-        const double        one       = stiffness.norm();
-        Tensor<2, 3>        block = P * (stiffness + truncation.spring[n]) * P;
-        for (unsigned int d = 0; d < 3; ++d)
-          for (unsigned int e = 0; e < 3; ++e)
-            block[d][e] += one * ((d == e ? 1. : 0.) - P[d][e]);
-        blocks.inverse[n] = P * invert(block) * P;
-      }
-    // A small face problem costs nothing: solve it to the end, and the active
-    // set iteration is finite in 2D. In a large one, follow the caller.
-    const double reduction =
-      face.n_dofs() <= 600 ? 1e-13 : std::max(1e-13, 0.01 * tolerance);
-    SolverControl control(std::max(100u, 4 * face.n_dofs()), reduction * size);
-    const TruncatedFace system{schur_complement->matrix(), face, truncation};
-    try
-      {
-        if (truncation.tilt.empty())
-          SolverCG<Vector<double>>(control).solve(system, w, product, blocks);
-        else
-          SolverGMRES<Vector<double>>(
-            control,
-            SolverGMRES<Vector<double>>::AdditionalData(
-              /* max_n_tmp_vectors = */ 200,
-              /* right_preconditioning = */ true))
-            .solve(system, w, product, blocks);
-      }
-    catch (const SolverControl::NoConvergence &)
-      {
-        // Rounding stopped it; the line search and the error bound judge what
-        // came out.
-      }
-    truncation.tilt_motions(face, w);
-    return 0;
-  }
-
-
-
-  BulkSolver::SearchTerms
-  SchurSolver::search_terms(const Vector<double> &w)
-  {
-    correction = w;
-    Vector<double> r(face.n_dofs());
-    face_residual(r);
-    schur_complement->matrix().vmult(product, correction);
-    return {r * correction, product * correction};
-  }
-
-
-
-  void
-  SchurSolver::face_response(Vector<double> &response)
-  {
-    response = product;
-  }
-
-
-
-  void
-  SchurSolver::take_step(const double step)
-  {
-    face_change.add(step, correction);
-  }
-
-
-
-  unsigned int
-  SchurSolver::finish()
-  {
-    backward(change(), *u);
-    load = nullptr;
-    return 1;
+    return std::make_unique<Solve>(*this, load, u, scale);
   }
 } // namespace Viscoplastic

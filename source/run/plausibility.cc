@@ -145,22 +145,6 @@ namespace Viscoplastic
 
 
 
-    /// Keeps the largest of what it is told.
-    class KeepLargest
-    {
-    public:
-      void
-      add(const double value, const std::string &origin, const bool is_load)
-      {
-        if (value > found.value)
-          found = {value, origin, is_load};
-      }
-
-      LargestStress found;
-    };
-
-
-
     /// The largest of the values, or norms, of data at places and times.
     template <int dim>
     class DataSampler
@@ -218,25 +202,30 @@ namespace Viscoplastic
       modulus.add(ranges.youngs_modulus.least);
 
     const DataSampler<dim> body(places_in_body(triangulation), scene);
-    KeepLargest            loads, bounds;
+    LargestStress          load, bound;
+    const auto             add =
+      [&](const double value, const std::string &origin, const bool is_load) {
+        if (LargestStress &largest = is_load ? load : bound;
+            value > largest.value)
+          largest = {value, origin, is_load};
+      };
     if (scene.initial_stress)
-      loads.add(body.largest(*scene.initial_stress,
-                             stress_components<dim>().size()),
-                "the initial stress",
-                true);
+      add(body.largest(*scene.initial_stress, stress_components<dim>().size()),
+          "the initial stress",
+          true);
     if (scene.body_force)
-      loads.add(body.largest(*scene.body_force, dim) * size,
-                "the body force times the size of the body",
-                true);
+      add(body.largest(*scene.body_force, dim) * size,
+          "the body force times the size of the body",
+          true);
     for (const auto &[id, condition] : scene.boundary)
       {
         const DataSampler<dim> here(places_on_boundary(triangulation, id),
                                     scene);
         const std::string      where = " of " + scene.names.of("boundary", id);
         if (condition.traction)
-          loads.add(here.largest(*condition.traction, dim),
-                    "the traction" + where,
-                    true);
+          add(here.largest(*condition.traction, dim),
+              "the traction" + where,
+              true);
         for (const auto &[datum, name, is_load] :
              {std::make_tuple(&condition.pressure, "the pressure", true),
               std::make_tuple(&condition.normal_stress,
@@ -246,8 +235,7 @@ namespace Viscoplastic
                               "the friction bound",
                               false)})
           if (*datum)
-            (is_load ? loads : bounds)
-              .add(here.largest(**datum), name + where, is_load);
+            add(here.largest(**datum), name + where, is_load);
         double displacement =
           condition.foundation_displacement ?
             here.largest(*condition.foundation_displacement) :
@@ -256,12 +244,12 @@ namespace Viscoplastic
           if (component)
             displacement = std::max(displacement, here.largest(*component));
         // Stiff parts move with it.
-        loads.add(modulus.least * displacement / size,
-                  "Young's modulus times the displacement" + where +
-                    " over the size of the body",
-                  true);
+        add(modulus.least * displacement / size,
+            "Young's modulus times the displacement" + where +
+              " over the size of the body",
+            true);
       }
-    return loads.found.value > 0. ? loads.found : bounds.found;
+    return load.value > 0. ? load : bound;
   }
 
 
@@ -364,29 +352,6 @@ namespace Viscoplastic
             number(std::round(100. * stress.value / modulus.largest)) +
             " % with Young's modulus of '" + material->section + "', " +
             with_unit(modulus.largest) + "; small strains are assumed.");
-      }
-    const double size = size_of_body(discretization);
-    if (const double meters = size * units.length.si;
-        meters < 1e-9 || meters > 1e7)
-      result.push_back("the body has a size of " + number(size) +
-                       units.suffix(Quantity::length, dim) + " (" +
-                       in_si(meters, "m") +
-                       "); atoms have 1e-10 m, the earth 1e7 m.");
-    if (scene.body_force)
-      {
-        const double force =
-          DataSampler<dim>(places_in_body(discretization.space.dof_handler
-                                            .get_triangulation()),
-                           scene)
-            .largest(*scene.body_force, dim);
-        const double newtons = force * units.stress.si / units.length.si;
-        // A thousand times the weight of osmium.
-        if (newtons > 2.2e8)
-          result.push_back("the body force is " + number(force) + ' ' +
-                           units.stress.name + '/' + units.length.name + " (" +
-                           in_si(newtons, "N/m^3") +
-                           "); water weighs 1e4 N/m^3, rock 2.5e4, steel "
-                           "7.7e4, osmium 2.2e5.");
       }
     return result;
   }

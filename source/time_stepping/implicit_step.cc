@@ -300,8 +300,8 @@ namespace Viscoplastic
     DistributedVector product(u);
     tangent.matrix().vmult(product, u);
     // Rounding of stresses does not vanish with u.
-    const double rounding = std::max(method.solver.bulk().rounding_error(),
-                                     1e-13 * tangent.norm(state.z));
+    const double rounding =
+      std::max(solution.report.rounding_error, 1e-13 * tangent.norm(state.z));
     size = std::max(std::sqrt(std::max(0., u * product)), rounding / tolerance);
   }
 

@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/time_stepping/nonsymmetric_correction.h>
 
 #include <cmath>
+#include <limits>
 
 namespace Viscoplastic
 {
@@ -119,18 +120,17 @@ namespace Viscoplastic
       y                          = 0.;
       if (!step.face)
         {
-          iterations += step.solver.solve(x, y, tolerance);
+          iterations += step.solver.solve(x, y, tolerance).iterations;
           return;
         }
-      const unsigned int n = step.face->layout().n_dofs();
-      Vector<double>     face_part(n);
-      step.solver.begin(x, y);
-      step.solver.set_truncation(truncation, /* may_rebuild = */ false);
       iterations +=
-        step.solver.correct(Vector<double>(n), tolerance, face_part);
-      step.solver.search_terms(face_part);
-      step.solver.take_step(1.);
-      step.solver.finish();
+        solve_truncated(*step.solver.begin(x, y),
+                        step.face->layout(),
+                        truncation,
+                        /* is_kept = */ false,
+                        Vector<double>(step.face->layout().n_dofs()),
+                        tolerance,
+                        std::numeric_limits<double>::max());
     }
   };
 
@@ -201,10 +201,10 @@ namespace Viscoplastic
         return std::sqrt(std::max(0., v * r));
       }
     // What the bulk has answered at once, and what is left.
-    solver.begin(r, v);
-    const double answered = solver.energy_norm();
-    return std::hypot(
-      answered, solver.dual_norm(Vector<double>(face->layout().n_dofs())));
+    const auto solve = solver.begin(r, v);
+    return std::hypot(solve->energy_norm(),
+                      solve->dual_norm(
+                        Vector<double>(face->layout().n_dofs())));
   }
 
 
@@ -285,10 +285,6 @@ namespace Viscoplastic
                                        const StressForStrain &z_for,
                                        NewtonIterate<dim>    &iterate) const
   {
-    // The solver's idea of sizes belongs to other right-hand sides.
-    const BulkSolver::Scale scale = solver.get_scale();
-    solver.set_scale({});
-
     const FaceTruncation    truncation = this->truncation(iterate.contact);
     const DistributedVector r          = residual(iterate);
     const double            before     = dual_norm(r);
@@ -338,7 +334,6 @@ namespace Viscoplastic
               }
           }
       }
-    solver.set_scale(scale);
     return result;
   }
 

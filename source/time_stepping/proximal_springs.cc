@@ -17,7 +17,7 @@ namespace Viscoplastic
     /// The springs of the proximal point method, relative to the diagonal of
     /// the matrix. What they carry is reduced by something like this factor
     /// each time that the step is solved; softer ones would magnify rounding
-    /// of resultants beyond StepSolver::rounding_error().
+    /// of resultants beyond what StepSolver counts as rounding.
     constexpr double spring_stiffness = 1e-3;
     /// A body that still moves after so many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
@@ -297,7 +297,6 @@ namespace Viscoplastic
   ProximalSprings<dim>::solve(const StepProblem<dim>  &problem,
                               const DistributedVector &right_side,
                               const double             tolerance,
-                              const BulkSolver        &bulk,
                               const Solve             &solve,
                               DistributedVector       &u,
                               ContactState            &contact) const
@@ -337,8 +336,8 @@ namespace Viscoplastic
         // forces that balance leave nothing in the springs.
         const double force_in_springs = right.l1_norm();
         singular_matrix->vmult(right, u);
-        const double      size = std::max(std::sqrt(std::max(0., u * right)),
-                                     bulk.get_scale().former_size);
+        const double size =
+          std::max(std::sqrt(std::max(0., u * right)), problem.former_size());
         DistributedVector whole(center);
         whole += rigid_motion;
         const bool in_balance =
@@ -350,7 +349,7 @@ namespace Viscoplastic
         report.tolerance      = tolerance;
         // What rounding leaves of a solve may be left in the springs, too.
         if (in_balance && report.error <= std::max(tolerance * size,
-                                                   2. * bulk.rounding_error()))
+                                                   2. * report.rounding_error))
           {
             u += rigid_motion;
             return report;

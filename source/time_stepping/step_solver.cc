@@ -2,7 +2,6 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
-#include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
@@ -18,6 +17,11 @@ namespace Viscoplastic
     /// What rounding may make of the error, relative to the solution, before no
     /// number means anything.
     constexpr double largest_rounding = 1e-3;
+    /// What rounding leaves of displacements, of their increments, in which the
+    /// face is solved, and of loads that cancel, relative to their size.
+    constexpr double rounding = 100. * std::numeric_limits<double>::epsilon();
+    /// Squares of less are no numbers.
+    constexpr double least_step = 1e-150;
   } // namespace
 
 
@@ -147,8 +151,7 @@ namespace Viscoplastic
 
   template <int dim>
   double
-  StepSolver<dim>::rounding_error(const Data              &data,
-                                  const DistributedVector &u) const
+  StepSolver<dim>::size_of(const Data &data, const DistributedVector &u) const
   {
     const AdmissibleSpace<dim> &space  = discretization.space;
     double                      sum    = 0.;
@@ -168,8 +171,7 @@ namespace Viscoplastic
                   square(data.right_side.begin()[i])) /
                  stiffness;
       }
-    return 100. * std::numeric_limits<double>::epsilon() *
-           std::sqrt(Utilities::MPI::sum(sum, space.communicator));
+    return std::sqrt(Utilities::MPI::sum(sum, space.communicator));
   }
 
 
@@ -193,65 +195,34 @@ namespace Viscoplastic
   void
   StepSolver<dim>::add_rounding(const Data        &data,
                                 DistributedVector &u,
+                                const double       size,
                                 ContactReport     &report)
   {
     // By how much the matrix is larger than the energy of u says: about the
     // root of its condition number, and rounding makes of residuals up to its
     // square.
-    constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    const double     size    = bulk_solver->size();
-    const double     floor   = rounding_error(data, u),
-                 ratio       = floor / (100. * epsilon * size);
+    constexpr double epsilon   = std::numeric_limits<double>::epsilon();
+    const double     data_size = size_of(data, u), ratio = data_size / size;
     // Of a body that moves without strain, under no loads, nothing but rounding
     // is left, of its energy, too.
     if (!(epsilon * ratio * ratio > report.tolerance) ||
-        size <= bulk_solver->rounding_error() ||
-        (epsilon * ratio * ratio > 1. && load_size(data) <= floor))
+        size <= report.rounding_error ||
+        (epsilon * ratio * ratio > 1. &&
+         load_size(data) <= rounding * data_size))
       return;
-    bulk_solver->begin(data.right_side, u);
-    const double       rounding = bulk_solver->rounding_of_residual();
+    const double left =
+      bulk_solver->begin(data.right_side, u)->rounding_of_residual();
     std::ostringstream message;
     message
-      << "Rounding alone makes " << rounding / size
+      << "Rounding alone makes " << left / size
       << " or more of the solution. Cells that are less flat, stiffness "
          "that differs less or Poisson's ratio farther from 1/2 mend that.";
-    AssertThrow(rounding <= largest_rounding * size, ExcMessage(message.str()));
-    if (!(rounding > std::max(report.error, report.tolerance * size)))
+    AssertThrow(left <= largest_rounding * size, ExcMessage(message.str()));
+    if (!(left > std::max(report.error, report.tolerance * size)))
       return;
-    report.error          = rounding;
-    report.relative_error = rounding / size;
-    bulk_solver->set_rounding_error(
-      std::max(bulk_solver->rounding_error(), rounding));
-  }
-
-
-
-  template <int dim>
-  double
-  StepSolver<dim>::size_of(const Data &data, const DistributedVector &u) const
-  {
-    const AdmissibleSpace<dim> &space = discretization.space;
-    double                      size  = 0.;
-    const auto                  add   = [&size](const double value) {
-      size = std::max(size, std::abs(value));
-    };
-    for (std::size_t i = 0; i < space.excluded().size(); ++i)
-      {
-        const double root = std::sqrt(diagonal.begin()[i]);
-        add(root * u.begin()[i]);
-        add(root * data.old_u.begin()[i]);
-        if (!space.excluded()[i])
-          {
-            add(data.load.begin()[i] / root);
-            add(data.right_side.begin()[i] / root);
-          }
-      }
-    for (unsigned int k = 0; k < data.foundation_step.size(); ++k)
-      {
-        const unsigned int i = discretization.face_restriction().positions()[k];
-        add(std::sqrt(diagonal.begin()[i]) * data.foundation_step[k]);
-      }
-    return Utilities::MPI::max(size, space.communicator);
+    report.error          = left;
+    report.relative_error = left / size;
+    report.rounding_error = std::max(report.rounding_error, left);
   }
 
 
@@ -272,7 +243,6 @@ namespace Viscoplastic
       problem,
       right_side,
       tolerance,
-      *bulk_solver,
       [&](const DistributedVector &old_u,
           const DistributedVector &right,
           const double             inner_tolerance) {
@@ -295,129 +265,56 @@ namespace Viscoplastic
                                  ContactState            &contact,
                                  const CoulombLaw        *law)
   {
-    // All of it in proportion gives the solution in proportion: where squares
-    // would leave the range of numbers, another unit does. In a ramp that
-    // begins like exp(-1/t) that is nothing unusual; a whole run of this kind
-    // is refused (see Recorder::check_sizes()).
     Vector<double> foundation_step;
     if (problem.foundation_step.size() > 0)
       foundation_step =
         face_motion(discretization.face->layout(), problem.foundation_step);
-    const Data   data{old_u,
-                    problem.load.values,
-                    right_side,
-                    foundation_step,
-                    std::sqrt(2. *
-                              std::max(0., problem.old.forces.strain_energy))};
-    const double size = size_of(data, u);
-    AssertThrow(!(size > largest_size),
-                ExcMessage(out_of_range("the size of loads and displacements "
-                                        "in the energy norm",
-                                        size,
-                                        least_size,
-                                        largest_size)));
-    // A power of the penetration is not in proportion.
-    const auto &boundary = discretization.scene().boundary;
-    if (size == 0. || size >= 1e-100 ||
-        std::any_of(boundary.begin(), boundary.end(), [](const auto &pair) {
-          return pair.second.gives_way() &&
-                 pair.second.compliance_exponent != 1.;
-        }))
-      return solve_in_unit(data, tolerance, u, contact, law);
-
-    const double unit    = std::ldexp(1., std::max(std::ilogb(size), -1000));
-    const auto   in_unit = [unit](const auto &vector) {
-      auto result = vector;
-      result /= unit;
-      return result;
-    };
-    const auto scale = [&](const double factor) {
-      u *= factor;
-      for (unsigned int p = 0; p < contact.n_points(); ++p)
-        {
-          contact.bound[p] *= factor;
-          contact.foundation_step[p] *= factor;
-          contact.slip[p] *= factor;
-          contact.multiplier[p] *= factor;
-        }
-    };
-    const DistributedVector other_old_u      = in_unit(old_u),
-                            load             = in_unit(data.load),
-                            other_right_side = in_unit(right_side);
-    const std::vector<double> bounds         = contact.bound;
-    if (foundation_step.size() > 0)
-      foundation_step /= unit;
-    scale(1. / unit);
-    CoulombLaw law_in_unit;
-    if (law != nullptr)
-      {
-        law_in_unit = *law;
-        for (double &bound : law_in_unit.given)
-          bound /= unit;
-      }
-    ContactReport report =
-      solve_in_unit({other_old_u,
-                     load,
-                     other_right_side,
-                     foundation_step,
-                     data.old_size / unit},
-                    tolerance,
-                    u,
-                    contact,
-                    law != nullptr ? &law_in_unit : nullptr);
-    scale(unit);
-    if (law == nullptr)
-      contact.bound = bounds;
-    if (problem.foundation_step.size() > 0)
-      contact.foundation_step = problem.foundation_step;
-    report.duality_gap *= unit * unit;
-    report.error *= unit;
-    const BulkSolver::Scale &scale_in_unit = bulk_solver->get_scale();
-    bulk_solver->set_scale(
-      {unit * scale_in_unit.rounding_error, unit * scale_in_unit.former_size});
-    return report;
-  }
-
-
-
-  template <int dim>
-  ContactReport
-  StepSolver<dim>::solve_in_unit(const Data        &data,
-                                 const double       tolerance,
-                                 DistributedVector &u,
-                                 ContactState      &contact,
-                                 const CoulombLaw  *law)
-  {
+    const Data data{old_u, problem.load.values, right_side, foundation_step};
     const Discretization<dim> &d = discretization;
     const Timer                timer;
-    bulk_solver->set_scale({rounding_error(data, u), data.old_size});
-    ContactReport report;
-    if (d.slipping_face())
+    const double               data_size = size_of(data, u);
+    const SolutionScale scale{rounding * data_size, problem.former_size()};
+    ContactReport       report;
+    try
       {
-        DistributedVector change(u);
-        change -= data.old_u;
-        Vector<double> increment = d.face->restriction().gather(change);
-        // (3.20): the minimum of J is its solution.
-        bulk_solver->begin(data.right_side, u);
-        const double seconds_to_begin = timer.wall_time();
-        report                        = contact_solver.solve(
-          *bulk_solver, d.face->layout(), tolerance, increment, contact, law);
-        report.seconds = timer.wall_time();
-        report.plain_seconds =
-          std::min(report.seconds, seconds_to_begin + report.plain_seconds);
-        add_rounding(data, u, report);
-        return report;
+        if (d.slipping_face())
+          {
+            DistributedVector change(u);
+            change -= data.old_u;
+            Vector<double> increment = d.face->restriction().gather(change);
+            // (3.20): the minimum of J is its solution.
+            const auto   solve = bulk_solver->begin(data.right_side, u, scale);
+            const double seconds_to_begin = timer.wall_time();
+            report                        = contact_solver.solve(
+              *solve, d.face->layout(), tolerance, increment, contact, law);
+            report.plain_seconds =
+              std::min(timer.wall_time(),
+                       seconds_to_begin + report.plain_seconds);
+            report.rounding_error = solve->scale.rounding_error;
+            add_rounding(data, u, solve->size(), report);
+          }
+        else
+          {
+            const BulkSolver::Report linear =
+              bulk_solver->solve(data.right_side, u, tolerance, scale);
+            report.linear_iterations = linear.iterations;
+            report.error             = linear.error;
+            report.rounding_error    = scale.rounding_error;
+            if (!bulk_solver->is_exact())
+              report.relative_error = tolerance;
+            report.plain_seconds = timer.wall_time();
+          }
       }
-    report.linear_iterations =
-      bulk_solver->solve(data.right_side, u, tolerance);
+    catch (const ExceptionBase &)
+      {
+        // A ramp that begins like exp(-1/t) may begin with so little: what it
+        // leaves undone is as good as nothing. A whole run of this kind is
+        // refused (Recorder::check_sizes()).
+        if (!(data_size < least_step))
+          throw;
+      }
     report.tolerance = tolerance;
-    report.error     = bulk_solver->rounding_error();
-    if (!bulk_solver->is_exact())
-      {
-        report.relative_error = tolerance;
-        report.error = std::max(report.error, tolerance * bulk_solver->size());
-      }
-    report.seconds = report.plain_seconds = timer.wall_time();
+    report.seconds   = timer.wall_time();
     return report;
   }
 
@@ -434,19 +331,14 @@ namespace Viscoplastic
     const DistributedVector    start(u);
     const Vector<double>       no_step;
     const Data                 data{start, right_side, right_side, no_step};
-    // Squares of others would leave the range of numbers; the next step solves
-    // for all of u.
-    if (const double size = size_of(data, u);
-        !(size >= 1e-100 && size <= largest_size))
-      return;
-    bulk_solver->set_scale({rounding_error(data, u), data.old_size});
+    const SolutionScale        scale{rounding * size_of(data, u)};
     if (!d.slipping_face())
       {
-        bulk_solver->solve(right_side, u, tolerance);
+        bulk_solver->solve(right_side, u, tolerance, scale);
         return;
       }
     const ContactLayout &face = d.face->layout();
-    Vector<double>       force(face.n_dofs()), change(face.n_dofs());
+    Vector<double>       force(face.n_dofs());
     for (unsigned int p = 0; p < contact.n_points(); ++p)
       {
         const ContactLayout::Point &point = face.points[p];
@@ -463,34 +355,19 @@ namespace Viscoplastic
     if (springs)
       // From where the body is, springs carry nothing.
       springs->add_load(u, right);
-    bulk_solver->begin(right, u);
-    const FaceTruncation truncation = make_truncation(face, contact, {});
-    bulk_solver->set_truncation(truncation);
     // As a rule the change is less than a hundredth of u. But next to
     // incompressible a new mesh may bring much more energy than there is.
     // Errors in the energy norm may be so many times larger than in the
     // residual.
-    constexpr unsigned int max_corrections = 5;
-    constexpr double       margin          = 10.;
-    const double reduction = std::clamp(100. * tolerance, 1e-10, 1e-4);
-    for (unsigned int n = 0; n < max_corrections; ++n)
-      {
-        bulk_solver->correct(force, reduction, change);
-        const double curvature = bulk_solver->search_terms(change).curvature;
-        bulk_solver->take_step(1.);
-        // What gives way presses more or less then.
-        for (unsigned int node = 0; node < face.n_nodes(); ++node)
-          face.set_node_values(face.node_values(force, node) +
-                                 truncation.spring[node] *
-                                   face.node_values(change, node),
-                               node,
-                               force);
-        if (bulk_solver->is_exact() ||
-            margin * reduction * std::sqrt(std::max(0., curvature)) <=
-              tolerance * bulk_solver->energy_norm())
-          break;
-      }
-    bulk_solver->finish();
+    constexpr double margin    = 10.;
+    const double     reduction = std::clamp(100. * tolerance, 1e-10, 1e-4);
+    solve_truncated(*bulk_solver->begin(right, u, scale),
+                    face,
+                    make_truncation(face, contact, {}),
+                    /* is_kept = */ true,
+                    force,
+                    reduction,
+                    tolerance / (margin * reduction));
   }
 
 

@@ -491,7 +491,7 @@ class Effects(TestCase):
         with Case(
             VERIFICATION / "slab.prm",
             Geometry__Arguments="8, 4 : 0, 0 : 2, 1 : true",
-            Error_control__Tolerance=0.05,
+            Error_control__Tolerance=0.15,
             Study__Budget=1e5,
         ) as scene:
             process = scene.run("effects")

@@ -568,7 +568,7 @@ namespace
     const Sample   sample("parsed", "set Strain rate = if(sigma_eq > 1, 1, 0)");
     const Counting law(*sample.law);
     const double   k = 1e-3 / (3. * mu);
-    for (unsigned int i = 1; i < 100; i += 20)
+    for (const unsigned int i : {1, 61})
       {
         Tensor2 strain, z;
         strain[0][1] = (1. + 1e-5 * i) / (2. * mu * std::sqrt(3.));

@@ -126,7 +126,7 @@ namespace
     const Problem &problem = coulomb.problem;
     DenseBulk      bulk(problem, condensed);
     bulk.start_at(problem.u_prev);
-    bulk.set_rounding_error(1e-13);
+    bulk.scale.rounding_error = 1e-13;
     Vector<double>      increment(problem.face.n_dofs());
     ContactState        state(problem.bounds);
     const ContactReport report =
@@ -220,7 +220,7 @@ TEST(CoulombSolver, SolvesAllRandomProblems)
       n_corrections += result.report.iterations;
       DenseBulk bulk(coulomb.problem, condensed);
       bulk.start_at(coulomb.problem.u_prev);
-      bulk.set_rounding_error(1e-13);
+      bulk.scale.rounding_error = 1e-13;
       Vector<double> increment(coulomb.problem.face.n_dofs());
       ContactState   state(result.state.bound);
       n_of_given_bounds +=

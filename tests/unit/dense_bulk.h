@@ -27,34 +27,12 @@ namespace Viscoplastic::Testing
    * one: the face matrix is that of a bulk at rest, and corrections are only as
    * accurate as asked for.
    */
-  class DenseBulk : public BulkSolver
+  class DenseBulk : public ContactSolve
   {
   public:
     DenseBulk(const Problem &problem, const bool condensed)
-      : u(problem.u_prev)
-      , problem(problem)
-      , condensed(condensed)
-      , factor(cholesky_factor(problem.A))
-      , w(problem.size())
-    {
-      const unsigned int first = problem.first(), n = problem.face.n_dofs();
-      FullMatrix<double> K(n, n);
-      if (condensed)
-        {
-          // The Schur complement has the last block of the factor.
-          for (unsigned int i = 0; i < n; ++i)
-            for (unsigned int j = 0; j < n; ++j)
-              for (unsigned int k = 0; k <= std::min(i, j); ++k)
-                K(i, j) +=
-                  factor(first + i, first + k) * factor(first + j, first + k);
-        }
-      else
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            K(i, j) = problem.A(first + i, first + j);
-      matrix = std::make_unique<DenseFaceMatrix>(problem.face, std::move(K));
-      relax_bulk();
-    }
+      : DenseBulk(problem, condensed, make_face_matrix(problem, condensed))
+    {}
 
     Vector<double> u;
 
@@ -66,41 +44,10 @@ namespace Viscoplastic::Testing
       relax_bulk();
     }
 
-    bool
-    is_exact() const override
+    Vector<double>
+    face_residual() const override
     {
-      return true;
-    }
-
-    std::string
-    name() const override
-    {
-      return "dense";
-    }
-
-    unsigned int
-    solve(const DistributedVector &, DistributedVector &, const double) override
-    {
-      ADD_FAILURE() << "The contact solver has no business here.";
-      return 0;
-    }
-
-    void
-    begin(const DistributedVector &, DistributedVector &) override
-    {
-      ADD_FAILURE() << "The contact solver has no business here.";
-    }
-
-    const FaceMatrix &
-    face_matrix() const override
-    {
-      return *matrix;
-    }
-
-    void
-    face_residual(Vector<double> &r) override
-    {
-      r = problem.on_face(problem.residual(u));
+      return problem.on_face(problem.residual(u));
     }
 
     void
@@ -124,14 +71,6 @@ namespace Viscoplastic::Testing
       Vector<double> r = unbalanced(force);
       factor.solve(r);
       return r.l2_norm();
-    }
-
-    double
-    confirmed_dual_norm(const Vector<double> &force,
-                        const double /*limit*/,
-                        unsigned int & /*iterations*/) override
-    {
-      return dual_norm(force);
     }
 
     double
@@ -217,15 +156,11 @@ namespace Viscoplastic::Testing
           w -= start;
           u = start;
         }
-      return {problem.residual(u) * w, problem.A.matrix_norm_square(w)};
-    }
-
-    void
-    face_response(Vector<double> &response) override
-    {
       Vector<double> Aw(problem.size());
       problem.A.vmult(Aw, w);
-      response = problem.on_face(Aw);
+      return {problem.residual(u) * w,
+              problem.A.matrix_norm_square(w),
+              problem.on_face(Aw)};
     }
 
     void
@@ -244,6 +179,38 @@ namespace Viscoplastic::Testing
     bool is_finished = false;
 
   private:
+    DenseBulk(const Problem                   &problem,
+              const bool                       condensed,
+              std::unique_ptr<DenseFaceMatrix> face_matrix)
+      : ContactSolve(face_matrix.get(), /* is_exact = */ true)
+      , u(problem.u_prev)
+      , problem(problem)
+      , condensed(condensed)
+      , factor(cholesky_factor(problem.A))
+      , matrix(std::move(face_matrix))
+      , w(problem.size())
+    {
+      relax_bulk();
+    }
+
+    static std::unique_ptr<DenseFaceMatrix>
+    make_face_matrix(const Problem &problem, const bool condensed)
+    {
+      const unsigned int first = problem.first(), n = problem.face.n_dofs();
+      FullMatrix<double> K(n, n);
+      const auto         factor = cholesky_factor(problem.A);
+      // The Schur complement has the last block of the factor.
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          if (condensed)
+            for (unsigned int k = 0; k <= std::min(i, j); ++k)
+              K(i, j) +=
+                factor(first + i, first + k) * factor(first + j, first + k);
+          else
+            K(i, j) = problem.A(first + i, first + j);
+      return std::make_unique<DenseFaceMatrix>(problem.face, std::move(K));
+    }
+
     Vector<double>
     unbalanced(const Vector<double> &force) const
     {
@@ -336,12 +303,12 @@ namespace Viscoplastic::Testing
         u[i] += change[i];
     }
 
-    const Problem                   &problem;
-    const bool                       condensed;
-    const LAPACKFullMatrix<double>   factor;
-    std::unique_ptr<DenseFaceMatrix> matrix;
-    FaceTruncation                   truncation;
-    Vector<double>                   w;
+    const Problem                         &problem;
+    const bool                             condensed;
+    const LAPACKFullMatrix<double>         factor;
+    const std::unique_ptr<DenseFaceMatrix> matrix;
+    FaceTruncation                         truncation;
+    Vector<double>                         w;
   };
 
 
@@ -365,7 +332,7 @@ namespace Viscoplastic::Testing
         const double          rounding_error = 0.)
   {
     DenseBulk bulk(problem, condensed);
-    bulk.set_rounding_error(rounding_error);
+    bulk.scale.rounding_error = rounding_error;
     bulk.start_at(start);
     Vector<double> increment(start);
     increment -= problem.u_prev;

@@ -121,9 +121,9 @@ namespace
           {
             Vector<double>    force(m), w(m);
             DistributedVector u(scenario.start);
-            solver->begin(scenario.load, u);
-            solver->set_truncation(sticking_within(radius, scenario));
-            iterations[radius].push_back(solver->correct(force, 1e-8, w));
+            const auto        solve = solver->begin(scenario.load, u);
+            solve->set_truncation(sticking_within(radius, scenario));
+            iterations[radius].push_back(solve->correct(force, 1e-8, w));
           }
       }
     for (const auto &[radius, counts] : iterations)
@@ -149,9 +149,9 @@ namespace
                                 unsigned int &iterations) {
       Vector<double>    force(m), w(m);
       DistributedVector u(scenario.start);
-      solver.begin(scenario.load, u);
-      solver.set_truncation(sticking_within(radius, scenario));
-      iterations = solver.correct(force, tolerance, w);
+      const auto        solve = solver.begin(scenario.load, u);
+      solve->set_truncation(sticking_within(radius, scenario));
+      iterations = solve->correct(force, tolerance, w);
       return w;
     };
     const auto is_built_for = [&](const BulkSolver &solver,
@@ -186,8 +186,10 @@ namespace
     // Nor is a truncation that is only tried. Another solver in the same state
     // does the same, whatever it has done before; one whose state is forgotten
     // begins anew.
-    algebraic->set_truncation(sticking_within(10., scenario),
-                              /* may_rebuild = */ false);
+    DistributedVector u(scenario.start);
+    algebraic->begin(scenario.load, u)
+      ->set_truncation(sticking_within(10., scenario),
+                       /* may_rebuild = */ false);
     EXPECT_TRUE(is_built_for(*algebraic, built_for));
     const auto           state = algebraic->preconditioner_state();
     const Vector<double> w     = correction(*algebraic, -1., 1e-8, n_algebraic);
@@ -214,9 +216,9 @@ namespace
     const auto           correction = [&](BulkSolver &solver) {
       Vector<double>    force(m), w(m);
       DistributedVector u(scenario.start);
-      solver.begin(scenario.load, u);
-      solver.set_truncation(truncation);
-      solver.correct(force, 1e-8, w);
+      const auto        solve = solver.begin(scenario.load, u);
+      solve->set_truncation(truncation);
+      solve->correct(force, 1e-8, w);
       return w;
     };
     correction(*renewed);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/contact_points.h>
+#include <viscoplastic_contact/contact/contact_solve.h>
 #include <viscoplastic_contact/contact/coulomb_law.h>
 
 #include <algorithm>
@@ -32,6 +32,8 @@ namespace Viscoplastic
     double relative_error = 0.;
     /// The same bound, absolute; without contact that of the linear solver.
     double error = 0.;
+    /// What rounding leaves of the error, see SolutionScale.
+    double rounding_error = 0.;
     /// The relative tolerance of the solve; zero where nothing was solved.
     double tolerance = 0.;
     /// Wall time of the solve, and what of it the same solve would have taken
@@ -97,13 +99,13 @@ namespace Viscoplastic
 
     /**
      * @p increment: face part of u - u_prev at the start given to
-     * bulk.begin(), and of the solution on return; @p state: the bounds, and
-     * the sets and multipliers to start from, which become those of the
+     * BulkSolver::begin(), and of the solution on return; @p state: the bounds,
+     * and the sets and multipliers to start from, which become those of the
      * solution; @p tolerance: the relative error at which to stop.
      *
      * The report tells what a solve without contact would have taken from the
      * same start, from what this one has shown: of an exact solver, the
-     * completion of the displacement, to which the caller adds bulk.begin();
+     * completion of the displacement, to which the caller adds its beginning;
      * of an iterative one the seconds a decade of its corrections, times the
      * decades from the first error to the tolerance. Nothing is solved for it.
      *
@@ -113,7 +115,7 @@ namespace Viscoplastic
      * is not finite: there is no unconverged result.
      */
     ContactReport
-    solve(BulkSolver          &bulk,
+    solve(ContactSolve        &bulk,
           const ContactLayout &face,
           const double         tolerance,
           Vector<double>      &increment,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/contact/contact_solve.h>
 #include <viscoplastic_contact/contact/coulomb_law.h>
 
 #include <limits>
@@ -55,7 +55,7 @@ namespace Viscoplastic
 
     /// Let bounds be those to which the correction @p w of the face leads.
     void
-    predict(BulkSolver           &bulk,
+    predict(ContactSolve         &bulk,
             const FaceTruncation &truncation,
             const Vector<double> &residual,
             const Vector<double> &w,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/contact_layout.h>
+#include <viscoplastic_contact/contact/contact_solve.h>
 
 #include <optional>
 #include <vector>
@@ -26,7 +26,7 @@ namespace Viscoplastic
    * if there is no descent.
    */
   SearchResult
-  search_along(BulkSolver           &bulk,
+  search_along(ContactSolve         &bulk,
                const ContactLayout  &face,
                const ContactState   &state,
                const Vector<double> &w);
@@ -39,10 +39,10 @@ namespace Viscoplastic
    * change and the curvature of the energy of the body.
    */
   double
-  repetitions(const BulkSolver::SearchTerms &terms,
-              const ContactLayout           &face,
-              const ContactState            &state,
-              const Vector<double>          &w);
+  repetitions(const ContactSolve::SearchTerms &terms,
+              const ContactLayout             &face,
+              const ContactState              &state,
+              const Vector<double>            &w);
 
 
   /// Shorten a correction @p w where it meets kinks of J: slip that would
@@ -84,7 +84,7 @@ namespace Viscoplastic
    * correction.
    */
   std::optional<KinkStep>
-  step_from_kinks(BulkSolver                      &bulk,
+  step_from_kinks(ContactSolve                    &bulk,
                   const ContactLayout             &face,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
                   const Vector<double>            &residual,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/coulomb_law.h>
 #include <viscoplastic_contact/discretization/discretization.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 #include <viscoplastic_contact/discretization/point_probe.h>
 #include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 
 #include <optional>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 
 #include <optional>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include <deal.II/lac/lapack_full_matrix.h>
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <memory>
@@ -35,10 +35,6 @@ namespace Viscoplastic
                 const unsigned int       dim);
     ~SchurSolver() override;
 
-    /// Keeps the ordering of the unknowns.
-    bool
-    renew(const DistributedMatrix &matrix) override;
-
     bool
     is_exact() const override
     {
@@ -46,63 +42,36 @@ namespace Viscoplastic
     }
 
     std::string
-    name() const override;
+    name() const override
+    {
+      return "direct (CHOLMOD)";
+    }
 
-    unsigned int
+    Report
     solve(const DistributedVector &load,
           DistributedVector       &u,
-          const double             tolerance) override;
+          const double             tolerance,
+          const SolutionScale     &scale) override;
 
-    void
-    begin(const DistributedVector &load, DistributedVector &u) override;
+    std::unique_ptr<ContactSolve>
+    begin(const DistributedVector &load,
+          DistributedVector       &u,
+          const SolutionScale     &scale) override;
 
     const FaceMatrix &
-    face_matrix() const override;
+    face_matrix() const override
+    {
+      return *schur_complement;
+    }
 
-    void
-    face_residual(Vector<double> &r) override;
-
-    void
-    move_face(const Vector<double> &change) override;
-
-    void
-    set_truncation(const FaceTruncation &truncation,
-                   const bool            may_rebuild = true) override;
-
-    double
-    dual_norm(const Vector<double> &force) override;
-
-    double
-    confirmed_dual_norm(const Vector<double> &force,
-                        const double          limit,
-                        unsigned int         &iterations) override;
-
-    double
-    rounding_of_residual() override;
-
-    double
-    energy_norm() const override;
-
-    unsigned int
-    correct(const Vector<double> &force,
-            const double          tolerance,
-            Vector<double>       &w) override;
-
-    SearchTerms
-    search_terms(const Vector<double> &w) override;
-
-    void
-    face_response(Vector<double> &response) override;
-
-    void
-    take_step(const double step) override;
-
-    unsigned int
-    finish() override;
+    /// Keeps the ordering of the unknowns.
+    bool
+    renew(const DistributedMatrix &matrix) override;
 
   private:
     /// CHOLMOD's data, hidden from those who include this file.
     struct Factor;
+    class Solve;
 
     /// Order the unknowns, interior first, and analyze the pattern.
     void
@@ -116,18 +85,9 @@ namespace Viscoplastic
     void
     extract_schur_complement();
 
-    /// y := L^{-1} (load - K u) on the unknowns.
-    void
-    forward(const DistributedVector &load, const DistributedVector &u);
-
     /// L^{-1} r.
     Vector<double>
     forward(const DistributedVector &r) const;
-
-    /// What the solve under way has added to the displacement from which it
-    /// began, times L^T: (y_i, L_cc^T face_change).
-    Vector<double>
-    change() const;
 
     /// u += L^{-T} v.
     void
@@ -141,14 +101,5 @@ namespace Viscoplastic
     /// Factor of the Schur complement, lower triangular.
     LAPACKFullMatrix<double>         face_factor;
     std::unique_ptr<DenseFaceMatrix> schur_complement;
-
-    // The solve under way.
-    const DistributedVector *load = nullptr;
-    DistributedVector       *u    = nullptr;
-    Vector<double>           y, face_load, face_change, correction, product;
-    FaceTruncation           truncation;
-    double                   squared_norm = 0.; // of the start
-    /// L^{-1} load, once it has been asked for.
-    mutable Vector<double> forward_load;
   };
 } // namespace Viscoplastic

@@ -44,8 +44,9 @@ namespace Viscoplastic
 
   /**
    * Sentences about a material that has been left at its defaults although the
-   * scene has loads, and, where units are declared, about data that are powers
-   * of ten away from those of all known bodies. Collective.
+   * scene has loads, and, where units are declared, about one that is powers of
+   * ten away from all known ones, or that loads would strain far beyond small
+   * strains. Collective.
    */
   template <int dim>
   std::vector<std::string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 #include <viscoplastic_contact/time_stepping/step_problem.h>
 
 #include <functional>

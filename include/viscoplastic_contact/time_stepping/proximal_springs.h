@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/contact/statics.h>
 #include <viscoplastic_contact/discretization/discretization.h>
@@ -56,7 +55,6 @@ namespace Viscoplastic
     solve(const StepProblem<dim>  &problem,
           const DistributedVector &right_side,
           const double             tolerance,
-          const BulkSolver        &bulk,
           const Solve             &solve,
           DistributedVector       &u,
           ContactState            &contact) const;

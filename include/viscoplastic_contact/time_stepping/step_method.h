@@ -3,7 +3,7 @@
 
 #include <deal.II/base/timer.h>
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
+#include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 #include <viscoplastic_contact/time_stepping/step_problem.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/parameters/time_schedule.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -61,6 +62,13 @@ namespace Viscoplastic
     time_ahead(const State<dim> &state) const
     {
       return std::min(time_step.k, 2. * state.k);
+    }
+
+    /// The energy norm of u_{n-1}, see SolutionScale.
+    double
+    former_size() const
+    {
+      return std::sqrt(2. * std::max(0., old.forces.strain_energy));
     }
 
     /// u_{n-1} in frames.

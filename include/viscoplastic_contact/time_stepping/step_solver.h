@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/bulk_solver.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/discretization/discretization.h>
+#include <viscoplastic_contact/linear_solvers/bulk_solver.h>
 #include <viscoplastic_contact/time_stepping/proximal_springs.h>
 #include <viscoplastic_contact/time_stepping/step_problem.h>
 
@@ -102,9 +102,6 @@ namespace Viscoplastic
     {
       const DistributedVector &old_u, &load, &right_side;
       const Vector<double>    &foundation_step; // on the face
-      /// The energy norm of the solution of the step before: one that passes
-      /// through zero is no scale for what rounding leaves of it.
-      const double old_size = 0.;
     };
 
     /// solve() with Coulomb's law of the pressure of the step itself, by
@@ -137,37 +134,26 @@ namespace Viscoplastic
                   ContactState            &contact,
                   const CoulombLaw        *law);
 
-    /// solve() in a unit of forces and displacements in which squares of them
-    /// are ordinary numbers.
-    ContactReport
-    solve_in_unit(const Data        &data,
-                  const double       tolerance,
-                  DistributedVector &u,
-                  ContactState      &contact,
-                  const CoulombLaw  *law);
-
     /// Count what rounding of residuals may leave of the error of a solution
-    /// @p u with contact, where that is more than the tolerance: as dear as
-    /// some solves, so it is asked for only where stiffness differs much within
-    /// the body. Throws ExcMessage where it leaves no solution. Collective.
+    /// @p u of this @p size with contact, where that is more than the
+    /// tolerance: as dear as some solves, so it is asked for only where
+    /// stiffness differs much within the body. Throws ExcMessage where it
+    /// leaves no solution. Collective.
     void
-    add_rounding(const Data &data, DistributedVector &u, ContactReport &report);
+    add_rounding(const Data        &data,
+                 DistributedVector &u,
+                 const double       size,
+                 ContactReport     &report);
 
     /// The loads and stresses of the data in the dual norm of the diagonal.
     /// Collective.
     double
     load_size(const Data &data) const;
 
-    /// The largest of what the data contribute to the energy norm, without
-    /// squares. Collective.
-    double
-    size_of(const Data &data, const DistributedVector &u) const;
-
-    /// What rounding leaves of displacements, of their increments, in which the
-    /// face is solved, and of loads that cancel: in the energy norm.
+    /// The data and @p u in the norm of the diagonal, loads in its dual.
     /// Collective.
     double
-    rounding_error(const Data &data, const DistributedVector &u) const;
+    size_of(const Data &data, const DistributedVector &u) const;
 
     const Discretization<dim>  &discretization;
     const ContactSolver         contact_solver;

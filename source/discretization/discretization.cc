@@ -138,6 +138,7 @@ namespace Viscoplastic
     demand.n_solves           = n_steps * demand.solves_per_step;
     demand.n_dofs             = space.dof_handler.n_dofs();
     demand.n_face_dofs        = face_restriction().n_global_dofs();
+    demand.has_friction       = scene().has_friction();
     demand.n_first_dofs       = space.n_first_dofs();
     return demand;
   }

@@ -81,7 +81,9 @@ namespace Viscoplastic
       if (demand.n_face_dofs > 5000 || n_dofs >= (dim == 2 ? 2000000 : 200000))
         return false;
       // An exact solution, where it costs next to nothing.
-      if (n_dofs < (demand.n_solves < 4 && has_levels(demand) ? 2000 : 20000))
+      constexpr unsigned int large_face = 1500;
+      if (!(demand.has_friction && demand.n_face_dofs > large_face) &&
+          n_dofs < (demand.n_solves < 4 && has_levels(demand) ? 2000 : 20000))
         return true;
       if (has_levels(demand))
         {
@@ -154,8 +156,15 @@ namespace Viscoplastic
     const double     n      = demand.n_dofs;
     const double     set_up = least_set_up + c.at(c.mesh, n);
     if (kind == BulkSolverKind::direct)
-      return {set_up + c.at(c.factorization, n),
-              least_step + c.at(c.direct_step, n)};
+      {
+        // Some 60 products of a step with friction, limited by memory.
+        constexpr double by_entry = 1e-7;
+        const double     n_face =
+          demand.has_friction ? static_cast<double>(demand.n_face_dofs) : 0.;
+        return {set_up + c.at(c.factorization, n),
+                least_step + c.at(c.direct_step, n) +
+                  by_entry * n_face * n_face};
+      }
     // Cycles of algebraic multigrid on the first mesh.
     constexpr double large_first_mesh = 1.6;
     const double     factor = kind == BulkSolverKind::algebraic_multigrid ?

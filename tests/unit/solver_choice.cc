@@ -58,6 +58,10 @@ namespace
         // The dense matrix of a large face.
         EXPECT_EQ(kind(15000, 30, 500, 0.3, 5000), Kind::direct);
         EXPECT_EQ(kind(15000, 30, 500, 0.3, 5001), Kind::geometric_multigrid);
+        SolverDemand friction = demand(dim, 15000, 30, 500, 0.49, 1900);
+        EXPECT_EQ(choose_bulk_solver(friction), Kind::direct);
+        friction.has_friction = true;
+        EXPECT_EQ(choose_bulk_solver(friction), Kind::geometric_multigrid);
         // The memory of the factor.
         EXPECT_EQ(kind(2100000, 100, 500, 0.4999), Kind::geometric_multigrid);
         EXPECT_EQ(kind(2100000, 100, 0), Kind::algebraic_multigrid);

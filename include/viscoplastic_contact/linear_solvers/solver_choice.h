@@ -35,6 +35,8 @@ namespace Viscoplastic
     /// Degrees of freedom in all, and of these on the contact face. Prices are
     /// those of systems beyond dealii::types::global_dof_index, too.
     std::uint64_t n_dofs = 0, n_face_dofs = 0;
+    /// Whether there is friction on the face.
+    bool has_friction = false;
     /// The number of unknowns of the mesh that the present one is refined from;
     /// 0 where it is not refined.
     std::uint64_t n_first_dofs = 0;

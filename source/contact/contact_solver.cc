@@ -3,6 +3,7 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/contact/coulomb_bounds.h>
 #include <viscoplastic_contact/contact/kink_search.h>
@@ -274,6 +275,7 @@ namespace Viscoplastic
   {
     for (unsigned int iteration = 0;; ++iteration)
       {
+        Heartbeat::count(Loop::contact);
         relax(sweeps_of_iteration(iteration));
         if (is_solved())
           break;

@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <viscoplastic_contact/base/expression.h>
+#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/mpi_singleton.h>
 #include <viscoplastic_contact/base/signals.h>
@@ -121,11 +122,12 @@ namespace
   std::string
   run(const CommandLine &command_line, const bool has_terminal)
   {
-    Console console(MPI_COMM_WORLD,
+    Console         console(MPI_COMM_WORLD,
                     command_line.quiet,
                     command_line.log,
                     has_terminal,
                     command_line.verbose);
+    const Heartbeat heartbeat(console);
     try
       {
         const std::string interruption = run(command_line, console);

@@ -58,6 +58,26 @@ namespace Viscoplastic
 
 
 
+  double
+  Console::age() const
+  {
+    return std::chrono::duration<double>(Clock::now() - beginning).count();
+  }
+
+
+
+  bool
+  Console::is_silent_for(const double seconds) const
+  {
+    const Clock::time_point now = Clock::now();
+    return now - last_text > std::max<Clock::duration>(
+                               std::chrono::duration_cast<Clock::duration>(
+                                 std::chrono::duration<double>(seconds)),
+                               (now - beginning) / 100);
+  }
+
+
+
   unsigned int
   Console::width() const
   {
@@ -74,6 +94,7 @@ namespace Viscoplastic
     if (!is_terminal)
       return;
     everywhere.flush();
+    last_text = Clock::now();
     // The last column stays free: a character there would begin a new line.
     // The escape sequence erases what is left of a longer line before.
     std::cout << '\r' << line.substr(0, width() - 1) << "\033[K" << std::flush;
@@ -115,6 +136,8 @@ namespace Viscoplastic
   {
     const std::string text = str();
     str("");
+    if (!text.empty())
+      console.last_text = Clock::now();
     if (console.speaks && !text.empty())
       {
         std::cout << (console.status_is_shown ? "\r\033[K" : "") << text

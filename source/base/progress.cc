@@ -85,7 +85,8 @@ namespace Viscoplastic
                                                             step.n_cells)) :
                                 "";
     // Asked in each step: it keeps count.
-    if (is_worth_a_line(step, done) || is_last || console.is_verbose())
+    if (is_worth_a_line(step, done) || is_last || console.is_verbose() ||
+        console.is_silent_for(long_silence))
       {
         std::ostream &out =
           console.has_status() && !is_last ? console.log() : console.stream();

@@ -3,6 +3,7 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
+#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/contact/contact_solver.h>
 #include <viscoplastic_contact/contact/coulomb_bounds.h>
 #include <viscoplastic_contact/contact/kink_search.h>
@@ -290,6 +291,7 @@ namespace Viscoplastic
   {
     for (unsigned int iteration = 0;; ++iteration)
       {
+        Heartbeat::count(Loop::contact);
         relax(sweeps_of_iteration(iteration));
         if (is_solved())
           break;
@@ -406,8 +408,15 @@ namespace Viscoplastic
     if (!now)
       return;
     const Tensor<1, 3> step = *now - old;
-    // What rounding of f makes is no step: the bulk would have to follow it.
-    if (step.norm() <= rounding[node] * old.norm() && sets() == old_sets)
+    // What rounding makes is no step: the bulk would have to follow it. Deep
+    // penetration of soft ground rounds the motions that it is the sum of.
+    double size = old.norm();
+    for (unsigned int p = face.first_point[node];
+         p < face.first_point[node + 1];
+         ++p)
+      if (const ContactLayout::Point &point = face.points[p]; point.gives_way())
+        size = std::max(size, std::abs(state.bound[p]) / point.map[0].norm());
+    if (step.norm() <= rounding[node] * size && sets() == old_sets)
       return;
     face.set_node_values(*now, node, x);
     face.set_node_values(face.node_values(change, node) + step, node, change);
@@ -554,7 +563,7 @@ namespace Viscoplastic
             << best_error << " at best, and the tolerance is " << tolerance
             << " ('Solver/Contact tolerance'); ";
     if (bounds)
-      AssertThrow(false, ExcMessage(message.str() + bounds->failure()));
+      AssertThrow(false, NoCoulombSolution(message.str() + bounds->failure()));
     // Rounding of displacements makes forces of all sizes of it.
     constexpr double beyond_rounding = 1e13;
     double           stiffest        = 0.;

@@ -3,6 +3,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_gmres.h>
 
+#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/contact/sparse_face_matrix.h>
 #include <viscoplastic_contact/linear_solvers/krylov_solver.h>
 #include <viscoplastic_contact/linear_solvers/residual_rounding.h>
@@ -179,6 +180,7 @@ namespace Viscoplastic
     void
     vmult(DistributedVector &y, const DistributedVector &x) const
     {
+      Heartbeat::count(Loop::linear);
       if (is_truncated && solve.truncation.transposed)
         {
           DistributedVector motion(x);

@@ -16,6 +16,20 @@
 namespace Viscoplastic
 {
   template <int dim>
+  double
+  Recorder<dim>::body_size() const
+  {
+    // All ranks have the coarse mesh.
+    const auto corners =
+      GridTools::compute_bounding_box(
+        discretization->space.dof_handler.get_triangulation())
+        .get_boundary_points();
+    return corners.first.distance(corners.second);
+  }
+
+
+
+  template <int dim>
   void
   Recorder<dim>::judge(const AcceptedStep<dim>   &step,
                        const StepQuantities<dim> &quantities)
@@ -33,9 +47,17 @@ namespace Viscoplastic
       {
         std::ostringstream text;
         text << "forces miss the loads by " << missing / quantities.load_size
-             << " of them, which is rounding of displacements where the body "
-                "is stiffest: materials whose stiffness differs by less, or "
-                "prescribed displacements where it is stiff, mend that.";
+             << " of them, which is rounding of displacements";
+        if (const double times = quantities.max_displacement / body_size();
+            times > 1e3)
+          text << " of " << times
+               << " times the size of the body: contact hardly holds it, or "
+                  "not at all. Let the loads press the body onto its "
+                  "foundation, or prescribe displacements that hold it.";
+        else
+          text << " where the body is stiffest: materials whose stiffness "
+                  "differs by less, or prescribed displacements where it is "
+                  "stiff, mend that.";
         throw StepFailure(step.time_step.n, step.time_step.t, text.str());
       }
     // Beside stresses that balance each other the forces may be nothing.
@@ -224,12 +246,7 @@ namespace Viscoplastic
         result.push_back(text.str());
       }
 
-    // All ranks have the coarse mesh.
-    const auto corners =
-      GridTools::compute_bounding_box(
-        discretization->space.dof_handler.get_triangulation())
-        .get_boundary_points();
-    const double size   = corners.first.distance(corners.second);
+    const double size   = body_size();
     const bool   is_far = run.displacement.value > size;
     if (is_far || run.strain.value > 1.)
       {

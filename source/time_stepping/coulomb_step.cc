@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <sstream>
 
@@ -18,6 +19,12 @@ namespace Viscoplastic
     /// By how much of the largest displacement solutions differ that are
     /// several, and not one to the tolerance of the solver.
     constexpr double several_solutions = 1e-2;
+
+    /// After so many solves that have not halved the change of bounds, it may
+    /// be what rounding leaves of pressures; more than this part of the bounds
+    /// is refused.
+    constexpr unsigned int stalled_after = 15;
+    constexpr double       largest_blur  = 1e-3;
   } // namespace
 
 
@@ -30,15 +37,52 @@ namespace Viscoplastic
                          DistributedVector       &u,
                          ContactState            &contact)
   {
-    const SolverParameters &parameters =
-      discretization.scene().parameters.solver;
     if (springs)
       contact.bound = springs->bounds_that_hold(problem, contact.bound);
-    if (problem.bounds_follow_pressure &&
-        parameters.coulomb_pressure == CoulombPressure::newton &&
-        discretization.slipping_face())
-      return solve_with_own_pressure(
-        problem, right_side, tolerance, u, contact);
+    if (problem.bounds_follow_pressure && discretization.slipping_face() &&
+        discretization.scene().parameters.solver.coulomb_pressure ==
+          CoulombPressure::newton)
+      {
+        const DistributedVector first_u(u);
+        const ContactState      first(contact);
+        try
+          {
+            return solve_with_own_pressure(
+              problem, right_side, tolerance, u, contact);
+          }
+        catch (const NoCoulombSolution &)
+          {
+            // Where Newton's method jams, as on flat bodies whose foundations
+            // meet at an edge, solves with given bounds may get through.
+            const std::exception_ptr failure = std::current_exception();
+            u                                = first_u;
+            contact                          = first;
+            try
+              {
+                return find_fixed_point(
+                  problem, right_side, tolerance, u, contact);
+              }
+            catch (const ExceptionBase &)
+              {
+                std::rethrow_exception(failure);
+              }
+          }
+      }
+    return find_fixed_point(problem, right_side, tolerance, u, contact);
+  }
+
+
+
+  template <int dim>
+  ContactReport
+  StepSolver<dim>::find_fixed_point(const StepProblem<dim>  &problem,
+                                    const DistributedVector &right_side,
+                                    const double             tolerance,
+                                    DistributedVector       &u,
+                                    ContactState            &contact)
+  {
+    const SolverParameters &parameters =
+      discretization.scene().parameters.solver;
     ContactReport report =
       solve_with_bounds(problem, right_side, tolerance, u, contact);
     if (!problem.bounds_follow_pressure || !discretization.slipping_face())
@@ -50,6 +94,9 @@ namespace Viscoplastic
     // have missed it before that.
     double              share = 1.;
     std::vector<double> last_missing;
+    // The solve that has halved the change last.
+    double       best_change = std::numeric_limits<double>::max();
+    unsigned int last_gain   = 0;
     for (;;)
       {
         std::vector<double> bounds = problem.given_bounds;
@@ -80,6 +127,21 @@ namespace Viscoplastic
             std::max(report.contraction, change / last_change);
         if (change <= parameters.coulomb_tolerance * sum)
           return report;
+        if (change < 0.5 * best_change)
+          {
+            best_change = change;
+            last_gain   = report.bound_iterations;
+          }
+        // Pressures are known but to rounding of the forces that they are the
+        // sums of.
+        if (change <= largest_blur * sum &&
+            report.bound_iterations > last_gain + stalled_after &&
+            change <= rounding_of_bounds(problem, right_side, u))
+          {
+            report.relative_error =
+              std::max(report.relative_error, change / sum);
+            return report;
+          }
         std::ostringstream message;
         message << "The fixed point of Coulomb's law is not found in "
                 << report.bound_iterations
@@ -131,6 +193,32 @@ namespace Viscoplastic
         again.add_earlier(report);
         report = again;
       }
+  }
+
+
+
+  template <int dim>
+  double
+  StepSolver<dim>::rounding_of_bounds(const StepProblem<dim>  &problem,
+                                      const DistributedVector &right_side,
+                                      DistributedVector       &u)
+  {
+    bulk_solver->begin(right_side, u);
+    const ContactFace<dim>   &face     = *discretization.face;
+    const ContactLayout      &layout   = face.layout();
+    const double              rounding = bulk_solver->rounding_of_residual();
+    std::vector<Tensor<2, 3>> diagonal;
+    for (unsigned int node = 0; node < layout.n_nodes(); ++node)
+      diagonal.push_back(bulk_solver->face_matrix().diagonal_block(node));
+    const auto bounds_of_pressure =
+      face.bounds_of_pressure(problem.time_step.t, problem.slip_rates);
+    double sum = 0.;
+    for (unsigned int p = 0; p < layout.points.size(); ++p)
+      for (const double of_pressure : bounds_of_pressure[p])
+        // A force f at a node has at least the norm f / sqrt(its diagonal).
+        sum += of_pressure * rounding *
+               std::sqrt(diagonal[layout.points[p].node].norm());
+    return layout.sum(sum);
   }
 
 

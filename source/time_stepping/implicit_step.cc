@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/implicit_flow.h>
 #include <viscoplastic_contact/time_stepping/implicit_step.h>
@@ -204,6 +205,7 @@ namespace Viscoplastic
     bool is_outdated = true;
     for (solution.newton_iterations = 1;; ++solution.newton_iterations)
       {
+        Heartbeat::count(Loop::newton);
         if (is_outdated)
           method.linearize(at, z, step.t, step.k);
         const bool tangent_is_new = is_outdated;

@@ -332,6 +332,36 @@ class Refused(TestCase):
         stiffer = {**scene, "Material 2/Young's modulus": 1e13}
         self.refused("forces miss the loads", scene="tower", text="", **stiffer)
 
+    def test_pulled_off_its_foundation(self):
+        """What could hold the body is beyond any strain: a foundation far above,
+        which a force along the lower one would have to press it against."""
+        sections = {
+            "Geometry/Arguments": "2, 2 : 0, 0 : 1, 0.5 : true",
+            "Material/Young's modulus": 1.338,
+            "Material/Poisson's ratio": 0.499,
+            "Material/Volumetric integration": "full",
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Pressure": "-0.02084*sqrt(1 + y*y)*0.5*(1 - cos(4*pi*t))",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": 1,
+            "Boundary 2/Foundation displacement": "0.002759*t",
+            "Boundary 2/Foundation motion":
+                "0.006722*if(x > 0.5, 0.2, 1)*(1 - exp(-5*t)); -0.09702*abs(sin(7*t))",
+            "Boundary 3/Role": "contact",
+            "Boundary 3/Contact law": "normal compliance",
+            "Boundary 3/Compliance": 9.244,
+            "Boundary 3/Friction law": "tresca",
+            "Boundary 3/Friction bound": "0.00109*(y < 0.3)",
+            "Boundary 3/Gap": 52.68,
+            "Error control/Error bar": "false",
+            "Solver/Contact tolerance": 1e-3,
+            "Time/Phases": "1: 12",
+        }
+        self.refused("times the size of the body", scene="pulled", text="", **sections)
+
     def test_negative_viscosity(self):
         self.refused("Viscosity", **{"Material/maxwell/Viscosity": -0.5})
 

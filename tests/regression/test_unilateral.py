@@ -330,6 +330,42 @@ class Held(TestCase):
                         relative=1e-6,
                     )
 
+    def test_soft_bed_that_moves(self):
+        """A slab lies seven thousand times its length deep in its bed (drawn by
+        contrib/fuzz): rounding of that way makes no forces in the slab."""
+        bed = {
+            "Geometry/Arguments": "2, 1 : 0, 0 : 1, 0.141 : true",
+            "Geometry/Boundary ids": "if(id == 3 && x > 0.5, 7, id)",
+            "Material/Young's modulus": 0.7094,
+            "Material/Poisson's ratio": -0.5,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 5.416,
+            "Boundary 0/Role": "symmetry",
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Traction": "-2.895e-06; 0",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Friction law": "none",
+            "Boundary 2/Contact law": "normal compliance",
+            "Boundary 2/Compliance": "1.539e-08*(1 + x^2)",
+            "Boundary 2/Gap": "7.04e-06*cos(7*x) - 0.0001269*sin(20*t)",
+            "Boundary 3/Role": "free",
+            "Boundary 7/Role": "traction",
+            "Boundary 7/Traction": "0; -0.0001106",
+            "Initial state/Equilibrate": "true",
+            "Loads/Body force": "0; -0.0006672",
+            "Time/Phases": "0.5: 1, 1.5: 5, 1.75: 8",
+            "Time/Scheme": "Heun",
+            "Solver/Linear solver": "direct",
+            "Solver/Contact tolerance": 1e-8,
+        }
+        result = run("bed", bed, text="")
+        self.assertLess(result["contact_iterations"].max(), 20)
+        self.assertClose(
+            result["contact_force_y"],
+            np.full(15, -0.0006672 * 0.141 - 0.0001106 / 2),
+            relative=1e-6,
+        )
+
     def test_more_friction_than_the_pressure_before_allows(self):
         """The push of each step is held by the pressure of that step alone."""
         for steps in (2, 3):

@@ -5,6 +5,7 @@
 #include "body.h"
 #include "folder.h"
 #include "refusals.h"
+#include <viscoplastic_contact/base/heartbeat.h>
 #include <viscoplastic_contact/base/mpi_singleton.h>
 #include <viscoplastic_contact/base/progress.h>
 #include <viscoplastic_contact/run/command_line.h>
@@ -215,6 +216,59 @@ namespace
       return step;
     });
     EXPECT_LE(meshes.size(), 402u);
+  }
+
+
+
+  /// What a heartbeat that waits for @p seconds says of a step.
+  std::string
+  beats_of_step(const double seconds, const bool is_quiet = false)
+  {
+    const Folder      folder;
+    const std::string log = (folder.path / "log").string();
+    {
+      Console         console(MPI_COMM_SELF, true, is_quiet ? "" : log);
+      const Heartbeat heartbeat(console, seconds);
+      Heartbeat::begin_step(3, 0.25);
+      for (unsigned int i = 0; i < 4; ++i)
+        Heartbeat::count(i < 2 ? Loop::contact : Loop::linear);
+    }
+    Heartbeat::count(Loop::linear); // of no run
+    std::ifstream      file(log);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+
+
+  TEST(Progress, LongStepsSayWhereTheyAre)
+  {
+    EXPECT_EQ(beats_of_step(10.), "");
+    EXPECT_EQ(beats_of_step(0., /* is_quiet = */ true), "");
+    const std::string text = beats_of_step(0.);
+    EXPECT_EQ(text.rfind("Still at step 3 (t = 0.25): 1 contact iterations", 0),
+              0u)
+      << text;
+    EXPECT_NE(text.find("2 contact, 2 linear iterations  elapsed 0 s"),
+              std::string::npos)
+      << text;
+  }
+
+
+
+  TEST(Progress, SilenceOfManyShortStepsIsBroken)
+  {
+    const Folder      folder;
+    const std::string log = (folder.path / "log").string();
+    Console           console(MPI_COMM_SELF, true, log);
+    EXPECT_FALSE(console.is_silent_for(10.));
+    EXPECT_TRUE(console.is_silent_for(0.));
+    // In long runs it takes a hundredth of them.
+    while (!(console.age() > 0.01))
+      ;
+    console.stream() << "a line" << std::endl;
+    EXPECT_FALSE(console.is_silent_for(1e-9));
   }
 
 

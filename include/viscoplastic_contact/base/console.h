@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <chrono>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -68,6 +69,23 @@ namespace Viscoplastic
       return verbose;
     }
 
+    /// Whether anybody gets to see what is said on this rank.
+    bool
+    is_heard() const
+    {
+      return speaks || log_file.is_open();
+    }
+
+    /// Seconds since the beginning.
+    double
+    age() const;
+
+    /// Whether nothing has been said for @p seconds, or for a hundredth of the
+    /// time since the beginning if that is longer, so that long runs do not
+    /// flood.
+    bool
+    is_silent_for(const double seconds) const;
+
     /// Columns of the terminal.
     unsigned int
     width() const;
@@ -107,6 +125,8 @@ namespace Viscoplastic
       Console &console;
     };
 
+    using Clock = std::chrono::steady_clock;
+
     const bool               speaks;
     const bool               is_terminal;
     const bool               verbose;
@@ -115,6 +135,8 @@ namespace Viscoplastic
     Buffer                   buffer;
     std::ostream             everywhere;
     bool                     status_is_shown = false;
+    const Clock::time_point  beginning       = Clock::now();
+    Clock::time_point        last_text       = beginning;
     std::vector<std::string> all_remarks;
   };
 

@@ -109,8 +109,9 @@ namespace Viscoplastic
    * Tells how a run proceeds. A terminal shows the present step in a line that
    * changes. Otherwise, and in the log, steps are lines: of 200 equal parts of
    * the run each has at most one, and another one if the mesh changes or slip
-   * begins or ends in it. Lines tell how many steps have been left out before
-   * them. statistics.csv has all steps.
+   * begins or ends in it; after a long silence the next step has one, too.
+   * Lines tell how many steps have been left out before them. statistics.csv
+   * has all steps.
    */
   class Progress
   {
@@ -132,6 +133,9 @@ namespace Viscoplastic
 
   private:
     static constexpr unsigned int max_lines = 200;
+    /// In seconds, less than what a Heartbeat waits for: of short steps, lines
+    /// of their own tell more.
+    static constexpr double long_silence = 8.;
 
     /// Whether a step other than the last one gets a line; @p done is the part
     /// of the run that has been made.

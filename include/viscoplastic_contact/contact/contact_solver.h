@@ -56,6 +56,15 @@ namespace Viscoplastic
   };
 
 
+
+  /// On all ranks: the iteration with Coulomb's law has not converged.
+  class NoCoulombSolution : public StandardExceptions::ExcMessage
+  {
+    using StandardExceptions::ExcMessage::ExcMessage;
+  };
+
+
+
   /**
    * Minimizes the energy of one step,
    *

@@ -145,6 +145,10 @@ namespace Viscoplastic
     std::string
     remark_on_tolerance() const;
 
+    /// The diagonal of the box around the body. Collective.
+    double
+    body_size() const;
+
     /// Warn of what makes the numbers of a step doubtful, once each.
     void
     judge(const AcceptedStep<dim> &step, const StepQuantities<dim> &quantities);

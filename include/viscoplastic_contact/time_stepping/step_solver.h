@@ -104,6 +104,22 @@ namespace Viscoplastic
       const Vector<double>    &foundation_step; // on the face
     };
 
+    /// solve() with the pressure of the step itself in Coulomb's law, or with
+    /// given bounds, by solves with given bounds.
+    ContactReport
+    find_fixed_point(const StepProblem<dim>  &problem,
+                     const DistributedVector &right_side,
+                     const double             tolerance,
+                     DistributedVector       &u,
+                     ContactState            &contact);
+
+    /// By how much rounding at the solution @p u may change the sum of the
+    /// bounds that its pressures make. Collective.
+    double
+    rounding_of_bounds(const StepProblem<dim>  &problem,
+                       const DistributedVector &right_side,
+                       DistributedVector       &u);
+
     /// solve() with Coulomb's law of the pressure of the step itself, by
     /// Newton's method. Where its linear systems make it doubtful that there is
     /// one solution, other starts are tried, and the report says so.

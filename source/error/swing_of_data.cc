@@ -45,6 +45,49 @@ namespace Viscoplastic
 
 
 
+    template <int dim>
+    bool
+    displacements_depend_on_time(const Scene<dim> &scene)
+    {
+      const auto varies = [](const auto &datum) {
+        return datum && datum->depends_on_time();
+      };
+      return std::any_of(
+        scene.boundary.begin(), scene.boundary.end(), [&](const auto &pair) {
+          const BoundaryCondition<dim> &condition = pair.second;
+          return std::any_of(condition.displacement.begin(),
+                             condition.displacement.end(),
+                             varies) ||
+                 (condition.constrains() &&
+                  (varies(condition.foundation_displacement) ||
+                   (condition.is_glued() && condition.foundation_motion)));
+        });
+    }
+
+
+
+    /// Call @p add for each owned node with how far @p now is beyond() the
+    /// others there, and with its square.
+    template <int dim, typename Add>
+    void
+    for_each_node(const DistributedVector &before,
+                  const DistributedVector &now,
+                  const DistributedVector &after,
+                  const Add               &add)
+    {
+      const double *left = before.begin(), *value = now.begin(),
+                   *right = after.begin();
+      for (unsigned int i = 0; i < now.locally_owned_size(); i += dim)
+        {
+          double square = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            square += Utilities::fixed_power<2>(value[i + d]);
+          add(beyond(value + i, left + i, right + i, dim), square);
+        }
+    }
+
+
+
     /// (int E^-1 sigma : sigma)^{1/2}.
     template <int dim>
     double
@@ -79,10 +122,14 @@ namespace Viscoplastic
                 const EvaluatedState<dim> &accepted,
                 const EvaluatedState<dim> &end)
   {
-    const bool slips       = d.slipping_face() != nullptr,
-               varies      = loads_depend_on_time(d.scene()),
-               bounds_vary = slips && d.face->bounds_depend_on_time();
-    if ((!slips && !d.scene().has_viscosity()) || (!varies && !bounds_vary))
+    const AdmissibleSpace<dim> &space = d.space;
+    const bool                  slips = d.slipping_face() != nullptr,
+               varies                 = loads_depend_on_time(d.scene()),
+               bounds_vary = slips && d.face->bounds_depend_on_time(),
+               moves       = displacements_depend_on_time(d.scene()),
+               slides      = slips && d.scene().has_moving_foundation();
+    if ((!slips && !d.scene().has_viscosity()) ||
+        !(varies || bounds_vary || moves || slides))
       return {};
     const double              t_old = accepted.state.t, t = end.state.t;
     const ContactState       &contact = accepted.state.contact;
@@ -96,54 +143,121 @@ namespace Viscoplastic
       d.face->add_computed_bounds(time, contact, bounds, rates);
       return bounds;
     };
-    std::vector<double> bounds_before, bounds_after;
+    const auto prescribed_at = [&](const double time) {
+      DistributedVector values = space.owned_vector();
+      space.set_prescribed(time, values);
+      return values;
+    };
+    std::vector<double>       bounds_before, bounds_after;
+    DistributedVector         prescribed_before, prescribed_after;
+    std::vector<Tensor<1, 2>> sliding;
     if (bounds_vary)
       {
         bounds_before = bounds_at(t_old);
         bounds_after  = bounds_at(t);
       }
+    if (moves)
+      {
+        prescribed_before = prescribed_at(t_old);
+        prescribed_after  = prescribed_at(t);
+      }
+    if (slides)
+      sliding = d.face->foundation_step(t_old, t);
     const DistributedVector &before = accepted.forces.load.values,
                             &after  = end.forces.load.values;
-    double largest = 0., forces = end.forces.internal.norm_sqr();
+    // distribute_nodes() numbers the components of a node one after the other.
+    Assert(before.locally_owned_size() % dim == 0, ExcInternalError());
+    double largest = 0., forces = end.forces.internal.norm_sqr(), motion = 0.,
+           work = 0.;
     for (const double part : {0.25, 0.5, 0.75})
       {
         const double        time = t_old + part * (t - t_old);
-        std::vector<double> sums(3, 0.);
+        std::vector<double> sums(4, 0.);
+        double              distance = 0.;
         if (varies)
           {
             const Load<dim> load = d.loads.assemble(time);
-            const double   *now = load.values.begin(), *left = before.begin(),
-                         *right = after.begin();
-            // Node by node.
-            for (unsigned int i = 0; i < before.locally_owned_size(); i += dim)
-              {
-                sums[0] += Utilities::fixed_power<2>(
-                  beyond(now + i, left + i, right + i, dim));
-                for (unsigned int d = 0; d < dim; ++d)
-                  sums[1] += Utilities::fixed_power<2>(now[i + d]);
-              }
+            for_each_node<dim>(before,
+                               load.values,
+                               after,
+                               [&](const double distance, const double square) {
+                                 sums[0] += distance * distance;
+                                 sums[1] += square;
+                               });
           }
         if (bounds_vary)
           {
             const std::vector<double> now = bounds_at(time);
             for (unsigned int p = 0; p < contact.n_points(); ++p)
-              if (!d.face->layout().points[p].is_obstacle)
-                sums[2] += Utilities::fixed_power<2>(
-                  beyond(&now[p], &bounds_before[p], &bounds_after[p], 1));
+              {
+                const double of_point =
+                  beyond(&now[p], &bounds_before[p], &bounds_after[p], 1);
+                // Of an obstacle it is a gap.
+                if (d.face->layout().points[p].is_obstacle)
+                  distance = std::max(distance, of_point);
+                else
+                  sums[2] += of_point * of_point;
+              }
           }
-        Utilities::MPI::sum(sums, d.space.communicator, sums);
+        if (moves)
+          for_each_node<dim>(prescribed_before,
+                             prescribed_at(time),
+                             prescribed_after,
+                             [&](const double of_node, const double) {
+                               distance = std::max(distance, of_node);
+                             });
+        if (slides)
+          {
+            const std::vector<Tensor<1, 2>> now =
+              d.face->foundation_step(t_old, time);
+            const Tensor<1, 2> start;
+            for (unsigned int p = 0; p < now.size(); ++p)
+              {
+                const double of_point =
+                  beyond(&now[p][0], &start[0], &sliding[p][0], 2);
+                distance = std::max(distance, of_point);
+                sums[3] += end.state.contact.bound[p] * of_point;
+              }
+          }
+        Utilities::MPI::sum(sums, space.communicator, sums);
         largest = std::max(largest, sums[0] + sums[2]);
         forces  = std::max(forces, sums[1]);
+        motion  = std::max(motion, distance);
+        work    = std::max(work, sums[3]);
       }
-    // Below this it is rounding.
-    if (!(largest > 1e-20 * forces))
-      return {};
+    motion = Utilities::MPI::max(motion, space.communicator);
     const double remembered =
       slips     ? 1. :
       !end.rate ? 1. :
                   std::min(1., end.state.k * end.rate->relaxation_rate);
-    const double share = remembered * std::sqrt(largest / forces);
-    return {share, share * stress_norm(d.stress_space, end.state)};
+    Swing swing;
+    // Below this it is rounding.
+    if (largest > 1e-20 * forces)
+      {
+        swing.share = remembered * std::sqrt(largest / forces);
+        swing.energy_norm =
+          swing.share * stress_norm(d.stress_space, end.state);
+      }
+    const double size =
+      std::max(accepted.forces.u.linfty_norm(), end.forces.u.linfty_norm());
+    if (motion > 1e-10 * size)
+      {
+        // As stiff as the body is against its own displacement; and friction
+        // takes at most its work, rho on the way there and back.
+        const double of_friction = std::sqrt(2. * work);
+        double       share = 1., energy_norm = of_friction;
+        if (size > 0.)
+          {
+            share = remembered * motion / size;
+            energy_norm =
+              share * std::sqrt(2. * std::max(0., end.forces.strain_energy));
+            if (slides && !moves && !bounds_vary)
+              energy_norm = std::min(energy_norm, of_friction);
+          }
+        swing.share       = std::hypot(swing.share, share);
+        swing.energy_norm = std::hypot(swing.energy_norm, energy_norm);
+      }
+    return swing;
   }
 
 

@@ -44,6 +44,12 @@ namespace Viscoplastic
     constexpr double least_cancellation = 0.1, least_rest = 0.05;
     /// The part of what is left that a new mesh may take in its first step.
     constexpr double most_of_new_mesh = 0.15;
+    /// The part of it that a step may use for what happens at some times only,
+    /// whatever it covers of the remaining time: a body that slows down asks
+    /// for accuracy then and not in between. Bounds of errors in slip fall with
+    /// the first power of the step size, as that part of the time does, so that
+    /// no step would be short enough.
+    constexpr double most_of_event = 0.01;
     /// Step sizes that are chosen by the error are fractions 2^(-i/n) of the
     /// whole time, so that what solvers leave of a solution does not choose
     /// others, which differ the more from step to step.
@@ -337,8 +343,12 @@ namespace Viscoplastic
     double     allowed     = allowed_error(step, errors, new_size);
     if (is_repeated)
       allowed = std::max(allowed, most_of_new_mesh * (all - errors.before));
-    const double ratio =
-      errors.indicator > 0. ? errors.indicator / allowed : 0.;
+    const double of_events =
+      std::max(allowed, most_of_event * (all - errors.before));
+    const double ratio = errors.indicator > 0. ?
+                           (errors.indicator - errors.of_events) / allowed +
+                             errors.of_events / of_events :
+                           0.;
     const double least = smallest(step.t_old) * (1. + 1e-9);
     const auto  &phase = schedule.phase_at(step.t_old);
     const double event_gap =

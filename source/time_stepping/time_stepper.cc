@@ -36,6 +36,24 @@ namespace Viscoplastic
           throw StepFailure(n, t, reason_of_current_exception());
         }
     }
+
+
+
+    /// Which part of the work of friction in a step is due to bounds that
+    /// change in it, since the work is that of the bounds at the end.
+    /// Collective.
+    double
+    work_of_changed_bounds(const ContactLayout &face,
+                           const ContactState  &before,
+                           const ContactState  &after)
+    {
+      double work = 0.;
+      for (unsigned int p = 0; p < after.n_points(); ++p)
+        if (!face.points[p].is_obstacle && !after.sticks[p])
+          work +=
+            0.5 * (after.bound[p] - before.bound[p]) * after.slip[p].norm();
+      return std::abs(face.sum(work));
+    }
   } // namespace
 
 
@@ -394,7 +412,12 @@ namespace Viscoplastic
                                &before   = accepted.errors.quantity;
         errors.indicator *= quantity.dual_norm;
         if (moves)
-          errors.indicator += quantity.friction_indicator;
+          errors.of_events = quantity.friction_indicator;
+        if (scene.quantity->is_sum() && discretization.face)
+          errors.of_events +=
+            work_of_changed_bounds(discretization.face->layout(),
+                                   accepted.state.contact,
+                                   state.contact);
         // The body may move on while the quantity hardly changes, as after a
         // change of the mesh.
         const double share =
@@ -405,7 +428,8 @@ namespace Viscoplastic
         errors.before = before.time + before.friction;
       }
     else if (moves)
-      errors.indicator += estimate.friction - accepted.errors.friction;
+      errors.of_events = estimate.friction - accepted.errors.friction;
+    errors.indicator += errors.of_events;
     if (!std::isfinite(errors.indicator + errors.change + errors.size))
       throw StepFailure(state.n, state.t, "the solution is not finite.");
     return errors;

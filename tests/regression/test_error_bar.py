@@ -254,22 +254,29 @@ class Estimate(TestCase):
 
     def test_data_that_swing_within_steps(self):
         """Equal at the ends of all steps, or rising all along them."""
-        for bound, least, most in (
-            ("0.03*(1 + 0.5*sin(16*pi*t))", 0.1, 1),
-            ("0.03*(1 + 0.5*t)", 0, 0),
+        held = {"Boundary 3/Role": "displacement"}
+        for entry, swinging, rising, more in (
+            ("2/Friction bound", "0.03*(1 + 0.5*{})", "0.03*(1 + 0.5*t)", {}),
+            ("2/Foundation motion", "0.1*({} + t); 0", "0.1*t; 0", {}),
+            ("3/Displacement", "0.1*({} + t); 0", "0.1*t; 0", held),
         ):
-            result = run(
-                "slab",
-                {
-                    **SLAB,
-                    "Material/Law": "elastic",
-                    "Boundary 2/Friction bound": bound,
-                },
-            )
-            share = result["estimate_time"][1:9] / result["energy_norm"].max()
-            with self.subTest(bound=bound):
-                self.assertGreaterEqual(share[-1], least)
-                self.assertLessEqual(share[-1], most)
+            for value, least, most in (
+                (swinging.format("sin(16*pi*t)"), 0.1, 2),
+                (rising, 0, 0),
+            ):
+                result = run(
+                    "slab",
+                    {
+                        **SLAB,
+                        **more,
+                        "Material/Law": "elastic",
+                        f"Boundary {entry}": value,
+                    },
+                )
+                share = result["estimate_time"][1:9] / result["energy_norm"].max()
+                with self.subTest(entry=entry, value=value):
+                    self.assertGreaterEqual(share[-1], least)
+                    self.assertLessEqual(share[-1], most)
 
     def test_elastic_scene_has_no_time_error(self):
         result = run("elastic_frictionless")

@@ -226,6 +226,26 @@ class Kept(TestCase):
         self.assertClose(result["friction_force_x"][-1], fine[-1], 0.02)
         self.assertIn("has been kept", result.stdout)
 
+    def test_work_under_a_bound_that_grows(self):
+        """Bounds that grow within the first steps are all of the error: once the
+        budget is used up, later steps cannot be short enough."""
+        scene = {
+            **COARSE_SLAB,
+            "Geometry/Arguments": "8, 8 : 0, 0 : 1, 1 : true",
+            "Material/Law": "elastic",
+            "Boundary 0/Traction": "0.2*sin(3*t); 0",
+            "Boundary 2/Friction bound": "0.08*min(2*t, 1)",
+            "Boundary 3/Displacement": "0.2*sin(4*pi*t); 0",
+            "Boundary 3/Role": "displacement",
+            "Time/Phases": "0.5: 4, 1.5: 4",
+        }
+        result = run("slab", of("friction_dissipation", 0.03, **scene))
+        fine = {**scene, "Geometry/Global refinements": 1, "Time/Phases": "1.5: 900"}
+        fine = run("slab", fine)["friction_dissipation"][-1]
+        self.assertClose(result["friction_dissipation"][-1], fine, 0.03)
+        self.assertIn("has been kept", result.stdout)
+        self.assertLess(len(result["t"]), 250)
+
     def test_slip_that_turns_on_new_meshes(self):
         """Neither what the body does on a new mesh to come into equilibrium nor the
         energy norm of turns times that of a singular dual solution asks for steps."""

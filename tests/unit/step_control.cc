@@ -317,6 +317,30 @@ namespace
 
 
 
+  TEST(StepControl, WhatHappensAtSomeTimesOnlyMayUseMore)
+  {
+    // Between 0.3 and 0.4 of 10 the bound of an error in slip grows like k, as
+    // what a step may use does that covers k of the remaining time.
+    const auto slipped = [](const double t) {
+      return 0.2 * std::clamp(t - 0.3, 0., 0.1);
+    };
+    const TimeSchedule schedule("10: 10");
+    StepControl control({}, StiffnessPolicy::refuse, schedule, 2, 0., 0.1);
+    control.expect_size(1.);
+    const auto done = steps(control, 10., [&](const TimeStep &step) {
+      StepErrors errors;
+      errors.of_events = errors.indicator =
+        slipped(step.t) - slipped(step.t_old);
+      errors.size   = 1.;
+      errors.before = slipped(step.t_old);
+      return errors;
+    });
+    EXPECT_EQ(control.counts().unresolved, 0u);
+    EXPECT_LT(done.size() + control.counts().rejected, 80u);
+  }
+
+
+
   TEST(StepControl, AJumpIsPassedWithTheSmallestStep)
   {
     // An error at t = 0.31 that no step size reduces.

@@ -9,20 +9,23 @@ namespace Viscoplastic
   /// What data do within a step and do not show at its ends.
   struct Swing
   {
-    /// As a part of the forces of the body; times the norm of its stress.
+    /// As a part of the forces or of the displacement of the body; and in the
+    /// energy norm.
     double share = 0., energy_norm = 0.;
   };
 
   /**
-   * How far loads and friction bounds are, at the quarters of a step, from all
-   * that is between their values at its ends. Points that slip meanwhile
-   * remember it, and a body that creeps the part that relaxes in the step.
-   * Bounds are those of the pressure at the beginning.
+   * How far data are, at the quarters of a step, from all that is between their
+   * values at its ends. Points that slip meanwhile remember it, and a body that
+   * creeps the part that relaxes in the step. Loads and friction bounds, those
+   * of the pressure at the beginning, count as a part of the forces of the
+   * body; prescribed displacements, gaps and motions of foundations as a part
+   * of its largest displacement, motions with the work of friction on them at
+   * most.
    *
    * Zero, and with data that do not depend on time for nothing, where each
-   * datum rises or falls all along the step and no force turns by more than
+   * datum rises or falls all along the step and no vector turns by more than
    * half a circle; of second order where a datum turns back.
-   * Prescribed displacements and the motion of foundations are not looked at.
    * Collective.
    */
   template <int dim>

@@ -41,6 +41,9 @@ namespace Viscoplastic
     double change = 0., size = 0.;
     /// What earlier steps have left of the error of the time integration.
     double before = 0.;
+    /// The part of the indicator that comes at some times only: slip that comes
+    /// to rest or turns, bounds that change, data that swing.
+    double of_events = 0.;
   };
 
 

@@ -203,10 +203,10 @@ namespace Viscoplastic
                                       const DistributedVector &right_side,
                                       DistributedVector       &u)
   {
-    bulk_solver->begin(right_side, u);
-    const ContactFace<dim>   &face     = *discretization.face;
-    const ContactLayout      &layout   = face.layout();
-    const double              rounding = bulk_solver->rounding_of_residual();
+    const ContactFace<dim> &face   = *discretization.face;
+    const ContactLayout    &layout = face.layout();
+    const double            rounding =
+      bulk_solver->begin(right_side, u)->rounding_of_residual();
     std::vector<Tensor<2, 3>> diagonal;
     for (unsigned int node = 0; node < layout.n_nodes(); ++node)
       diagonal.push_back(bulk_solver->face_matrix().diagonal_block(node));

@@ -966,6 +966,44 @@ class Refused(TestCase):
             in_unit(1, **converged), "Rounding alone makes 0.00957", "less flat"
         )
 
+    def test_gone_too_far(self):
+        """A slab goes along a soft floor without end: it ended with code 0 and forces
+        that were rounding."""
+        slab = {
+            "Geometry/Arguments": "2, 1 : 0, 0 : 1, 0.154 : true",
+            "Geometry/Global refinements": 1,
+            "Geometry/Boundary refinements": "0: 1",
+            "Geometry/Boundary ids": "if(id == 3 && x > 0.5, 7, id)",
+            "Material/Young's modulus": 0.7543,
+            "Material/Poisson's ratio": 0.4999,
+            "Material/Law": "norton",
+            "Material/norton/Stress cap": 0.001003,
+            "Boundary 0/Role": "free",
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Traction": "1.903e-05*t; 0",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "normal compliance",
+            "Boundary 2/Compliance": "2718*(1 + x^2)",
+            "Boundary 2/Compliance exponent": 1.5,
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": "abs(x - 0.4)",
+            "Boundary 2/Gap": "0.0002983*x^2",
+            "Boundary 3/Role": "free",
+            "Boundary 7/Role": "traction",
+            "Boundary 7/Traction": "0; 0.000202*t",
+            "Loads/Body force": "0; -0.006558*t",
+            "Time/Phases": "0.25: 5, 0.5: 8, 0.75: 4",
+            "Step control/Tolerance": 0.3,
+            "Step control/Event tolerance": 0.5,
+        }
+        result = run("slab", slab, text="", check=False)
+        self.assertNotEqual(result.returncode, 0)
+        # which of them, rounding decides
+        self.assertRegex(
+            " ".join(result.stderr.split()),
+            "the body has gone too far|contact hardly holds it",
+        )
+
     def test_foundations(self):
         normal = "Boundary 2/Foundation normal"
         self.refused({normal: "0, 1"}, "points into the body")

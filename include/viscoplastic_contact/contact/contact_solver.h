@@ -132,8 +132,6 @@ namespace Viscoplastic
           const CoulombLaw    *law = nullptr) const;
 
   private:
-    class Iteration;
-
     const unsigned int max_iterations;
   };
 } // namespace Viscoplastic

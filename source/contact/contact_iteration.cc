@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/base/heartbeat.h>
+#include <viscoplastic_contact/contact/contact_iteration.h>
+#include <viscoplastic_contact/contact/kink_search.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The relative tolerance of linear solves as long as the sets change.
+    constexpr double loose_tolerance = 0.05;
+    /// A correction that stops at reversing slips is taken as it is if it goes
+    /// that far; otherwise something better is tried.
+    constexpr double least_limited_step = 0.5;
+    /// The least decrease of J in a correction, relative to the duality gap.
+    constexpr double least_descent = 0.1;
+    /// So many corrections may begin with nodes where pieces meet that have not
+    /// settled: that finds sets; later it takes the node from a solution.
+    constexpr unsigned int unsettled_corrections = 5;
+
+
+
+    /// Gauss-Seidel; more sweeps when the corrections do not finish.
+    unsigned int
+    sweeps_of_iteration(const unsigned int iteration)
+    {
+      return iteration < 10 ? 1 : iteration < 30 ? 5 : 50;
+    }
+
+
+
+    /// Update slips from the increment; a slipping point that does not move
+    /// sticks.
+    void
+    update_slips(const ContactLayout  &face,
+                 const Vector<double> &x,
+                 ContactState         &state)
+    {
+      for (unsigned int p = 0; p < face.points.size(); ++p)
+        {
+          const ContactLayout::Point &point = face.points[p];
+          state.slip[p]                     = Tensor<1, 2>();
+          if (!state.sticks[p] || point.is_obstacle)
+            state.slip[p] =
+              state.slip_with(point, p, face.node_values(x, point.node));
+          if (point.gives_way())
+            state.sticks[p] = state.penetration(p) > 0.;
+          if (!point.is_obstacle && state.bound[p] > 0. &&
+              state.slip[p].norm() == 0.)
+            state.sticks[p] = true;
+        }
+    }
+
+
+
+    /// Bring points to rest whose slip is nothing but rounding, an error of the
+    /// size of @p rounding in the energy norm: its direction means nothing, but
+    /// would be that of a force of the size of the bound. @p change takes part.
+    void
+    stop_rounding(const ContactLayout             &face,
+                  const std::vector<Tensor<2, 3>> &diagonal,
+                  const double                     rounding,
+                  Vector<double>                  &x,
+                  Vector<double>                  &change,
+                  ContactState                    &state)
+    {
+      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+        {
+          const unsigned int p = face.first_point[node];
+          if (!face.has_plain_friction(node) || state.sticks[p] ||
+              state.bound[p] == 0.)
+            continue;
+          const Tensor<1, 3> here = face.node_values(x, node);
+          const Tensor<1, 3> part =
+            motion_with_slip(face.points[p],
+                             state.slip_with(face.points[p], p, here));
+          if (part * (diagonal[node] * part) >
+              Utilities::fixed_power<2>(rounding))
+            continue;
+          face.set_node_values(here - part, node, x);
+          face.set_node_values(face.node_values(change, node) - part,
+                               node,
+                               change);
+          state.sticks[p] = true;
+        }
+    }
+  } // namespace
+
+
+
+  ContactIteration::ContactIteration(ContactSolve        &bulk,
+                                     const ContactLayout &face,
+                                     const double         tolerance,
+                                     Vector<double>      &x,
+                                     ContactState        &state,
+                                     const CoulombLaw    *law,
+                                     const bool           is_near)
+    : bulk(bulk)
+    , face(face)
+    , tolerance(tolerance)
+    , x(x)
+    , state(state)
+    , law(law)
+    , matrix(bulk.face_matrix())
+    , diagonal(face.n_nodes())
+    , inverse_diagonal(face.n_nodes())
+    , rounding(face.n_nodes())
+    , residual(face.n_dofs())
+    , force(face.n_dofs())
+    , w(face.n_dofs())
+    , first_sets(state.sticks)
+  {
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      {
+        diagonal[node]         = matrix.diagonal_block(node);
+        inverse_diagonal[node] = invert(diagonal[node]);
+        rounding[node]         = 4. * std::numeric_limits<double>::epsilon() *
+                         diagonal[node].norm() * inverse_diagonal[node].norm();
+      }
+    if (law != nullptr)
+      bounds.emplace(*law, face, inverse_diagonal);
+    if (bounds && is_near)
+      bounds->begin_near_solution();
+    report.tolerance = tolerance;
+  }
+
+
+  void
+  ContactIteration::iterate(const unsigned int max_iterations)
+  {
+    for (unsigned int iteration = 0;; ++iteration)
+      {
+        Heartbeat::count(Loop::contact);
+        relax(sweeps_of_iteration(iteration));
+        if (is_solved())
+          break;
+        if (iteration == max_iterations)
+          give_up();
+        if (bounds && bounds->damp(error, report.iterations, state))
+          continue;
+        correct();
+        const double energy_change = search();
+        ++report.iterations;
+        // Gauss-Seidel with the bulk at rest and corrections that a kink of J
+        // stops may jam. Then the bulk follows the face: with (1) a descent
+        // over two blocks, which converges since only the face has kinks.
+        if (!(-energy_change > least_descent * report.duality_gap))
+          follow();
+      }
+  }
+
+
+  ContactReport
+  ContactIteration::solve(const unsigned int max_iterations)
+  {
+    iterate(max_iterations);
+    const Timer timer;
+    report.linear_iterations += bulk.finish();
+    if (bounds)
+      {
+        report.bound_iterations = bounds->n_moves();
+        report.contraction      = bounds->largest_loss();
+        report.doubt            = bounds->doubt();
+      }
+    report.plain_seconds = plain_seconds(timer.wall_time());
+    return report;
+  }
+
+
+  double
+  ContactIteration::plain_seconds(const double seconds_to_finish) const
+  {
+    if (bulk.is_exact)
+      return seconds_to_finish;
+    return decades > 0. && first_ratio > 1. ?
+             correction_seconds / decades * std::log10(first_ratio / safety) :
+             0.;
+  }
+
+
+  void
+  ContactIteration::relax(const unsigned int n_sweeps)
+  {
+    residual = bulk.face_residual();
+    AssertThrow(!face.any(std::any_of(residual.begin(),
+                                      residual.end(),
+                                      [](const double r) {
+                                        return !std::isfinite(r);
+                                      })),
+                ExcMessage("The contact solver met a residual that is not "
+                           "finite."));
+    const auto    &stages = matrix.stages();
+    Vector<double> change(face.n_dofs());
+    const auto relax_stage = [&](const unsigned int s, const bool backward) {
+      const auto    &nodes = stages[s];
+      Vector<double> change_in_stage(face.n_dofs());
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        relax_node(nodes[backward ? nodes.size() - 1 - i : i], change_in_stage);
+      matrix.subtract_changes_elsewhere(s, change_in_stage, residual);
+      face.add(1., change_in_stage, change);
+    };
+    for (unsigned int sweep = 0; sweep < n_sweeps; ++sweep)
+      {
+        for (unsigned int s = 0; s < stages.size(); ++s)
+          relax_stage(s, false);
+        for (unsigned int s = stages.size(); s-- > 0;)
+          relax_stage(s, true);
+      }
+    // rounding_error is a hundred units of rounding.
+    stop_rounding(
+      face, diagonal, 0.01 * bulk.scale.rounding_error, x, change, state);
+    bulk.move_face(change);
+    residual = bulk.face_residual();
+    update_slips(face, x, state);
+  }
+
+
+  void
+  ContactIteration::relax_node(const unsigned int node, Vector<double> &change)
+  {
+    const auto sets = [&] {
+      unsigned int mask = 0;
+      for (unsigned int p = face.first_point[node];
+           p < face.first_point[node + 1];
+           ++p)
+        mask = 2 * mask + state.sticks[p];
+      return mask;
+    };
+    const unsigned int          old_sets = sets();
+    const Tensor<1, 3>          old      = face.node_values(x, node);
+    const Tensor<1, 3>          r        = face.node_values(residual, node);
+    const Tensor<1, 3>          f        = r + diagonal[node] * old;
+    const Tensor<2, 3>         &inverse  = inverse_diagonal[node];
+    std::optional<Tensor<1, 3>> now;
+    if (!bounds || !bounds->nodes_obey_law())
+      now = Viscoplastic::relax_node(face, node, inverse, f, state);
+    else
+      now = law->relax_node(face,
+                            node,
+                            inverse,
+                            f,
+                            state,
+                            report.iterations >= unsettled_corrections);
+    if (!now)
+      return;
+    const Tensor<1, 3> step = *now - old;
+    // What rounding makes is no step: the bulk would have to follow it. Deep
+    // penetration of soft ground rounds the motions that it is the sum of.
+    double size = old.norm();
+    for (unsigned int p = face.first_point[node];
+         p < face.first_point[node + 1];
+         ++p)
+      if (const ContactLayout::Point &point = face.points[p]; point.gives_way())
+        size = std::max(size, std::abs(state.bound[p]) / point.map[0].norm());
+    if (step.norm() <= rounding[node] * size && sets() == old_sets)
+      return;
+    face.set_node_values(*now, node, x);
+    face.set_node_values(face.node_values(change, node) + step, node, change);
+    matrix.subtract(node, step, residual);
+  }
+
+
+  void
+  ContactIteration::correct()
+  {
+    // Loosely while the sets still change, and as far as needed once they do
+    // not.
+    // From zero, the first solution sets the scale.
+    double reduction =
+      same_sets ? std::clamp(safety * tolerance * size / error,
+                             std::min(safety * tolerance, loose_tolerance),
+                             loose_tolerance) :
+                  loose_tolerance;
+    const Timer timer;
+    report.linear_iterations += bulk.correct(force, reduction, w);
+    correction_seconds += timer.wall_time();
+    decades -= std::log10(reduction);
+    if (bounds && bounds->follow())
+      bounds->predict(bulk, truncation, residual, w, state);
+  }
+
+
+  double
+  ContactIteration::search()
+  {
+    const auto along = [&](const Vector<double> &direction) {
+      return search_along(bulk, face, state, direction);
+    };
+    Vector<double> limited(w);
+    const bool     any_stops = stop_at_kinks(face, state, x, limited);
+    SearchResult   result    = along(limited);
+    if (!any_stops || result.step >= least_limited_step)
+      w = limited;
+    else if (const auto rest = step_from_kinks(bulk,
+                                               face,
+                                               inverse_diagonal,
+                                               residual,
+                                               w,
+                                               loose_tolerance,
+                                               x,
+                                               state))
+      {
+        // When a whole zone reverses, the rest of the body must adapt to its
+        // stop before J descends far.
+        w      = rest->correction;
+        result = rest->search;
+        report.linear_iterations += rest->linear_iterations;
+      }
+    else
+      {
+        // The correction as it is descends, because it solves a positive
+        // definite system with the gradient of J.
+        bulk.set_truncation(truncation);
+        report.linear_iterations += bulk.correct(force, loose_tolerance, w);
+        result = along(w);
+      }
+    bulk.take_step(result.step);
+    face.add(result.step, w, x);
+    return result.energy_change;
+  }
+
+
+  void
+  ContactIteration::follow()
+  {
+    FaceTruncation held;
+    held.projector.resize(face.n_nodes());
+    held.spring.resize(face.n_nodes());
+    bulk.set_truncation(held, /* may_rebuild = */ false);
+    report.linear_iterations += bulk.correct(force, loose_tolerance, w);
+    const ContactSolve::SearchTerms terms = bulk.search_terms(w);
+    if (terms.curvature > 0.)
+      bulk.take_step(terms.slope / terms.curvature);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/contact/contact_iteration.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// What has come to rest may be rounding of the residual or some times as
+    /// much, since rounding of each term counts. More than this part of the
+    /// solution is refused.
+    constexpr double rounding_margin = 10., largest_rounding = 1e-3;
+    /// An error that is this part of its tolerance by the estimate of a
+    /// preconditioner is below the tolerance by any: that takes one whose
+    /// condition number is less than 1e6.
+    constexpr double beyond_doubt = 1e-3;
+    /// Estimates found too low are not taken for more than so many times too
+    /// low: others will be less so.
+    constexpr double largest_misjudgment = 10.;
+
+
+
+    /// Whether all points with friction do the same, stick or slip, and all
+    /// obstacles are touched or none. Collective.
+    bool
+    all_do_the_same(const ContactLayout &face, const ContactState &state)
+    {
+      std::array<bool, 4> any{};
+      for (unsigned int p = 0; p < state.n_points(); ++p)
+        if (face.points[p].is_obstacle)
+          any[state.sticks[p] ? 2 : 3] = true;
+        else if (state.bound[p] > 0.)
+          any[state.sticks[p] ? 0 : 1] = true;
+      for (unsigned int kind = 0; kind < (face.has_obstacles ? 4 : 2); ++kind)
+        any[kind] = face.any(any[kind]);
+      return !(any[0] && any[1]) && !(any[2] && any[3]);
+    }
+  } // namespace
+
+
+
+  bool
+  ContactIteration::is_solved()
+  {
+    const bool follow = bounds && bounds->follow();
+    fit_multipliers(face, residual, state, force, follow ? law : nullptr);
+    if (bounds)
+      bounds->measure(state);
+    FaceTruncation last = std::move(truncation);
+    truncation          = make_truncation(face, state, inverse_diagonal);
+    if (follow)
+      law->tilt(face, state, truncation);
+    // A face that sticks or slips altogether, and whose slip does not turn,
+    // makes a linear problem: unless the first sweep has found otherwise, it
+    // takes no more than a plain solve.
+    same_sets =
+      report.iterations == 0 ?
+        !face.any(state.sticks != first_sets) && all_do_the_same(face, state) &&
+          !truncation.has_springs(face) :
+        truncation.blocks_as(last, face) &&
+          // Obstacles that give way do not block.
+          !(face.has_obstacles && face.any(state.sticks != last_sets));
+    if (face.has_obstacles)
+      last_sets = state.sticks;
+    bulk.set_truncation(truncation);
+    const Certificate certificate = certify(
+      face, residual, diagonal, state, force, bulk.scale.rounding_error);
+    size = std::max(bulk.size(), bulk.scale.rounding_error / tolerance);
+    const double estimate = bulk.dual_norm(certificate.force);
+    error                 = bound(misjudged * estimate, certificate);
+    if (error <= tolerance * size && error > beyond_doubt * tolerance * size)
+      {
+        // Above this, the bound is above the tolerance.
+        const double limit = tolerance * size /
+                             (bounds ? bounds->error_with_bounds(1.) -
+                                         bounds->error_with_bounds(0.) :
+                                       1.);
+        const double confirmed =
+          bulk.confirmed_dual_norm(certificate.force,
+                                   limit,
+                                   report.linear_iterations);
+        error = bound(confirmed, certificate);
+        if (estimate > 0.)
+          misjudged = std::clamp(confirmed / estimate, 1., largest_misjudgment);
+      }
+    AssertThrow(std::isfinite(error),
+                ExcMessage("The contact solver met a value that is not "
+                           "finite."));
+    if (report.relative_error < 0.5 * best_error)
+      {
+        last_gain     = report.iterations;
+        next_question = last_gain + stalled_after;
+      }
+    best_error = std::min(best_error, report.relative_error);
+    if (report.iterations == 0 && size > 0.)
+      first_ratio = error / (tolerance * size);
+    if (error > tolerance * size && !is_rounding(certificate))
+      return false;
+    report.error = error;
+    for (const auto &[point, multiplier] : certificate.replaced)
+      state.multiplier[point] = multiplier;
+    // What presses by rounding does not touch: Coulomb's law would make bounds
+    // of it.
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      if (face.points[p].is_obstacle)
+        {
+          const ContactLayout::Point &point = face.points[p];
+          const double                stiffness =
+            point.map[0] * (diagonal[point.node] * point.map[0]);
+          // Of soft ground, rounding of displacements makes less.
+          const double share =
+            point.gives_way() ?
+              std::min(1.,
+                       point.compliance.slope(state.penetration(p)) /
+                         stiffness) :
+              1.;
+          if (state.multiplier[p][0] <=
+              share * bulk.scale.rounding_error * std::sqrt(stiffness))
+            {
+              state.multiplier[p][0] = 0.;
+              state.sticks[p]        = false;
+            }
+        }
+    return true;
+  }
+
+
+  double
+  ContactIteration::bound(const double       dual_norm,
+                          const Certificate &certificate)
+  {
+    report.duality_gap =
+      0.5 * Utilities::fixed_power<2>(dual_norm) + certificate.defect;
+    const double result =
+      0.5 * (dual_norm + std::sqrt(Utilities::fixed_power<2>(dual_norm) +
+                                   4. * certificate.defect));
+    const double with_bounds =
+      bounds ? bounds->error_with_bounds(result) : result;
+    report.relative_error = size > 0. ? with_bounds / size : 0.;
+    return with_bounds;
+  }
+
+
+  bool
+  ContactIteration::is_rounding(const Certificate &certificate)
+  {
+    if (report.iterations < next_question)
+      return false;
+    next_question += stalled_after;
+    const double rounding = bulk.rounding_of_residual();
+    error =
+      bound(bulk.confirmed_dual_norm(certificate.force,
+                                     std::numeric_limits<double>::infinity(),
+                                     report.linear_iterations),
+            certificate);
+    if (rounding > largest_rounding * size)
+      give_up();
+    if (error > rounding_margin * rounding)
+      return false;
+    // Data are no better known than that.
+    error                     = std::max(error, rounding);
+    report.relative_error     = error / size;
+    bulk.scale.rounding_error = std::max(bulk.scale.rounding_error, error);
+    return true;
+  }
+
+
+  void
+  ContactIteration::give_up()
+  {
+    std::ostringstream message;
+    message << "The active set iteration did not converge in "
+            << report.iterations << " iterations: the relative error bound is "
+            << best_error << " at best, and the tolerance is " << tolerance
+            << " ('Solver/Contact tolerance'); ";
+    if (bounds)
+      AssertThrow(false, NoCoulombSolution(message.str() + bounds->failure()));
+    // Rounding of displacements makes forces of all sizes of it.
+    constexpr double beyond_rounding = 1e13;
+    double           stiffest        = 0.;
+    for (unsigned int p = 0; p < face.points.size(); ++p)
+      if (const ContactLayout::Point &point = face.points[p]; point.gives_way())
+        stiffest = std::max(stiffest,
+                            point.compliance.slope(state.penetration(p)) *
+                              (point.map[0] *
+                               (inverse_diagonal[point.node] * point.map[0])));
+    stiffest = Utilities::MPI::max(stiffest, face.communicator);
+    if (stiffest > beyond_rounding)
+      message << "the foundation is " << stiffest
+              << " times as stiff as the body, which no number resolves: give "
+                 "a smaller 'Compliance', or 'Contact law' = unilateral, its "
+                 "limit.";
+    else if (const double rounding =
+               report.iterations >= last_gain + stalled_after ?
+                 bulk.rounding_of_residual() / size :
+                 0.;
+             // Exact solvers come to rest for no other reason.
+             rounding > 0. && (bulk.is_exact || best_error < 1e3 * rounding))
+      {
+        message << "it has come to rest there, and rounding alone makes "
+                << rounding
+                << " or more of it. Cells that are less flat, stiffness that "
+                   "differs less or Poisson's ratio farther from 1/2 mend that"
+                << (rounding > largest_rounding ? "." :
+                                                  ", or a larger tolerance.");
+      }
+    else
+      message << (bulk.is_exact ? "" :
+                                  "use 'Solver/Linear solver' = direct, on "
+                                  "one rank, ")
+              << "raise 'Solver/Maximal contact iterations' or the tolerance.";
+    AssertThrow(false, ExcMessage(message.str()));
+  }
+} // namespace Viscoplastic

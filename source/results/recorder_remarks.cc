@@ -39,26 +39,33 @@ namespace Viscoplastic
     const double      defect = balance_defect(quantities);
     const std::string time_unit =
       scene.parameters.units.suffix(Quantity::time, dim);
+    constexpr double   lost = 1e-3, far = 1e3;
+    const double       times = quantities.max_displacement / body_size();
+    std::ostringstream loss;
     // Loads that are not rounding, of which rounding loses a part.
     if (const double missing = stable_norm(quantities.sum_of_forces);
-        missing > 1e-3 * std::max(largest_force, quantities.load_size) &&
+        missing > lost * std::max(largest_force, quantities.load_size) &&
         missing < quantities.load_size &&
         missing <= quantities.rounding_of_forces)
+      loss << "forces miss the loads by " << missing / quantities.load_size
+           << " of them";
+    else if (quantities.load_size > 0. && times > far &&
+             step.report.relative_error > lost)
+      loss << "the error is " << step.report.relative_error
+           << " of the solution";
+    if (!loss.str().empty())
       {
-        std::ostringstream text;
-        text << "forces miss the loads by " << missing / quantities.load_size
-             << " of them, which is rounding of displacements";
-        if (const double times = quantities.max_displacement / body_size();
-            times > 1e3)
-          text << " of " << times
+        loss << ", which is rounding of displacements";
+        if (times > far)
+          loss << " of " << times
                << " times the size of the body: contact hardly holds it, or "
                   "not at all. Let the loads press the body onto its "
                   "foundation, or prescribe displacements that hold it.";
         else
-          text << " where the body is stiffest: materials whose stiffness "
+          loss << " where the body is stiffest: materials whose stiffness "
                   "differs by less, or prescribed displacements where it is "
                   "stiff, mend that.";
-        throw StepFailure(step.time_step.n, step.time_step.t, text.str());
+        throw StepFailure(step.time_step.n, step.time_step.t, loss.str());
       }
     // Beside stresses that balance each other the forces may be nothing.
     const bool is_beside_stresses =

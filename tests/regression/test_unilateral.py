@@ -998,11 +998,7 @@ class Refused(TestCase):
         }
         result = run("slab", slab, text="", check=False)
         self.assertNotEqual(result.returncode, 0)
-        # which of them, rounding decides
-        self.assertRegex(
-            " ".join(result.stderr.split()),
-            "the body has gone too far|contact hardly holds it",
-        )
+        self.assertIn("contact hardly holds it", " ".join(result.stderr.split()))
 
     def test_foundations(self):
         normal = "Boundary 2/Foundation normal"

@@ -610,7 +610,6 @@ class Work(TestCase):
             (["Material/Young's modulus=25 GPa*1e6"], "(2.5e+16 Pa in the SI); known"),
             (["Material/Young's modulus=25"], "a strain of about 24 % with"),
             (["Material/Young's modulus=2.5e-4"], "(250 Pa in the SI)"),
-            (["Loads/Body force=0; -22 GPa/m"], "(2.2e+10 N/m^3 in the SI); water"),
         ):
             text = self.program(
                 "--check",

@@ -231,7 +231,11 @@ namespace
       const Heartbeat heartbeat(console, seconds);
       Heartbeat::begin_step(3, 0.25);
       for (unsigned int i = 0; i < 4; ++i)
-        Heartbeat::count(i < 2 ? Loop::contact : Loop::linear);
+        {
+          // Longer than a hundredth of all.
+          std::this_thread::sleep_for(std::chrono::milliseconds(2));
+          Heartbeat::count(i < 2 ? Loop::contact : Loop::linear);
+        }
     }
     Heartbeat::count(Loop::linear); // of no run
     std::ifstream      file(log);

@@ -11,8 +11,10 @@
 #include <viscoplastic_contact/run/command_line.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <map>
+#include <thread>
 
 namespace
 {

@@ -30,6 +30,8 @@ class SolverDemand:
     dofs: int = 0
     face_dofs: int = 0
     first_dofs: int = 0
+    # Whether there is friction on the face.
+    friction: bool = False
 
 
 # As benchmarks/results.md has them, at so many degrees of freedom: (seconds,
@@ -64,7 +66,10 @@ def prefer_direct(demand):
     if demand.face_dofs > 5000 or demand.dofs >= (2000000 if is_2d else 200000):
         return False
     # An exact solution, where it costs next to nothing.
-    if demand.dofs < (2000 if demand.solves < 4 and has_levels(demand) else 20000):
+    is_large_face = demand.friction and demand.face_dofs > 1500
+    if not is_large_face and demand.dofs < (
+        2000 if demand.solves < 4 and has_levels(demand) else 20000
+    ):
         return True
     if has_levels(demand):
         direct, multigrid = (
@@ -105,7 +110,12 @@ def expected_cost(solver, demand):
     least_set_up, least_step = 1e-3, 2.5e-3
     set_up = least_set_up + seconds(mesh)
     if solver == DIRECT:
-        return set_up + seconds(factorization), least_step + seconds(direct)
+        # Some 60 products of a step with friction, limited by memory.
+        products = 1e-7 * demand.face_dofs**2 if demand.friction else 0.0
+        return (
+            set_up + seconds(factorization),
+            least_step + seconds(direct) + products,
+        )
     factor = algebraic
     if solver == GEOMETRIC:
         # Cycles of algebraic multigrid on a large first mesh.

@@ -113,6 +113,13 @@ namespace Viscoplastic
   MeshController<dim>::limits(const Discretization<dim> &discretization) const
   {
     RefinementParameters limits = wanted;
+    // What a coarse mesh does to creep at the beginning of a load, when any
+    // error is small against what comes, stays: no mesh of a run to a tolerance
+    // is coarser than the first one.
+    if (budget != nullptr && scene.has_viscosity())
+      limits.minimal_level =
+        std::max(limits.minimal_level,
+                 scene.parameters.geometry.global_refinements);
     if (limits.memory_budget > 0.)
       limits.cell_budget =
         std::min(limits.cell_budget,

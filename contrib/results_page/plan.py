@@ -230,8 +230,8 @@ LONG_CREEP = {
     "hollow sphere, norton": (
         "verification/hard/norton_cylinder",
         "point0_x",
-        (0.2, 0.05),
-        1,
+        (0.2, 0.1),
+        3,
         {
             **_CYLINDER,
             **_creep(0.001, 4),

@@ -91,21 +91,23 @@ namespace Viscoplastic
                          law);
     typename RecoveryEstimator<dim>::Linearization linearization{
       tangent->at_samples(), k / state.t, {}};
-    std::vector<SymmetricTensor<2, 3>> strains;
+    const StressSpace<dim> &stress_space = discretization.stress_space;
+    const unsigned int      n            = stress_space.n_samples;
+    std::vector<SymmetricTensor<2, 3>> strains(n);
+    std::size_t strained_cell = numbers::invalid_size_type; // whose strains
     if (!tangent->is_constant)
       linearization.remainder = [&, now = discretization.laws.at(state.t)](
                                   const std::size_t            c,
                                   const unsigned int           s,
                                   const SymmetricTensor<2, 3> &e) {
-        const StressSpace<dim> &stress_space = discretization.stress_space;
-        const unsigned int      n            = stress_space.n_samples;
-        const ViscoplasticLaw  *flow         = now.law(c);
+        const ViscoplasticLaw *flow = now.law(c);
         if (flow == nullptr)
           return SymmetricTensor<2, 3>();
-        const Stiffness &stiffness = stress_space.moduli(c);
-        strains.resize(n);
-        stress_space.strains(c, state.u.begin(), strains.data());
-        const SymmetricTensor<2, 3> stress = stiffness.stress(strains[s]) +
+        if (c != strained_cell)
+          stress_space.strains(c, state.u.begin(), strains.data());
+        strained_cell                         = c;
+        const Stiffness            &stiffness = stress_space.moduli(c);
+        const SymmetricTensor<2, 3> stress    = stiffness.stress(strains[s]) +
                                              state.z[c * n + s],
                                     change =
                                       tangent->at_samples()[c * n + s] * e;

@@ -515,7 +515,9 @@ namespace Viscoplastic
             const auto         of_w    = defects(c, w);
             const auto delta_u = dilatations(c, u), delta_w = dilatations(c, w);
             const auto strains =
-              local.strains(cell, local.displacements(cell, w.begin()));
+              law.remainder ?
+                local.strains(cell, local.displacements(cell, w.begin())) :
+                std::array<SymmetricTensor<2, 3>, n_points>();
             for (unsigned int q = 0; q < n_points; ++q)
               {
                 const unsigned int           s = n_samples == 1 ? 0 : q;

@@ -409,10 +409,13 @@ class PointInCreep(TestCase):
 
     def test_power_law(self):
         signed = self.check(**{"Material/norton/Exponent": 5})
-        # measured at the end: 1.3; as if the law was linear, and with the divergence
-        # of a dual solution of a shorter step, 0.44
+        # measured: 1.7, 1.3 and 1.3 (of it 0.06 are errors of the fine mesh); at the end
+        # 0.44 as if the law was linear, and with the divergence of a dual solution of
+        # a shorter step
         self.assertGreater(signed[1:].min(), 0.9)
         self.assertLess(signed[1:].max(), 2)
+        # without what the law takes beyond its tangents 1.13
+        self.assertGreater(signed[-1], 1.2)
 
 
 class Refused(TestCase):

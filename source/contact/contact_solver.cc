@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/contact/contact_iteration.h>
+#include <viscoplastic_contact/contact/contact_solver.h>
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/contact/contact_points.h>
+#include <viscoplastic_contact/contact/contact_report.h>
+#include <viscoplastic_contact/contact/contact_solve.h>
 #include <viscoplastic_contact/contact/coulomb_bounds.h>
+#include <viscoplastic_contact/contact/coulomb_law.h>
 
 #include <limits>
 #include <optional>
@@ -10,8 +13,8 @@
 
 namespace Viscoplastic
 {
-  /// One solve of ContactSolver: what it works on, and the phases of its
-  /// iterations.
+  /// One solve of ContactSolver, which explains the method: what it works on,
+  /// and the phases of its iterations.
   class ContactIteration
   {
   public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/contact/contact_report.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
 #include <viscoplastic_contact/discretization/force_balance.h>
 #include <viscoplastic_contact/discretization/state.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/contact/contact_report.h>
 #include <viscoplastic_contact/discretization/loads.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>

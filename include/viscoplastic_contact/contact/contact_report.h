@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/exceptions.h>
+
+#include <algorithm>
+#include <string>
+
+namespace Viscoplastic
+{
+  /// How a solve with contact went.
+  struct ContactReport
+  {
+    /// Corrections of the active set iteration.
+    unsigned int iterations = 0;
+    /// Linear iterations of all of them.
+    unsigned int linear_iterations = 0;
+    /// Solves for a fixed point of the friction bounds, and the largest factor
+    /// by which one has reduced their change; where bounds are solved for with
+    /// the step, the largest part of its stiffness that slip has lost to the
+    /// change of its own bounds.
+    unsigned int bound_iterations = 0;
+    double       contraction      = 0.;
+    /// What makes it doubtful that the solution is the only one; empty where
+    /// nothing does.
+    std::string doubt;
+    /// Primal minus dual energy, a bound on half the squared energy error.
+    double duality_gap = 0.;
+    /// The bound on the energy error that follows from the duality gap, over
+    /// the energy norm of the solution.
+    double relative_error = 0.;
+    /// The same bound, absolute; without contact that of the linear solver.
+    double error = 0.;
+    /// What rounding leaves of the error, see SolutionScale.
+    double rounding_error = 0.;
+    /// The relative tolerance of the solve; zero where nothing was solved.
+    double tolerance = 0.;
+    /// Wall time of the solve, and what of it the same solve would have taken
+    /// without contact.
+    double seconds = 0., plain_seconds = 0.;
+
+    /// Count an earlier solve of the same step, too.
+    void
+    add_earlier(const ContactReport &earlier)
+    {
+      iterations += earlier.iterations;
+      linear_iterations += earlier.linear_iterations;
+      bound_iterations += earlier.bound_iterations;
+      contraction = std::max(contraction, earlier.contraction);
+      if (doubt.empty())
+        doubt = earlier.doubt;
+      seconds += earlier.seconds;
+      plain_seconds += earlier.plain_seconds;
+    }
+  };
+
+
+
+  /// On all ranks: the iteration with Coulomb's law has not converged.
+  class NoCoulombSolution : public StandardExceptions::ExcMessage
+  {
+    using StandardExceptions::ExcMessage::ExcMessage;
+  };
+} // namespace Viscoplastic

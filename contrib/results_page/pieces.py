@@ -39,8 +39,6 @@ def make(name, runner, images):
         return tables.shortened(name, rows) + stamp(runner, about)
     if name == "tolerance":
         return tolerance(runner)
-    if name == "long_creep":
-        return long_creep(runner)
     if name == "prices":
         return prices(runner)
     return diagram(name, runner, images)
@@ -306,7 +304,7 @@ def long_creep(runner):
             rows.append(
                 tables.long_creep_row(name, way, quantity, columns, finest)
             )
-    return tables.table(tables.LONG_CREEP_HEADER, rows) + stamp(runner)
+    return rows, None
 
 
 def to_tolerance(runner):
@@ -348,6 +346,7 @@ SHORTENED = {
     "manufactured": manufactured,
     "low_regularity": low_regularity,
     "known_to_tolerance": known_to_tolerance,
+    "long_creep": long_creep,
     "to_tolerance": to_tolerance,
     "references": lambda runner: (references.rows(runner), None),
 }

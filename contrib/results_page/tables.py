@@ -219,8 +219,13 @@ def low_regularity_rows(name, why, study):
 
 
 def without_other_norms(rows):
-    """Lines of the page from low_regularity_rows(): orders in the energy norm alone."""
-    energy = lambda cell: cell.split(" / ")[NORMS.index("error_energy")]
+    """Lines of the page from low_regularity_rows(): orders in the energy norm alone,
+    and none where the error is that of something else than the ladder."""
+
+    def energy(cell):
+        text = cell.split(" / ")[NORMS.index("error_energy")]
+        return text if text != UNKNOWN and float(text) >= 0.5 else UNKNOWN
+
     return [[row[0], *row[2:4], *map(energy, row[4:7]), row[7]] for row in rows]
 
 
@@ -456,9 +461,45 @@ LONG_CREEP_HEADER = (
 )
 
 
+LONG_CREEP_SHOWN = (
+    "scene",
+    "estimated over true",
+    "true error of the run",
+    "quantity",
+    "estimated over true",
+    "true error of the run",
+)
+
+
 def at_times(values):
     """The values at the ends of the phases."""
     return " / ".join(values)
+
+
+def last(values):
+    return values.split(" / ")[-1]
+
+
+def creep_by_scene(rows):
+    """Lines of the page from long_creep_row(), all at the last time: the least and the
+    largest index of all ways to compute, and the errors of the runs to a tolerance."""
+    way = LONG_CREEP_HEADER.index("way")
+    lines = []
+    for (scene,), group in in_groups(rows, 1).items():
+        line = [scene]
+        for run, error, index in (("to ", 4, 5), ("quantity to ", 7, 8)):
+            indices = [last(row[index]) for row in group]
+            known = sorted((i for i in indices if i != UNKNOWN), key=float)
+            kept = [row for row in group if row[way].startswith(run)]
+            line += [
+                span(known) if known else UNKNOWN,
+                ", ".join(
+                    f"{last(row[error])} % ({row[way].removeprefix('quantity ')})"
+                    for row in kept
+                ),
+            ]
+        lines.append([*line[:3], group[0][6], *line[3:]])
+    return lines
 
 
 def long_creep_row(scene, way, quantity, columns, reference):
@@ -728,6 +769,7 @@ SHORTENED = {
         ("scene", "law", "tolerances", "true error over it", "cells", "steps", "seconds"),
         known_by_law,
     ),
+    "long_creep": (LONG_CREEP_HEADER, LONG_CREEP_SHOWN, creep_by_scene),
     "to_tolerance": (TO_TOLERANCE_HEADER, TO_TOLERANCE_SHOWN, smallest_tolerances),
     "references": (
         REFERENCE_HEADER,

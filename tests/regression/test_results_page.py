@@ -141,6 +141,15 @@ class Tables(Folder):
         values = [("c", "m", 1.0, "q", 1.001, 1.0), ("c", "m", 2.0, "q", 1.01, 1.0)]
         rows = [tables.reference_row(*row) for row in values]
         self.assertEqual(tables.by_case(rows), [["c", "m", 2, "1.0e-02"]])
+        crept = [
+            ["b", "uniform", "4", "5", "1 / 9", "9 / 1.5", "`q`", "1 / 3", "1 / 7"],
+            ["b", "to 5 %", "4", "5", "1 / 4", "9 / 0.8", "`q`", "1 / 2", "– / –"],
+            ["b", "quantity to 2 %", "4", "5", "1 / 3", "9 / 2", "`q`", "1 / 1", "1 / 6"],
+        ]
+        self.assertEqual(
+            tables.creep_by_scene(crept),
+            [["b", "0.8 to 2", "4 % (to 5 %)", "`q`", "6 to 7", "1 % (to 2 %)"]],
+        )
         for header, shown, shorten in tables.SHORTENED.values():
             self.assertEqual(shorten([]), [])
             self.assertGreater(len(header), len(shown) - 2)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/parameters/parameter_file.h>
@@ -145,6 +147,14 @@ namespace Viscoplastic
 
 
     std::string
+    pattern_of(const Item &entry)
+    {
+      return entry.node->get<std::string>("pattern_description");
+    }
+
+
+
+    std::string
     default_and_allowed(const Tree &entry, const std::string &quote)
     {
       const std::string value   = entry.get<std::string>("default_value");
@@ -272,12 +282,59 @@ namespace Viscoplastic
 
 
 
+    /// Whether the manual text of an entry names all values that it may have.
+    bool
+    names_its_values(const Item &entry, const std::string &pattern)
+    {
+      const std::string start = "[Selection ", end = " ]";
+      if (pattern.compare(0, start.size(), start) != 0)
+        return pattern == "[Bool]";
+      std::string text;
+      for (const std::string &paragraph : entry.about)
+        text += paragraph;
+      for (const std::string &value : Utilities::split_string_list(
+             pattern.substr(start.size(),
+                            pattern.size() - start.size() - end.size()),
+             '|'))
+        if (value != "not given" &&
+            text.find('`' + value + '\'') == std::string::npos)
+          return false;
+      return true;
+    }
+
+
+
+    /// What the page says of default and values, without what goes without
+    /// saying: "" for a text that is empty by default, nothing of values that
+    /// the manual text names, and long lists once in a section.
+    std::string
+    default_and_allowed_in_page(const Item              &entry,
+                                const std::vector<Item> &section)
+    {
+      const auto        value   = entry.node->get<std::string>("default_value");
+      const std::string pattern = pattern_of(entry);
+      const std::size_t long_list = 200;
+      for (const Item &other : section)
+        if (&other == &entry || pattern.size() < long_list)
+          break;
+        else if (is_entry(*other.node) && pattern_of(other) == pattern)
+          return "Allowed: as of `" + other.name + "`.";
+      if (value.empty() && pattern == "[Anything]")
+        return "";
+      if (names_its_values(entry, pattern))
+        return value == "not given" ? "" : "Default: `" + value + "`.";
+      return default_and_allowed(*entry.node, "`");
+    }
+
+
+
     void
     print_markdown(std::ostream      &out,
                    const Tree        &section,
                    const std::string &path)
     {
-      for (const Item &item : items(section))
+      const std::vector<Item> all = items(section);
+      for (const Item &item : all)
         if (is_entry(*item.node))
           {
             std::string first = "- **`" + item.name + "`** ";
@@ -287,7 +344,9 @@ namespace Viscoplastic
                 out << (&paragraph == &item.about.back() ? "" : "\n");
                 first = "  ";
               }
-            out << wrap(default_and_allowed(*item.node, "`"), "  ", "  ", 80);
+            const std::string values = default_and_allowed_in_page(item, all);
+            if (!values.empty())
+              out << wrap(values, "  ", "  ", 80);
           }
         else
           {
@@ -389,7 +448,8 @@ namespace Viscoplastic
     out << "<!-- Made by `viscoplastic_contact --describe=markdown`; do not "
            "edit. -->\n\n# Parameters\n\n"
         << wrap("Every entry of a parameter file, as `viscoplastic_contact "
-                "--describe` prints them. How to write a scene with them is in "
+                "--describe` prints them; what is said without a default is a "
+                "text, empty by default. How to write a scene with them is in "
                 "[scene.md](scene.md).",
                 "",
                 "",

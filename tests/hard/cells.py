@@ -12,8 +12,8 @@ from suite import case
 
 @case(
     "Elasticity",
-    "Cells a thousand times as long as high: the shear layer has the answer of "
-    "square cells, with both solvers, in 2D and 3D",
+    "Cells a thousand times as long as high have the answer of square cells, with "
+    "both solvers, in 2D and 3D",
 )
 def aspect_ratio(size, report):
     n = size(8, 32)
@@ -106,8 +106,8 @@ def sliver_mesh(file, n, gap, length=1):
 
 @case(
     "Elasticity",
-    "Cells with an angle next to 180 degrees: the error stays bounded, friction is "
-    "solved in as many iterations as on squares",
+    "Cells with an angle next to 180 degrees: the error stays bounded, as many "
+    "iterations as on squares",
 )
 def slivers(size, report):
     gaps = 1e-1, 1e-3, 1e-6

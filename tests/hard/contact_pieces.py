@@ -12,8 +12,11 @@ def given_pressure(t):
     return (abs(t - 1) - 1 if t < 3 else max(0, 4 - t)) / 10
 
 
-@case(GROUP, "the normal stress of Coulomb friction changes its sign in time or along "
-             "the face, or vanishes: bound mu abs(S)")
+@case(
+    GROUP,
+    "the given normal stress changes its sign in time or along the face, or "
+    "vanishes: bound mu abs(S)",
+)
 def pressure_changes_sign(size, report):
     n, steps = size((16, 16), (128, 64))
     phases = ", ".join(f"{i}: {steps}" for i in range(1, 6))
@@ -94,8 +97,11 @@ def kite(angle, refinements):
     }
 
 
-@case(GROUP, "two pieces meet at 30 to 170 degrees under loads that are not uniform: "
-             "the answer has the symmetry of the data, the corner stays")
+@case(
+    GROUP,
+    "two pieces meet at 30 to 170 degrees: the answer has the symmetry of the data, "
+    "the corner stays",
+)
 def corners_2d(size, report):
     refinements = size(3, 6)
     for angle in size((90, 150), (30, 90, 120, 150, 170)):
@@ -175,8 +181,11 @@ ADAPTIVE = {
 }
 
 
-@case(GROUP, "hanging nodes on the face: radial return of homogeneous shear all the "
-             "same; an adaptive mesh stays as it is in a uniform state")
+@case(
+    GROUP,
+    "hanging nodes on the face: radial return of homogeneous shear all the same; "
+    "adaptive meshes stay in a uniform state",
+)
 def hanging_nodes(size, report):
     fixed = scene(
         "hanging_nodes_3d",
@@ -203,8 +212,11 @@ def hanging_nodes(size, report):
     report.figure("changes of an adaptive mesh in the uniform state", changes, 0, 0)
 
 
-@case(GROUP, "an adapted mesh under slip that turns and a bound that varies: identities, "
-             "and nearer to a finer mesh than the one it began with")
+@case(
+    GROUP,
+    "an adapted mesh under slip that turns: identities, and nearer to a finer mesh "
+    "than the one it began with",
+)
 def hanging_nodes_adaptive(size, report):
     bound = "0.1*exp(-40*((x + 0.3)^2 + (y + 0.3)^2))"
     common = {

@@ -22,9 +22,9 @@ def speed(result, column="point0_y", last=1):
 
 @case(
     CREEP,
-    "Creep to 1000 relaxation times: with the history at the quadrature points the "
-    "velocity of the incompressible fluid, whatever the steps and the scheme; with "
-    "cell means the program says that they lock",
+    "Creep to 1000 relaxation times: at the quadrature points the velocity of the "
+    "incompressible fluid, with any steps and scheme; of cell means the program "
+    "says that they lock",
 )
 def long_creep(size, report):
     theta = 1.3
@@ -144,8 +144,8 @@ def viscosity_range(size, report):
 
 @case(
     CREEP,
-    "Perzyna without hardening at the limit load: at rest below it, steady flow "
-    "beyond it, without explosion at large steps",
+    "Perzyna without hardening at the limit load: rest below it, steady flow beyond "
+    "it, no explosion at large steps",
 )
 def limit_load(size, report):
     n = size(8, 32)
@@ -205,8 +205,8 @@ def limit_load(size, report):
 
 @case(
     CREEP,
-    "Norton's law with n from 1 to 10: the steady velocity of a thick cylinder, "
-    "Newton iterations that do not grow with n",
+    "Norton's law with n from 1 to 10: the steady velocity of a thick cylinder; "
+    "Newton iterations do not grow with n",
 )
 def norton_cylinder(size, report):
     level = size(2, 4)
@@ -260,8 +260,8 @@ def difference(one, other, names=COURSES):
 
 @case(
     CREEP,
-    "Perzyna under friction: hardening H -> 0 has the limit H = 0, and without yield "
-    "limit it is Maxwell's law, for both schemes and histories",
+    "Perzyna under friction: H -> 0 has the limit H = 0, and without yield limit it "
+    "is Maxwell's law",
 )
 def no_hardening(size, report):
     n = size(8, 32)
@@ -305,8 +305,8 @@ def no_hardening(size, report):
 
 @case(
     CREEP,
-    "Zener with E_inf -> 0: in the end the elastic answer of E_inf, larger by "
-    "E/E_inf, in steps of a tenth of its retardation time; E_inf = 0 is the limit",
+    "Zener with E_inf -> 0: in the end the elastic answer of E_inf; E_inf = 0 is "
+    "the limit",
 )
 def zener_soft(size, report):
     n = size(4, 16)

@@ -63,8 +63,11 @@ def box(cells):
 # ---------------------------------------------------------------- bounds
 
 
-@case(GROUP, "the total slip falls as the bound grows over 24 decades, between "
-             "its limits without friction and glued")
+@case(
+    GROUP,
+    "slip falls as the bound grows over 24 decades, between the limits without "
+    "friction and glued",
+)
 def bounds_of_every_size(size, report):
     runs = {}
     for exponent in range(-12, 13, size(3, 1)):
@@ -102,8 +105,10 @@ def bounds_of_every_size(size, report):
     corrections(report, *runs.values())
 
 
-@case(GROUP, "patches of bound 0 and 1e12 along the face are patches without "
-             "friction and glued ones; jumps inside of faces keep the identities")
+@case(
+    GROUP,
+    "patches of bound 0 and 1e12 are patches without friction and glued ones",
+)
 def bound_discontinuous(size, report):
     n = size(16, 64)
     mesh = {
@@ -197,8 +202,11 @@ def tie_drive(t):
     return np.array([0.1 * np.interp(t, times, places), 0])
 
 
-@case(GROUP, "the whole face reaches the bound at once, stays there and goes on by "
-             "1e-9: all points slip or none, the force is the bound")
+@case(
+    GROUP,
+    "the whole face reaches the bound at once and goes on by 1e-9: all points slip "
+    "or none, the force is the bound",
+)
 def tie_of_the_whole_face(size, report):
     n = size(16, 128)
     result = scene(
@@ -257,8 +265,11 @@ def check_reversals(size, report, solid):
     return result, steps
 
 
-@case(GROUP, "200 reversals, elastic: the loop closes from the second period on, and "
-             "what friction dissipates is the work that the loop takes")
+@case(
+    GROUP,
+    "200 reversals, elastic: the loop closes from the second period on, and "
+    "friction dissipates its area",
+)
 def reversals_elastic(size, report):
     result, steps = check_reversals(size, report, {})
     loop = loops(result, "point0_x", steps)
@@ -298,8 +309,11 @@ def reversals_viscous(size, report):
 # ---------------------------------------------------------------- turning, rest
 
 
-@case(GROUP, "the direction of slip turns through 720 degrees: a quarter turn later "
-             "everything is the same, turned; the force is at the bound everywhere")
+@case(
+    GROUP,
+    "slip turns through 720 degrees: a quarter turn later everything is the same, "
+    "turned; the force is at the bound",
+)
 def slip_direction_turns(size, report):
     per_quarter = size(6, 18)
     result = scene(

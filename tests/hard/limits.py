@@ -70,8 +70,8 @@ def one_step(report, dim, n, solver, most=None):
 
 @case(
     "Size",
-    "Peak of memory within a factor 1.5 of what --check announces, up to the largest "
-    "meshes that fit 16 GiB, which run a step",
+    "Peak of memory within a factor 1.5 of what --check announces, up to the "
+    "largest meshes that fit 16 GiB",
 )
 def memory(size, report):
     one_step(report, 2, size(256, 512), "direct")
@@ -133,8 +133,8 @@ REFUSED = (
 
 @case(
     "Size",
-    "More cells, unknowns, entries a rank or steps than indices or memory have room "
-    "for are refused with a sentence, before memory is taken",
+    "More cells, unknowns, entries or steps than indices or memory have room for "
+    "are refused before memory is taken",
 )
 def index_limits(size, report):
     peak = seconds = 0

@@ -15,8 +15,11 @@ def corrections(report, results, largest):
     )
 
 
-@case(GROUP, "mu = 0 to 2 where the edge of a plate lifts off: two meshes agree, and the "
-             "active set takes about as long as without friction")
+@case(
+    GROUP,
+    "mu = 0 to 2 where the edge of a plate lifts off: two meshes agree, iterations "
+    "about as without friction",
+)
 def edge_lift_off(size, report):
     n = size(32, 128)
     fines = []
@@ -43,9 +46,11 @@ def edge_lift_off(size, report):
     corrections(report, fines, 15)
 
 
-@case(GROUP, "a sharp edge pressed into a half plane: the half width P/(E* s) of the "
-             "contact, s the slope, to the cells there; friction makes it less, and adds "
-             "to the force, in one step, too")
+@case(
+    GROUP,
+    "a sharp edge in a half plane: half width P/(E* s), s the slope, to the cells "
+    "there; friction makes it less and adds to the force",
+)
 def sharp_indenter(size, report):
     slope = 0.02
     results = []
@@ -82,9 +87,12 @@ def sharp_indenter(size, report):
     corrections(report, results, 15)
 
 
-@case(GROUP, "a wedge in a groove, held by contact alone: friction carries mu/0.2 of "
-             "what pressure carries as it goes in; relieved to a hundredth of its load "
-             "it leaves the groove only for mu < 0.2")
+@case(
+    GROUP,
+    "a wedge in a groove, held by contact alone: friction carries mu/0.2 of what "
+    "pressure carries; relieved to a hundredth of its load it leaves only for mu < "
+    "0.2",
+)
 def wedge(size, report):
     results = []
     for friction in 0, 0.1, 0.3, 1, 2:
@@ -114,8 +122,11 @@ def wedge(size, report):
     corrections(report, results, 8)
 
 
-@case(GROUP, "ground of 1 to 10^12 times the stiffness of a cell, with friction: the "
-             "answer tends to that on rigid ground as 1/c")
+@case(
+    GROUP,
+    "ground of 1 to 10^12 times the stiffness of a cell: the answer tends to that "
+    "on rigid ground as 1/c",
+)
 def stiff_ground(size, report):
     def plate(**contact):
         return run(
@@ -139,8 +150,11 @@ def stiff_ground(size, report):
     report.figure("difference at 10^12", misses[-1], largest=1e-8)
 
 
-@case(GROUP, "a plate that touches just so and goes on by 10^-9 and twice that: twice "
-             "the forces, with friction")
+@case(
+    GROUP,
+    "a plate that touches just so and goes on by 10^-9 and twice that: twice the "
+    "forces",
+)
 def grazing(size, report):
     results = []
     for friction in 0.3, 1:

@@ -79,8 +79,11 @@ def step_sizes_implicit(size, report):
     report.figure("largest step, of 2/r", result["k"].max() / LIMIT, least=499)
 
 
-@case(GROUP, "a thousand steps of 1e-11 or a few of one rounding error between ordinary "
-             "ones, and steps from 1e-8 that grow: nothing changes beyond O(k)")
+@case(
+    GROUP,
+    "a thousand steps of 1e-11, or a few of one rounding error, between ordinary "
+    "ones: nothing changes beyond O(k)",
+)
 def tiny_steps(size, report):
     def phases(inserted):
         return f"0.65: 8, {inserted}1.3: 8, 5.2: 48"
@@ -175,8 +178,11 @@ def layer_error(result):
     )
 
 
-@case(GROUP, "a load that jumps is outside of the theory (W^{1,inf}): equilibrium after "
-             "it is exact, the displacement right to O(k) wherever it lies")
+@case(
+    GROUP,
+    "a load that jumps, outside of the theory: exact equilibrium after it, the "
+    "displacement right to O(k)",
+)
 def load_jumps(size, report):
     n = size(10, 100)
     # What creeps in a step at the stress after the jump and not at that before
@@ -309,8 +315,11 @@ def descendants():
             yield Path("/proc", str(process))
 
 
-@case(GROUP, "10^5 steps: equilibrium does not drift, the energy defect keeps its share "
-             "of what is dissipated and falls at least like k, memory is constant")
+@case(
+    GROUP,
+    "10^5 steps: equilibrium does not drift, the energy defect falls at least like "
+    "k, memory is constant",
+)
 def many_steps(size, report):
     defects = []
     for n_periods, steps in (250, 20), (size(250, 2500), 40):

@@ -49,15 +49,13 @@ namespace Viscoplastic
     LawDescription law;
     law.name = "maxwell";
     law.help =
-      "G = -E dev(sigma)/(2 eta), for an isotropic body -(mu/eta) "
-      "dev(sigma): a linear viscoelastic fluid, elastic under pressure and "
-      "creeping under any shear stress. The deviator of a stress held at "
-      "fixed strain decays like exp(-t/theta) with theta = eta/mu, and a "
-      "constant stress makes the body flow at the strain rate "
-      "dev(sigma)/(2 eta). eta is the `Viscosity' in Pa s (in general stress "
-      "times time, as for a Newtonian fluid). Reference: W. N. Findley, J. S. "
-      "Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic "
-      "Materials, North-Holland 1976, chapter 5.";
+      "G = -E dev(sigma)/(2 eta), for an isotropic body -(mu/eta) dev(sigma): "
+      "a linear viscoelastic fluid, elastic under pressure and creeping "
+      "under any shear stress. At fixed strain the deviator of the stress "
+      "decays like exp(-t mu/eta). eta is the `Viscosity', as of a Newtonian "
+      "fluid. Reference: W. N. Findley, J. S. Lai, K. Onaran, Creep and "
+      "Relaxation of Nonlinear Viscoelastic Materials, North-Holland 1976, "
+      "chapter 5.";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Viscosity",
                         "0.5",

@@ -113,15 +113,12 @@ namespace Viscoplastic
     law.help =
       "G = -E (3/2) A sigma_eq^n dev(sigma)/sigma_eq with the von Mises "
       "stress sigma_eq = sqrt(3/2) |dev(sigma)|: steady creep by a power law, "
-      "in a tensile test at the strain rate A sigma^n. A is the `Rate factor' "
-      "in Pa^-n/s (for a given temperature T it is A_0 exp(-Q/(R T))), n >= 1 "
-      "the `Exponent'; with n = 1 the law is maxwell with eta = 1/(3 A). "
-      "Beyond the `Stress cap' c in Pa, which has to be given, the strain "
-      "rate grows linearly with slope A n c^(n-1), since the theory asks for "
-      "a Lipschitz function: choose it well above the stress you expect. The "
-      "relaxation rate 3 mu A n sigma_eq^(n-1) grows with the stress, and "
-      "time steps have to be small where it is large. Reference: F. H. "
-      "Norton, The Creep of Steel at High Temperatures, McGraw-Hill 1929; "
+      "in a tensile test at the strain rate A sigma^n. At a given "
+      "temperature T the `Rate factor' A is A_0 exp(-Q/(R T)); with n = 1 the "
+      "law is maxwell with eta = 1/(3 A). Beyond the `Stress cap' the strain "
+      "rate grows linearly, since the theory asks for a Lipschitz function: "
+      "choose it well above the stress you expect. Reference: F. H. Norton, "
+      "The Creep of Steel at High Temperatures, McGraw-Hill 1929; "
       "three-dimensional form: F. K. G. Odqvist, Mathematical Theory of Creep "
       "and Creep Rupture, Clarendon Press 1966.";
     law.declare = [](ParameterHandler &prm) {

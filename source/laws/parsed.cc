@@ -206,17 +206,16 @@ namespace Viscoplastic
     law.name = "parsed";
     law.help =
       "G = -E (3/2) F f dev(sigma)/sigma_eq with an equivalent strain rate "
-      "f(sigma_eq, p, eps_eq, t) >= 0 of your own, the `Strain rate' in 1/s, "
-      "and a `Factor' F of position and t. sigma_eq = sqrt(3/2) |dev(sigma)| "
-      "is the von Mises stress and p = -tr(sigma)/3 the pressure, both in Pa; "
-      "eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| is the present equivalent "
-      "viscoplastic strain. Without deviatoric stress there is no flow. The "
-      "theory asks for a Lipschitz function, which is yours to choose: let f "
-      "vanish at sigma_eq = 0 and limit powers, as in "
-      "1e-3*min(sigma_eq, 2e7)^3. Examples: 1e-21*sigma_eq^2*exp(-eps_eq/0.1) "
-      "for primary creep, 1e-12*max(0, sigma_eq - 1e6 - 0.5*p) for flow beyond "
-      "a yield stress that grows with pressure. Derivatives are taken by "
-      "differences. Expressions take more time than the other laws.";
+      "f(sigma_eq, p, eps_eq, t) >= 0 of your own, the `Strain rate', and a "
+      "`Factor' F of position and t. sigma_eq is the von Mises stress, p = "
+      "-tr(sigma)/3 the pressure, eps_eq = sqrt(2/3) |dev(eps - E^-1 sigma)| "
+      "is the present equivalent viscoplastic strain. Without deviatoric "
+      "stress there is no flow. The theory asks for a Lipschitz function, "
+      "which is yours to choose: let f vanish at sigma_eq = 0 and limit "
+      "powers, as in 1e-3*min(sigma_eq, 2e7)^3. Examples: "
+      "1e-21*sigma_eq^2*exp(-eps_eq/0.1) for primary creep, 1e-12*max(0, "
+      "sigma_eq - 1e6 - 0.5*p) for flow beyond a yield stress that grows with "
+      "pressure.";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Strain rate",
                         "sigma_eq",

@@ -162,19 +162,17 @@ namespace Viscoplastic
       "elastic range K of all stresses with |dev(sigma)| <= R in the "
       "Frobenius norm: elastic inside K, and flowing in proportion to the "
       "distance from K outside. R = k_Y + H eps_eq hardens linearly with the "
-      "present equivalent viscoplastic strain eps_eq = sqrt(2/3) "
-      "|dev(eps - E^-1 sigma)|, not with its path: flow that returns softens "
-      "again. Without hardening, excess stress held at fixed strain decays "
-      "like exp(-2 mu t/lambda) back to K. k_Y is the `Yield radius' in Pa "
-      "(the yield stress of a tensile test times sqrt(2/3), or of a shear "
-      "test times sqrt(2)), H the `Hardening modulus' in Pa (the slope of "
-      "that tensile yield stress over eps_eq times sqrt(2/3)), lambda the "
-      "`Viscosity' in Pa s (twice the shear viscosity of the flow beyond K). "
-      "With k_Y = H = 0 it is maxwell with eta = lambda/2. Reference: P. "
-      "Perzyna, Fundamental problems in viscoplasticity, Advances in Applied "
-      "Mechanics 9 (1966) 243-377; the form with P_K is that of G. Duvaut, "
-      "J.-L. Lions, Inequalities in Mechanics and Physics, Springer 1976, "
-      "chapter 5.";
+      "present equivalent viscoplastic strain eps_eq = sqrt(2/3) |dev(eps - "
+      "E^-1 sigma)|, not with its path: flow that returns softens again. "
+      "Without hardening, excess stress held at fixed strain decays like "
+      "exp(-2 mu t/lambda) back to K. k_Y is the yield stress of a tensile "
+      "test times sqrt(2/3), or of a shear test times sqrt(2), H the slope of "
+      "that tensile yield stress over eps_eq times sqrt(2/3), lambda twice "
+      "the shear viscosity of the flow beyond K. With k_Y = H = 0 it is "
+      "maxwell with eta = lambda/2. Reference: P. Perzyna, Fundamental "
+      "problems in viscoplasticity, Advances in Applied Mechanics 9 (1966) "
+      "243-377; the form with P_K is that of G. Duvaut, J.-L. Lions, "
+      "Inequalities in Mechanics and Physics, Springer 1976, chapter 5.";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Yield radius",
                         "0.1",

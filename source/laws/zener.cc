@@ -346,16 +346,14 @@ namespace Viscoplastic
     law.help =
       "G = -(1/theta) (sigma - E_inf eps), the standard linear solid: a "
       "viscoelastic solid with the elastic tensor E at once and the isotropic "
-      "tensor E_inf <= E in the long term, pressure included. The stress that "
-      "a fixed strain leaves beyond E_inf eps decays like exp(-t/theta); "
-      "under constant stress the strain creeps towards E_inf^-1 sigma. theta "
-      "is the `Relaxation time' in s; E_inf is given by the `Long-term "
-      "Young's modulus' in Pa (zero: all stress relaxes) and the `Long-term "
-      "Poisson's ratio'. Bulk and shear modulus must not exceed those of E; "
-      "where one of them equals that of E, that part does not relax; only an "
-      "initial stress does there, too. With a long-term Poisson's ratio near "
-      "1/2 choose mean dilatation. Reference: C. Zener, Elasticity and "
-      "Anelasticity of Metals, University of Chicago Press 1948, chapter 5.";
+      "tensor E_inf <= E in the long term, pressure included. The stress "
+      "that a fixed strain leaves beyond E_inf eps decays like exp(-t/theta); "
+      "under constant stress the strain creeps towards E_inf^-1 sigma. Its "
+      "bulk and shear modulus must not exceed those of E; where one of them "
+      "equals that of E, that part does not relax. With a long-term Poisson's "
+      "ratio near 1/2 choose mean dilatation. Reference: C. Zener, "
+      "Elasticity and Anelasticity of Metals, University of Chicago Press "
+      "1948, chapter 5.";
     law.declare = [](ParameterHandler &prm) {
       prm.declare_entry("Long-term Young's modulus",
                         "0.5",

@@ -194,8 +194,7 @@ namespace Viscoplastic
   {
     prm.add_parameter("Body force",
                       body_force,
-                      "b(x,t), components separated by semicolons; empty for "
-                      "none. Unit: force per volume.");
+                      "b(x,t). Unit: force per volume.");
   }
 
 
@@ -203,10 +202,7 @@ namespace Viscoplastic
   void
   InitialStateParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter("Displacement",
-                      displacement,
-                      "u0(x), components separated by semicolons; empty for "
-                      "zero. Unit: length.");
+    prm.add_parameter("Displacement", displacement, "u0(x). Unit: length.");
     prm.add_parameter("Stress",
                       stress,
                       "sigma0(x) as xx; yy; zz; xy in 2D and "
@@ -239,8 +235,8 @@ namespace Viscoplastic
   {
     prm.add_parameter("Displacement",
                       displacement,
-                      "u(x,t), components separated by semicolons, if it is "
-                      "known: the run reports its errors. Unit: length.");
+                      "u(x,t), if it is known: the run reports its errors. "
+                      "Unit: length.");
     prm.add_parameter("Stress",
                       stress,
                       "sigma(x,t): xx; yy; zz; xy in 2D, xx; yy; zz; xy; xz; "
@@ -381,11 +377,10 @@ namespace Viscoplastic
                       "Unit: length.");
     prm.add_parameter("Foundation motion",
                       foundation_motion,
-                      "w(x,t), components separated by semicolons: how far the "
-                      "foundation has moved along its face since t = 0, e.g. "
-                      "`20*t; 0' for a conveyor. Slip is relative to it; its "
-                      "normal part does not count. Empty for a foundation at "
-                      "rest. Unit: length.");
+                      "w(x,t): how far the foundation has moved along its "
+                      "face since t = 0, e.g. `20*t; 0' for a conveyor. Slip "
+                      "is relative to it; its normal part does not count. "
+                      "Empty for a foundation at rest. Unit: length.");
   }
 
 

@@ -86,9 +86,9 @@ The price list:
 
 With `Error control/Tolerance` the run chooses meshes and steps by itself
 ([error_bar.md](error_bar.md#7-runs-to-a-tolerance)). Manufactured solutions: the largest
-true error in the energy norm of all steps over the tolerance; size and seconds at the
-smallest tolerance; the others are in
-[accuracy_known_to_tolerance.csv](accuracy_known_to_tolerance.csv).
+true error in the energy norm of all steps over the tolerance; size and seconds of the first
+law at the smallest tolerance ([accuracy_known_to_tolerance.csv](accuracy_known_to_tolerance.csv)
+has all).
 
 {known_to_tolerance}
 Bodies that have crept for 1000 relaxation times, with steps of backward Euler: estimates

@@ -434,18 +434,24 @@ def span(texts):
     return texts[0] if texts[0] == texts[-1] else f"{texts[0]} to {texts[-1]}"
 
 
-def known_by_law(rows):
-    """Lines of the page from known_to_tolerance_row(): one for each scene and law."""
+def known_by_scene(rows):
+    """Lines of the page from known_to_tolerance_row(): one for each scene, with the size
+    of the run of its first law to the smallest tolerance."""
     column = KNOWN_TO_TOLERANCE_HEADER.index
-    return [
-        [
-            *group,
-            span(row[column("tolerance")] for row in lines),
-            span(sorted((row[column("of the tolerance")] for row in lines), key=float)),
-            *lines[-1][column("cells") :],
-        ]
-        for group, lines in in_groups(rows, 2).items()
-    ]
+    percents = lambda row: float(row[column("tolerance")].split()[0])
+    lines = []
+    for (scene,), group in in_groups(rows, 1).items():
+        first = [row for row in group if row[column("law")] == group[0][column("law")]]
+        lines.append(
+            [
+                scene,
+                "; ".join(dict.fromkeys(row[column("law")] for row in group)),
+                span(row[column("tolerance")] for row in sorted(group, key=percents)[::-1]),
+                span(sorted((row[column("of the tolerance")] for row in group), key=float)),
+                *min(first, key=percents)[column("cells") :],
+            ]
+        )
+    return lines
 
 
 LONG_CREEP_HEADER = (
@@ -766,8 +772,8 @@ SHORTENED = {
     ),
     "known_to_tolerance": (
         KNOWN_TO_TOLERANCE_HEADER,
-        ("scene", "law", "tolerances", "true error over it", "cells", "steps", "seconds"),
-        known_by_law,
+        ("scene", "laws", "tolerances", "true error over it", "cells", "steps", "seconds"),
+        known_by_scene,
     ),
     "long_creep": (LONG_CREEP_HEADER, LONG_CREEP_SHOWN, creep_by_scene),
     "to_tolerance": (TO_TOLERANCE_HEADER, TO_TOLERANCE_SHOWN, smallest_tolerances),

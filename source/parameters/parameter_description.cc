@@ -306,7 +306,8 @@ namespace Viscoplastic
 
     /// What the page says of default and values, without what goes without
     /// saying: "" for a text that is empty by default, nothing of values that
-    /// the manual text names, and long lists once in a section.
+    /// the manual text names, of numbers their range, and long lists once in a
+    /// section.
     std::string
     default_and_allowed_in_page(const Item              &entry,
                                 const std::vector<Item> &section)
@@ -323,6 +324,17 @@ namespace Viscoplastic
         return "";
       if (names_its_values(entry, pattern))
         return value == "not given" ? "" : "Default: `" + value + "`.";
+      // Of a number the default tells whether it is a whole one.
+      std::string allowed = allowed_values(pattern);
+      for (const std::string start : {"a number", "a whole number"})
+        if (allowed.compare(0, start.size(), start) == 0)
+          {
+            allowed.erase(0, start.size());
+            if (allowed.compare(0, 4, " of ") == 0)
+              allowed.erase(0, 3);
+            return "Default: `" + value + "`" + (allowed.empty() ? "" : ",") +
+                   allowed + ".";
+          }
       return default_and_allowed(*entry.node, "`");
     }
 

@@ -124,10 +124,10 @@ class Tables(Folder):
             ["a", "norton", "10 %", "8 %", "4 %", "0.4", "70", "6", "3 s"],
         ]
         self.assertEqual(
-            tables.known_by_law(known),
+            tables.known_by_scene([*known, ["b", *known[2][1:]]]),
             [
-                ["a", "maxwell", "20 % to 10 %", "0.5 to 0.6", "90", "5", "2 s"],
-                ["a", "norton", "10 %", "0.4", "70", "6", "3 s"],
+                ["a", "maxwell; norton", "20 % to 10 %", "0.4 to 0.6", "90", "5", "2 s"],
+                ["b", "norton", "10 %", "0.4", "70", "6", "3 s"],
             ],
         )
         reached = [

@@ -400,7 +400,7 @@ def draw_utilisation(axes, plane, body, longest, length):
     )
     arrows = add_arrows(axes, plane, contact, longest, length)
     if arrows is not None:
-        text = scale.units.unit("length", longest).value(longest)
+        text = scale.units.unit("length", longest).value(longest, 3)
         axes.quiverkey(
             arrows,
             0.94,

@@ -15,6 +15,7 @@ AXES = {
     "k": ("time", "time step $k$"),
 }
 FIT = "fit, where it is within 10 %"
+FLAT = 0.2  # an order below says that the error is that of something else
 ALONE = {"lw": 1.7, "marker": "o"}
 BOTH = {"lw": 1.0, "marker": "s", "mfc": "white"}
 
@@ -47,8 +48,9 @@ def draw(study, error, variants=None):
         squeeze=False,
         layout="constrained",
     )
+    least = study.error_of_reference(error) or 0.0
     for axes, (axis, label, ladders) in zip(all_axes[0], panels):
-        draw_panel(axes, study, error, axis, ladders, variants)
+        draw_panel(axes, study, error, axis, ladders, variants, least)
         if axis == "k" and study.chooses_steps():
             label = rf"tolerance of the steps, ${study.step_symbol()}$"
         axes.set_xlabel(label)
@@ -88,7 +90,8 @@ def curve(study, error, axis, ladder):
     return sizes[usable], errors[usable], ladder.rows[usable]
 
 
-def draw_panel(axes, study, error, axis, ladders, variants):
+def draw_panel(axes, study, error, axis, ladders, variants, least):
+    """Orders are those of errors above that of the reference, `least'."""
     curves, orders, fitted = [], {}, False
     looks = study.looks(variants)
     for ladder in ladders:
@@ -105,12 +108,14 @@ def draw_panel(axes, study, error, axis, ladders, variants):
                 draw_fit(axes, fit, axis, study, rows, look["color"])
                 fitted = True
         curves.append((sizes, errors))
-        orders.setdefault(ladder.variant, {})[ladder.name] = rates.final_order(
-            sizes, errors
-        )
+        known = errors > least
+        order = rates.final_order(sizes[known], errors[known])
+        if order is not None and order < FLAT:
+            order = None
+        orders.setdefault(ladder.variant, {})[ladder.name] = order
     axes.set_xscale("log")
     axes.set_yscale("log")
-    draw_triangles(axes, curves)
+    draw_triangles(axes, curves, least)
     legend(axes, study, ladders, orders, fitted, looks)
     axes.grid(True, which="major", color="#dddddd", lw=0.6)
     axes.set_axisbelow(True)
@@ -135,13 +140,16 @@ def draw_fit(axes, fit, axis, study, rows, color):
     )
 
 
-def draw_triangles(axes, curves):
-    """The order at the fine end of the lowest curve, and of the highest where
-    it differs."""
+def draw_triangles(axes, curves, least):
+    """The order at the fine end of the lowest curve that falls, and of the highest
+    where it differs."""
+    known = [(sizes[errors > least], errors[errors > least]) for sizes, errors in curves]
     segments = [
         list(zip(sizes[-2:], errors[-2:]))
-        for sizes, errors in curves
-        if len(sizes) > 1 and rates.differ(sizes[-1], sizes[-2])
+        for sizes, errors in known
+        if len(sizes) > 1
+        and rates.differ(sizes[-1], sizes[-2])
+        and (rates.final_order(sizes, errors) or 0.0) >= FLAT
     ]
     if not segments:
         return

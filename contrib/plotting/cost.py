@@ -62,14 +62,16 @@ def shares(columns, total):
 
 
 def chosen(study, variants):
-    """Rows to draw, and a remark: all, or where they are many of each variant the
-    finest with h and k refined."""
+    """Rows to draw, and a remark: all, each run in the first of its ladders, or where
+    they are many of each variant the finest with h and k refined."""
     ladders = [ladder for ladder in study.ladders() if ladder.variant in variants]
     timed = {
         ladder: ladder.rows[rates.known(study["seconds_total"][ladder.rows])]
         for ladder in ladders
     }
     rows = np.concatenate(list(timed.values()))
+    runs = study["run"][rows]
+    rows = rows[[i for i, run in enumerate(runs) if run not in runs[:i]]]
     if len(rows) <= MOST_RUNS:
         return rows, ""
     names = {ladder.name for ladder in ladders}

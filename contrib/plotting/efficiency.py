@@ -9,9 +9,10 @@ from .results import NoPicture
 from .units import Units
 
 ESTIMATES = {
-    "estimator": ("estimate", style.SERIES[0], "o"),
-    "recovery": (r"recovered strain", style.SERIES[1], "x"),
+    "estimator": ("estimate", style.SERIES[0]),
+    "recovery": (r"recovered strain", style.SERIES[1]),
 }
+MOST_POINTS = 2000  # of an estimate; of more cells some are drawn
 
 
 def draw(results, options):
@@ -23,7 +24,9 @@ def draw(results, options):
     true = of_cells(body, "error_energy")
     figure, axes = plt.subplots(figsize=(6.6, 6.0), layout="constrained")
     values = [true]
-    for name, (label, color, marker) in ESTIMATES.items():
+    # Ordered by place, every n-th cell would be a pattern.
+    order = np.random.default_rng(0).permutation(len(true))[:MOST_POINTS]
+    for name, (label, color) in ESTIMATES.items():
         # With a quantity of interest cells are estimated by what they do to it.
         of_quantity = "quantity_total" in results.statistics
         if name not in body or (name == "estimator" and of_quantity):
@@ -32,13 +35,12 @@ def draw(results, options):
         values.append(estimated)
         quotient = np.linalg.norm(estimated) / np.linalg.norm(true)
         axes.plot(
-            true,
-            estimated,
-            marker,
-            ms=4,
-            mfc="none",
-            mew=0.8,
-            alpha=0.6,
+            true[order],
+            estimated[order],
+            "o",
+            ms=2.5,
+            mec="none",
+            alpha=0.5,
             color=color,
             label=f"{label}: {quotient:.3g} times the error of all cells",
         )

@@ -236,7 +236,7 @@ def those_with_something(panels, statistics):
 def draw_panels(results, panels, statistics, what):
     units = Units.of(results)
     time = units.unit("time", results.statistics["t"])
-    columns = 1 if len(panels) < 3 else 2
+    columns = 1 if len(panels) < 4 else 2
     rows = -(-len(panels) // columns)
     figure = plt.figure(
         figsize=(8.0 if columns == 1 else 13.0, 1.9 * rows + 0.8),

@@ -80,7 +80,7 @@ def draw(results, options):
         layout="constrained",
     )
     units = Units.of(results)
-    length = units.unit("length", [line["s"].max() for line in lines])
+    length = units.unit("length", [np.ptp(abscissa(line)[0]) for line in lines])
     for i, (line, names) in enumerate(zip(lines, wanted)):
         panels[0, i].set_title(quantities.place("line", i))
         for axes, name in zip(panels[:, i], rows):
@@ -90,9 +90,7 @@ def draw(results, options):
                 axes.axis("off")
         shown = [axes for axes, name in zip(panels[:, i], rows) if name in names]
         if shown:
-            shown[-1].set_xlabel(
-                length.label(f"length $s$ from {place(line, 0)} to {place(line, -1)}")
-            )
+            shown[-1].set_xlabel(length.label(abscissa(line)[1]))
             shown[-1].tick_params(labelbottom=True)
     last = max(i for i, names in enumerate(wanted) if names)
     panels[rows.index(wanted[last][0]), last].legend(
@@ -108,15 +106,25 @@ def draw_panel(axes, line, name, units, length):
     words, kind = quantities.field(name)
     unit = units.unit(kind, line[name][np.isfinite(line[name])])
     colors = matplotlib.colormaps["viridis"]
+    along = abscissa(line)[0]
     for i, row in enumerate(times):
         axes.plot(
-            line["s"][row] / length.size,
+            along[row] / length.size,
             line[name][row] / unit.size,
             color=colors(0.9 * i / max(len(times) - 1, 1)),
             label=f"$t$ = {time.value(line['t'][row, 0])}",
         )
     axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
     axes.set_ylabel(unit.label(words), fontsize="small")
+
+
+def abscissa(line):
+    """What a line is drawn over, and words for it: the coordinate that changes if
+    there is but one."""
+    changing = [axis for axis in "xyz" if axis in line and np.ptp(line[axis][0]) > 0.0]
+    if len(changing) == 1:
+        return line[changing[0]], f"${changing[0]}$"
+    return line["s"], f"length $s$ from {place(line, 0)} to {place(line, -1)}"
 
 
 def place(line, point):

@@ -139,6 +139,12 @@ def draw_force_curve(axes, statistics, body):
     unit = units.unit("force", largest)
     show(axes.yaxis, f"{kind} force\non the foundation", unit)
     axes.margins(x=0.01)
+    # A number beside the ends of the curve, where one is near.
+    low, high = axes.get_ylim()
+    near = 0.12 * (high - low)
+    ticks = axes.yaxis.get_major_locator().tick_values(low, high)
+    ticks = [tick for tick in ticks if low - near < tick < high + near]
+    axes.set_ylim(min([low, *ticks]), max([high, *ticks]))
 
     handles = axes.get_legend_handles_labels()[0]
     has_areas = "stick_area" in statistics and "slip_area" in statistics

@@ -69,9 +69,9 @@ def set_up():
     )
 
 
-def short(value):
+def short(value, digits=4):
     """A number for a caption."""
-    text = f"{value:.4g}"
+    text = f"{value:.{digits}g}"
     match = re.fullmatch(r"(-?[\d.]+)e([+-])0*(\d+)", text)
     if not match:
         return text
@@ -148,7 +148,7 @@ def robust(values):
 
 def range_label(shade, label, values, unit, separator=" "):
     """The label of a color bar with how far `values` go beyond its ends."""
-    low, high = (short(end / unit.size) for end in (values.min(), values.max()))
+    low, high = (short(end / unit.size, 3) for end in (values.min(), values.max()))
     beyond = {
         "neither": "",
         "max": f"{separator}(at most {high})",

@@ -410,7 +410,7 @@ def draw_loads(axes, loads, scale):
         scale_units="xy",
         scale=1.0,
         color=LOAD,
-        width=0.0022,
+        width=0.0035,
         headwidth=5,
         headlength=6,
         headaxislength=5.5,

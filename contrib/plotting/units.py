@@ -61,7 +61,9 @@ class Unit(NamedTuple):
         """A number with its unit."""
         text = plain_number(number / self.size, digits)
         between = " × " if self.text.startswith("$10") else " "
-        return f"{text}{between}{self.text}" if self.text else text
+        several = self.text in ("day", "year") and text != "1"
+        unit = self.text + "s" * several
+        return f"{text}{between}{unit}" if unit else text
 
 
 def plain_number(value, digits=4):

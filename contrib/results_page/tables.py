@@ -293,7 +293,6 @@ def price_cell(found, is_cheapest):
         for name, digits, unit in (
             ("cells", 9, " cells"),
             ("steps", 9, " steps"),
-            ("memory", 2, " MB"),
         )
         if found[name] is not None and np.isfinite(found[name])
     )

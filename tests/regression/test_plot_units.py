@@ -23,7 +23,7 @@ from plotting.body_base import Scale, folded
 from plotting.geometry import corner_volumes
 from plotting.results import NoPicture, Results, UserError, read_statistics
 from plotting.supports import Supports
-from plotting.units import DAY, Units, show
+from plotting.units import DAY, Unit, Units, show
 from viscoplastic_contact.tables import without_unit
 
 SI = {"length": "m", "time": "s", "stress": "Pa"}
@@ -79,6 +79,11 @@ class Handy(TestCase):
             unit = Units(declared, dim, duration).unit(kind, [0.0, -largest])
             self.assertEqual(unit.text, text, (kind, largest))
             self.assertClose(unit.size, size, relative=1e-12, what=(kind, largest))
+
+    def test_days_in_words(self):
+        words = [Unit(1.0, "day").value(number) for number in (1.0, 242.9)]
+        self.assertEqual(words, ["1 day", "242.9 days"])
+        self.assertEqual(Unit(1.0, "day").label("time"), "time [day]")
 
     def test_slow_things_go_by_the_year(self):
         units = Units(SI, 2, 400 * DAY)

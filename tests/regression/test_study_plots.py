@@ -347,6 +347,17 @@ class Pictures(Folder):
         self.assertEqual(labels[-2:], ["25 %", "12.5 %"])
         self.assertEqual(heads[-1][1], "tolerance")
 
+    def test_a_run_of_several_ladders_costs_once(self):
+        rows = synthetic.rows(variants=(UNIFORM,))
+        finest = [row for row in rows if row["mesh_level"] == row["time_level"] == 1]
+        self.assertGreater(len(finest), 1)
+        for row in finest:
+            row["run"] = "finest"
+        synthetic.write(self.folder, rows)
+        study = Study(self.folder)
+        chosen, _ = cost.chosen(study, study.variants())
+        self.assertEqual(sorted(study["run"][chosen]), sorted(set(study["run"])))
+
     def test_one_run_and_no_json(self):
         synthetic.write(self.folder, synthetic.rows(levels=1, ladders=("both",)))
         self.assertEqual(self.draw(), list(self.NAMES))

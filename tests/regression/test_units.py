@@ -177,7 +177,7 @@ def header(result):
 def documented_units():
     """{column: words} of the table in doc/results.md, components as `_x'."""
     page = (SOURCE / "doc" / "results.md").read_text()
-    table = page[page.index("## statistics.csv") : page.index("\n## The bill")]
+    table = page.split("\n## statistics.csv\n")[1].split("\n## ")[0]
     units = {}
     for names, words in re.findall(r"^\| (`[^|]*) \| ([^|]*)\|", table, re.M):
         for name in re.findall(r"`([a-z][^`]*)`", names):

@@ -145,9 +145,10 @@ def page(outcomes, origin):
         "# Hard cases",
         "",
         "Scenes at the edge of what the method stands, and what held in each: written by",
-        "`contrib/hard`. The scenes are in [prm/verification/hard](../prm/verification/hard) or beside",
-        "it. Of each case the figure is shown that comes nearest to its bound;",
-        "[hard_cases.csv](hard_cases.csv) has all.",
+        "`contrib/hard`. The scenes are in",
+        "[prm/verification/hard](../prm/verification/hard) or beside it. Of each case the",
+        "figure is shown that comes nearest to its bound; [hard_cases.csv](hard_cases.csv)",
+        "has all.",
         "",
         f"*{origin}*",
     ]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
@@ -32,14 +33,71 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    template <int dim>
+    std::map<types::boundary_id, MortarRows>
+    make_mortar_rows(const DoFHandler<dim> &dof_handler,
+                     const Scene<dim>      &scene)
+    {
+      std::map<types::boundary_id, MortarRows> result;
+      AffineConstraints<double>                hanging_nodes;
+      for (const auto &[id, condition] : scene.boundary)
+        if (condition.against)
+          {
+            if (result.empty())
+              {
+                hanging_nodes.reinit(
+                  DoFTools::extract_locally_relevant_dofs(dof_handler));
+                DoFTools::make_hanging_node_constraints(dof_handler,
+                                                        hanging_nodes);
+                hanging_nodes.close();
+              }
+            result[id] = mortar_interpolation<dim>(dof_handler,
+                                                   hanging_nodes,
+                                                   {id,
+                                                    *condition.against,
+                                                    condition.normal});
+            AssertThrow(Utilities::MPI::max(result[id].size(),
+                                            dof_handler.get_communicator()) > 0,
+                        ExcMessage("Nothing of boundary " +
+                                   std::to_string(*condition.against) +
+                                   " lies opposite to the nodes of boundary " +
+                                   std::to_string(id) +
+                                   " along its normal, though 'Boundary " +
+                                   std::to_string(id) + "/Against' says so."));
+          }
+      return result;
+    }
+
+
+
+    template <int dim>
+    IndexSet
+    relevant_dofs(const DoFHandler<dim>                          &dof_handler,
+                  const std::map<types::boundary_id, MortarRows> &mortar_rows)
+    {
+      IndexSet result = DoFTools::extract_locally_relevant_dofs(dof_handler);
+      for (const auto &of_boundary : mortar_rows)
+        for (const auto &[node, row] : of_boundary.second)
+          for (const auto &other : row)
+            result.add_range(other.node * dim, (other.node + 1) * dim);
+      result.compress();
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
   AdmissibleSpace<dim>::AdmissibleSpace(const DoFHandler<dim> &dof_handler,
                                         const Scene<dim>      &scene)
     : dof_handler(dof_handler)
     , scene(scene)
     , communicator(dof_handler.get_communicator())
+    , mortar_rows(make_mortar_rows(dof_handler, scene))
     , owned(dof_handler.locally_owned_dofs())
-    , relevant(DoFTools::extract_locally_relevant_dofs(dof_handler))
+    , relevant(relevant_dofs(dof_handler, mortar_rows))
     , cells(owned_cells(dof_handler))
     , first_owned(owned.n_elements() > 0 ?
                     relevant.index_within_set(owned.nth_index_in_set(0)) :
@@ -68,6 +126,8 @@ namespace Viscoplastic
         }
     make_frames();
     make_hanging_nodes_in_frames();
+    if (!mortar_rows.empty())
+      make_couplings();
     check_rigid_motions();
   }
 
@@ -152,6 +212,13 @@ namespace Viscoplastic
     for (unsigned int i = 0; i < n_boundaries; ++i)
       ids.push_back(listed[i]->id);
     std::vector<std::uint64_t> mask = boundaries_of_nodes(ids);
+    // Where nothing lies opposite, there is no contact.
+    for (unsigned int i = 0; i < n_boundaries; ++i)
+      if (listed[i]->against)
+        for (std::size_t n = 0; n < mask.size(); ++n)
+          if (mortar_rows.at(ids[i]).count(owned.nth_index_in_set(n * dim) /
+                                           dim) == 0)
+            mask[n] &= ~(std::uint64_t(1) << i);
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
       {
         const Support<dim> &support = scene.supports[s];
@@ -250,6 +317,59 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  AdmissibleSpace<dim>::make_couplings()
+  {
+    std::map<std::size_t, std::size_t> coupling_of;
+    for (const auto &[id, rows] : mortar_rows)
+      for (const auto &[node, row] : rows)
+        {
+          Coupling coupling;
+          coupling.node      = relevant.index_within_set(node * dim);
+          coupling.projector = unit_symmetric_tensor<dim>();
+          const NodalFrame<dim> &frame =
+            frames[frame_of_node[coupling.node / dim]];
+          for (unsigned int i = 0; i < frame.n_fixed; ++i)
+            if (frame.condition_boundary[i] != id)
+              {
+                const auto e = column(frame.directions, frame.fixed[i]);
+                coupling.projector -= outer_product(e, e);
+              }
+          for (const auto &other : row)
+            coupling.others.emplace_back(relevant.index_within_set(other.node *
+                                                                   dim),
+                                         other.weight);
+          // See Scene::inspect_contact_pairs().
+          Assert(coupling_of.count(coupling.node) == 0, ExcInternalError());
+          coupling_of[coupling.node] = couplings.size();
+          couplings.push_back(coupling);
+        }
+
+    for (const auto &[node, number] : coupling_of)
+      couplings_of_node[node] = {{number, 1.}};
+    for (const auto &line : hanging_cartesian.get_lines())
+      if (line.index % dim == 0)
+        for (const auto &[parent, weight] : line.entries)
+          if (const auto coupling =
+                coupling_of.find(relevant.index_within_set(parent));
+              coupling != coupling_of.end())
+            couplings_of_node[relevant.index_within_set(line.index)]
+              .emplace_back(coupling->second, weight);
+
+    DistributedVector positions = owned_vector(), ghosted = ghosted_vector();
+    for (std::size_t n = 0; n < node_position.size(); ++n)
+      for (unsigned int d = 0; d < dim; ++d)
+        positions.begin()[n * dim + d] = node_position[n][d];
+    ghosted = positions;
+    for (Coupling &coupling : couplings)
+      for (const auto &[other, weight] : coupling.others)
+        for (unsigned int d = 0; d < dim; ++d)
+          coupling.opposite[d] += weight * ghosted.begin()[other + d];
+  }
+
+
+
+  template <int dim>
+  void
   AdmissibleSpace<dim>::restrict_to_unknowns(DistributedVector &in_frames) const
   {
     for (std::size_t i = 0; i < is_excluded.size(); ++i)
@@ -292,6 +412,16 @@ namespace Viscoplastic
               cartesian[relevant.index_within_set(master)] += weight * share;
           share = 0.;
         }
+    for (const Coupling &coupling : couplings)
+      {
+        Tensor<1, dim> f;
+        for (unsigned int d = 0; d < dim; ++d)
+          f[d] = cartesian[coupling.node + d];
+        f = coupling.projector * f;
+        for (const auto &[other, weight] : coupling.others)
+          for (unsigned int d = 0; d < dim; ++d)
+            cartesian[other + d] += weight * f[d];
+      }
     for (const std::size_t n : rotated_nodes)
       {
         const NodalFrame<dim> &frame = frames[frame_of_node[n / dim]];
@@ -341,8 +471,51 @@ namespace Viscoplastic
           for (unsigned int d = 0; d < dim; ++d)
             entry[d] = u[d];
         }
+    if (!mortar_rows.empty())
+      {
+        ghosted = cartesian;
+        add_opposite(1., ghosted, cartesian);
+      }
     distribute_hanging_nodes(cartesian);
     ghosted = cartesian;
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::add_opposite(const double             factor,
+                                     const DistributedVector &ghosted,
+                                     DistributedVector       &v) const
+  {
+    for (const Coupling &coupling : couplings)
+      if (coupling.node >= first_owned &&
+          coupling.node < first_owned + owned.n_elements())
+        {
+          Tensor<1, dim> u;
+          for (const auto &[other, weight] : coupling.others)
+            for (unsigned int d = 0; d < dim; ++d)
+              u[d] += weight * ghosted.begin()[other + d];
+          u = factor * (coupling.projector * u);
+          for (unsigned int d = 0; d < dim; ++d)
+            v.begin()[coupling.node - first_owned + d] += u[d];
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::make_relative(DistributedVector &ghosted) const
+  {
+    if (mortar_rows.empty())
+      return;
+    DistributedVector relative = owned_vector();
+    for (std::size_t i = 0; i < owned.n_elements(); ++i)
+      relative.begin()[i] = ghosted.begin()[first_owned + i];
+    add_opposite(-1., ghosted, relative);
+    distribute_hanging_nodes(relative);
+    ghosted = relative;
   }
 
 
@@ -366,18 +539,125 @@ namespace Viscoplastic
     const double *u = ghosted.begin();
     for (std::size_t i = 0; i < owned.n_elements(); ++i)
       in_frames.begin()[i] = u[first_owned + i];
+    add_opposite(-1., ghosted, in_frames);
     for (const std::size_t n : rotated_nodes)
       if (n >= first_owned && n < first_owned + owned.n_elements())
         {
           Tensor<1, dim> v;
           for (unsigned int d = 0; d < dim; ++d)
-            v[d] = u[n + d];
+            v[d] = in_frames.begin()[n - first_owned + d];
           v = transpose(frames[frame_of_node[n / dim]].directions) * v;
           for (unsigned int d = 0; d < dim; ++d)
             in_frames.begin()[n - first_owned + d] = v[d];
         }
     for (const std::size_t i : hanging_entries)
       in_frames.begin()[i] = 0.;
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::make_sparsity_pattern(
+    TrilinosWrappers::SparsityPattern &pattern) const
+  {
+    pattern.reinit(owned, owned, relevant, communicator);
+    DoFTools::make_sparsity_pattern(dof_handler,
+                                    pattern,
+                                    hanging_in_frames,
+                                    /* keep_constrained_dofs = */ false,
+                                    Utilities::MPI::this_mpi_process(
+                                      communicator));
+    if (!couplings.empty())
+      {
+        std::vector<types::global_dof_index> dofs(
+          dof_handler.get_fe().n_dofs_per_cell());
+        FullMatrix<double> none;
+        for (const auto &cell : cells)
+          {
+            dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
+            cell->get_dof_indices(dofs);
+            const std::size_t n = dofs.size();
+            couple(dofs, none);
+            if (dofs.size() > n)
+              hanging_in_frames.add_entries_local_to_global(dofs,
+                                                            pattern,
+                                                            false);
+          }
+      }
+    pattern.compress();
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::add_cell_matrix(
+    const std::vector<types::global_dof_index> &dofs,
+    FullMatrix<double>                         &cell_matrix,
+    DistributedMatrix                          &matrix) const
+  {
+    if (couplings.empty())
+      {
+        rotate(dofs, cell_matrix);
+        hanging_in_frames.distribute_local_to_global(cell_matrix, dofs, matrix);
+        return;
+      }
+    std::vector<types::global_dof_index> all(dofs);
+    FullMatrix<double>                   coupled(cell_matrix);
+    couple(all, coupled);
+    rotate(all, coupled);
+    hanging_in_frames.distribute_local_to_global(coupled, all, matrix);
+  }
+
+
+
+  template <int dim>
+  void
+  AdmissibleSpace<dim>::couple(std::vector<types::global_dof_index> &dofs,
+                               FullMatrix<double> &cell_matrix) const
+  {
+    // The rows of T = I + C Q: blocks of nodes opposite, which become further
+    // degrees of freedom.
+    struct Entry
+    {
+      unsigned int   row;
+      std::size_t    other;
+      Tensor<2, dim> block;
+    };
+    const unsigned int                  n = dofs.size();
+    std::vector<Entry>                  entries;
+    std::map<std::size_t, unsigned int> column_of;
+    for (unsigned int a = 0; a < n; a += dim)
+      {
+        const std::size_t node = relevant.index_within_set(dofs[a]);
+        column_of.emplace(node, a);
+        const auto of_node = couplings_of_node.find(node);
+        if (of_node == couplings_of_node.end())
+          continue;
+        for (const auto &[number, share] : of_node->second)
+          for (const auto &[other, weight] : couplings[number].others)
+            entries.push_back(
+              {a, other, share * weight * couplings[number].projector});
+      }
+    if (entries.empty())
+      return;
+    for (const Entry &entry : entries)
+      if (column_of.emplace(entry.other, dofs.size()).second)
+        for (unsigned int d = 0; d < dim; ++d)
+          dofs.push_back(relevant.nth_index_in_set(entry.other + d));
+    if (cell_matrix.m() == 0)
+      return; // only the pattern is asked for
+    FullMatrix<double> T(n, dofs.size()), product(n, dofs.size());
+    for (unsigned int i = 0; i < n; ++i)
+      T(i, i) = 1.;
+    for (const auto &[a, other, block] : entries)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          T(a + i, column_of.at(other) + j) += block[i][j];
+    cell_matrix.mmult(product, T);
+    cell_matrix.reinit(dofs.size(), dofs.size());
+    T.Tmmult(cell_matrix, product);
   }
 
 

@@ -28,6 +28,8 @@ namespace Viscoplastic
         }
     make_nodes();
     make_shares();
+    if (!space.mortar_rows.empty())
+      weigh_other_sides();
     if (any_gives_way)
       make_compliance();
   }
@@ -238,6 +240,45 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  ContactFace<dim>::weigh_other_sides()
+  {
+    std::set<types::boundary_id> other_sides;
+    for (const auto &of_boundary : space.mortar_rows)
+      other_sides.insert(*space.scene.boundary.at(of_boundary.first).against);
+    other_side_weights.reinit(space.owned, space.relevant, space.communicator);
+    FEFaceValues<dim> face_values(space.dof_handler.get_fe(),
+                                  QGauss<dim - 1>(2),
+                                  update_values | update_JxW_values);
+    const auto       &hanging = space.cartesian_hanging_nodes();
+    for (const auto &cell : space.cells)
+      for (const unsigned int f : cell->face_indices())
+        if (cell->at_boundary(f) &&
+            other_sides.count(cell->face(f)->boundary_id()) == 1)
+          {
+            face_values.reinit(cell, f);
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                double weight = 0.;
+                for (const unsigned int q :
+                     face_values.quadrature_point_indices())
+                  weight +=
+                    face_values.shape_value(v * dim, q) * face_values.JxW(q);
+                const auto dof = cell->vertex_dof_index(v, 0);
+                if (!hanging.is_constrained(dof))
+                  other_side_weights(dof) += weight;
+                else
+                  for (const auto &[parent, share] :
+                       *hanging.get_constraint_entries(dof))
+                    other_side_weights(parent) += share * weight;
+              }
+          }
+    other_side_weights.compress(VectorOperation::add);
+  }
+
+
+
+  template <int dim>
+  void
   ContactFace<dim>::make_compliance()
   {
     // int c phi_c: the penetration is that of the node, as the gap is.
@@ -335,6 +376,22 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  ContactFace<dim>::initial_distance(const Node           &node,
+                                     const Tensor<1, dim> &normal) const
+  {
+    const Point<dim> &opposite = space.coupling_at(node.first_dof).opposite;
+    const double      distance = (opposite - node.position) * normal;
+    // Bodies that touch do so but for rounding of coordinates.
+    return std::abs(distance) >
+               1e-12 * (opposite.norm() + node.position.norm()) ?
+             distance :
+             0.;
+  }
+
+
+
+  template <int dim>
   std::vector<double>
   ContactFace<dim>::bounds(const double               t,
                            const std::vector<double> &slip_rates) const
@@ -359,10 +416,14 @@ namespace Viscoplastic
           {
             result[p] = std::numeric_limits<double>::max();
             for (const types::boundary_id id : boundary_ids[p])
-              result[p] =
-                std::min(result[p],
-                         space.scene.boundary.at(id).gap(
-                           nodes[layout().points[p].node].position, t));
+              {
+                const Node &node      = nodes[layout().points[p].node];
+                const auto &condition = space.scene.boundary.at(id);
+                double      gap       = condition.gap(node.position, t);
+                if (condition.against)
+                  gap += initial_distance(node, condition.normal);
+                result[p] = std::min(result[p], gap);
+              }
           }
     if (!bounds_vary && !any_rate)
       constant_bounds = result;
@@ -473,7 +534,7 @@ namespace Viscoplastic
         }
     bool here = false;
     for (std::size_t s = 0; s < samples.size(); ++s)
-      if (weights[s] > 0.)
+      if (weights[s] > 0. && !samples[s].condition->against)
         here |=
           samples[s].condition->gap(samples[s].x, t) + sums[s] / weights[s] <
           0.;

@@ -41,6 +41,19 @@ namespace Viscoplastic
 
 
   template <int dim>
+  Tensor<1, dim>
+  ContactFace<dim>::resultant_on_foundations(const ContactState &state) const
+  {
+    Tensor<1, dim> sum;
+    for (unsigned int p = 0; p < layout().points.size(); ++p)
+      if (!space.scene.boundary.at(boundary_ids[p].front()).against)
+        sum += cartesian(p, state.multiplier[p]);
+    return Utilities::MPI::sum(sum, space.communicator);
+  }
+
+
+
+  template <int dim>
   std::vector<Tensor<1, 2>>
   ContactFace<dim>::slips(
     const DistributedVector         &change,
@@ -89,6 +102,9 @@ namespace Viscoplastic
     const ContactLayout &face   = layout();
     DistributedVector    values = space.owned_vector(),
                       ghosted   = space.ghosted_vector();
+    LinearAlgebra::distributed::Vector<double> on_other_side;
+    if (!space.mortar_rows.empty())
+      on_other_side.reinit(space.owned, space.relevant, space.communicator);
     for (unsigned int p = 0; p < face.points.size(); ++p)
       {
         const auto dof = nodes[face.points[p].node].first_dof;
@@ -120,6 +136,22 @@ namespace Viscoplastic
           }
         for (unsigned int d = 0; d < dim; ++d)
           values.begin()[space.owned.index_within_set(dof) + d] += traction[d];
+        if (!space.scene.boundary.at(boundary_ids[p].front()).against)
+          continue;
+        const auto          &coupling = space.coupling_at(dof);
+        const Tensor<1, dim> force    = area * (coupling.projector * traction);
+        for (const auto &[other, weight] : coupling.others)
+          for (unsigned int d = 0; d < dim; ++d)
+            on_other_side(space.relevant.nth_index_in_set(other + d)) +=
+              weight * force[d];
+      }
+    if (!space.mortar_rows.empty())
+      {
+        on_other_side.compress(VectorOperation::add);
+        for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+          if (const double force = on_other_side.local_element(i); force != 0.)
+            values.begin()[i] -=
+              force / other_side_weights.local_element(i - i % dim);
       }
     space.distribute_hanging_nodes(values);
     ghosted = values;
@@ -198,6 +230,8 @@ namespace Viscoplastic
     const;                                                                   \
   template Tensor<1, dim> ContactFace<dim>::resultant(const ContactState &,  \
                                                       const bool) const;     \
+  template Tensor<1, dim> ContactFace<dim>::resultant_on_foundations(        \
+    const ContactState &) const;                                             \
   template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                \
     const DistributedVector &, const std::vector<Tensor<1, 2>> &) const;     \
   template std::vector<double> ContactFace<dim>::slip_rates(                 \

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
@@ -98,17 +97,8 @@ namespace Viscoplastic
                           const bool                  mean_dilatation,
                           DistributedMatrix          &matrix)
   {
-    TrilinosWrappers::SparsityPattern pattern(space.owned,
-                                              space.owned,
-                                              space.relevant,
-                                              space.communicator);
-    DoFTools::make_sparsity_pattern(space.dof_handler,
-                                    pattern,
-                                    space.hanging_nodes(),
-                                    /* keep_constrained_dofs = */ false,
-                                    Utilities::MPI::this_mpi_process(
-                                      space.communicator));
-    pattern.compress();
+    TrilinosWrappers::SparsityPattern pattern;
+    space.make_sparsity_pattern(pattern);
     matrix.reinit(pattern);
 
     const FiniteElement<dim>            &fe = space.dof_handler.get_fe();
@@ -131,10 +121,7 @@ namespace Viscoplastic
         last        = &stiffness;
         cell_matrix = cartesian;
         cell->get_dof_indices(dofs);
-        space.rotate(dofs, cell_matrix);
-        space.hanging_nodes().distribute_local_to_global(cell_matrix,
-                                                         dofs,
-                                                         matrix);
+        space.add_cell_matrix(dofs, cell_matrix, matrix);
       }
     matrix.compress(VectorOperation::add);
   }

@@ -261,6 +261,11 @@ namespace Viscoplastic
           }
         hierarchy.row_begin.push_back(hierarchy.parents.size());
       }
+    hierarchy.has_interfaces = !space.mortar_rows.empty();
+    for (const auto &of_boundary : space.mortar_rows)
+      for (const auto &[node, row] : of_boundary.second)
+        if (node >= hierarchy.begin && node < hierarchy.end)
+          hierarchy.opposite[node] = row;
     space.for_each_rotated_node(
       [&](const Node first_dof, const Tensor<2, dim> &directions) {
         Tensor<2, 3> padded;

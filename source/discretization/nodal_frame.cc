@@ -188,20 +188,27 @@ namespace Viscoplastic
     for (const auto *condition : conditions)
       if (condition->id < first_support_id)
         require_components(*condition);
-    for (const auto *condition : conditions)
-      if (condition->is_glued())
-        for (unsigned int d = 0; d < dim; ++d)
-          require(axis<dim>(d), condition->id, d);
+    const auto require_glue = [&](const bool to_other_body) {
+      for (const auto *condition : conditions)
+        if (condition->is_glued() &&
+            condition->against.has_value() == to_other_body)
+          for (unsigned int d = 0; d < dim; ++d)
+            require(axis<dim>(d), condition->id, d);
+    };
+    require_glue(false);
     for (const BoundaryRole role :
          {BoundaryRole::symmetry, BoundaryRole::contact})
       for (const auto *condition : conditions)
-        if (condition->role == role && condition->is_bilateral())
+        if (condition->role == role && condition->is_bilateral() &&
+            !condition->is_glued())
           require(condition->normal,
                   condition->id,
                   numbers::invalid_unsigned_int);
     for (const auto *condition : conditions)
       if (condition->id >= first_support_id)
         require_components(*condition);
+    // What else holds a node holds it against the ground.
+    require_glue(true);
 
     // The normals of pieces with given normal stress or unilateral contact come
     // next, so that the slip of a single piece is made of single components.

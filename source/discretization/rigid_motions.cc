@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -23,9 +24,12 @@ namespace Viscoplastic
     template <int dim>
     constexpr unsigned int n_rigid_motions = dim == 2 ? 3 : 6;
 
+    constexpr unsigned int all_parts = numbers::invalid_unsigned_int;
 
 
-    using RigidMotion = std::array<double, 6>;
+
+    /// Of one part of the body after the other.
+    using RigidMotion = std::vector<double>;
 
 
 
@@ -34,10 +38,14 @@ namespace Viscoplastic
      * of rows = Q R. (R^T R would not tell the width of a thin sheet from
      * rounding.)
      */
-    template <int dim>
     class SeenMotions
     {
     public:
+      explicit SeenMotions(const unsigned int n)
+        : n(n)
+        , triangle(n, n)
+      {}
+
       /// Givens rotations take a row into the triangle.
       void
       add(RigidMotion row)
@@ -70,7 +78,7 @@ namespace Viscoplastic
              Utilities::MPI::all_gather(communicator, entries))
           for (unsigned int i = 0; i < n; ++i)
             {
-              RigidMotion row{};
+              RigidMotion row(n);
               for (unsigned int j = 0; j < n; ++j)
                 row[j] = of_rank[i * n + j];
               add(row);
@@ -91,7 +99,7 @@ namespace Viscoplastic
           if (matrix.singular_value(e) <=
               1e-9 * std::max(matrix.singular_value(0), 1e-300))
             {
-              RigidMotion motion{};
+              RigidMotion motion(n);
               for (unsigned int a = 0; a < n; ++a)
                 motion[a] = vt(e, a);
               result.push_back(motion);
@@ -100,19 +108,34 @@ namespace Viscoplastic
       }
 
     private:
-      static constexpr unsigned int n        = n_rigid_motions<dim>;
-      FullMatrix<double>            triangle = FullMatrix<double>(n, n);
+      unsigned int       n;
+      FullMatrix<double> triangle;
     };
 
 
 
-    /// Rigid motions in words.
+    /// Rigid motions in words; of several parts that of the one which moves
+    /// most.
     template <int dim>
     std::string
-    in_words(const std::vector<RigidMotion> &motions)
+    in_words(std::vector<RigidMotion> motions)
     {
-      constexpr unsigned int n              = n_rigid_motions<dim>;
-      const auto             is_translation = [](const RigidMotion &motion) {
+      constexpr unsigned int n = n_rigid_motions<dim>;
+      for (RigidMotion &motion : motions)
+        {
+          RigidMotion most;
+          double      largest = -1.;
+          for (auto part = motion.begin(); part != motion.end(); part += n)
+            if (const double square =
+                  std::inner_product(part, part + n, part, 0.);
+                square > largest + 1e-8)
+              {
+                largest = square;
+                most.assign(part, part + n);
+              }
+          motion = most;
+        }
+      const auto is_translation = [](const RigidMotion &motion) {
         for (unsigned int a = dim; a < n; ++a)
           if (std::abs(motion[a]) > 1e-8)
             return false;
@@ -190,15 +213,15 @@ namespace Viscoplastic
 
 
 
-    /// The parts of the present body, joined by faces. Without stages the body
-    /// is one.
+    /// The parts of the present body, joined by faces. Without stages and
+    /// contact between bodies it is one.
     struct BodyParts
     {
       unsigned int n = 1;
       /// The parts that each boundary node belongs to, by its position in the
       /// list of boundary nodes.
       std::vector<std::set<unsigned int>> of_node;
-      /// The part of each cell of the coarse mesh; empty without stages.
+      /// The part of each cell of the coarse mesh; empty where there is one.
       std::vector<unsigned int> of_cell;
     };
 
@@ -210,7 +233,7 @@ namespace Viscoplastic
     {
       const auto &nodes = space.boundary_nodes();
       BodyParts   result;
-      if (!space.scene.has_stages())
+      if (!space.scene.has_stages() && !space.scene.has_contact_pairs())
         {
           result.of_node.assign(nodes.size(), {0});
           return result;
@@ -276,22 +299,77 @@ namespace Viscoplastic
   void
   AdmissibleSpace<dim>::check_rigid_motions()
   {
-    const BodyParts               parts = find_parts(*this);
-    std::vector<SeenMotions<dim>> seen(parts.n);
-    const Point<dim>              center = this->center();
+    constexpr unsigned int n_motions   = n_rigid_motions<dim>;
+    const BodyParts        parts       = find_parts(*this);
+    const bool             are_coupled = scene.has_contact_pairs();
+    // Parts that see each other are looked at together.
+    std::vector<SeenMotions> seen(are_coupled ? 1 : parts.n,
+                                  SeenMotions(are_coupled ?
+                                                parts.n * n_motions :
+                                                n_motions));
+    const auto group = [&](const unsigned int part) {
+      return are_coupled ? 0 : part;
+    };
+    const Point<dim> center = this->center();
+    if (are_coupled)
+      {
+        part_of_node.assign(node_position.size(), 0);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            for (const unsigned int v : cell->vertex_indices())
+              if (const auto dof = cell->vertex_dof_index(v, 0);
+                  owned.is_element(dof))
+                part_of_node[owned.index_within_set(dof) / dim] =
+                  parts.of_cell[coarse_cell_of<dim>(cell)->index()];
+      }
+    DistributedVector part_numbers;
+    if (are_coupled)
+      {
+        DistributedVector numbers = owned_vector();
+        for (std::size_t n = 0; n < part_of_node.size(); ++n)
+          numbers.begin()[n * dim] = part_of_node[n];
+        part_numbers = ghosted_vector();
+        part_numbers = numbers;
+      }
     for (const auto &x : node_position)
       radius = std::max(radius, x.distance(center));
     radius = Utilities::MPI::max(radius, communicator);
 
     // What the displacement of a place along a direction sees of the motions.
-    const auto add_row = [&](SeenMotions<dim>     &to,
-                             const Point<dim>     &position,
-                             const Tensor<1, dim> &direction) {
+    const auto set_part = [&](RigidMotion          &row,
+                              const unsigned int    part,
+                              const Point<dim>     &position,
+                              const Tensor<1, dim> &direction) {
       const auto motions =
         rigid_displacements<dim>((position - center) / radius);
-      RigidMotion row{};
-      for (unsigned int a = 0; a < motions.size(); ++a)
-        row[a] = motions[a] * direction;
+      for (unsigned int a = 0; a < n_motions; ++a)
+        row[(are_coupled ? part * n_motions : 0) + a] = motions[a] * direction;
+    };
+    const auto add_row = [&](SeenMotions          &to,
+                             const unsigned int    part,
+                             const Point<dim>     &position,
+                             const Tensor<1, dim> &direction) {
+      RigidMotion row(are_coupled ? parts.n * n_motions : n_motions, 0.);
+      set_part(row, part, position, direction);
+      to.add(row);
+    };
+    // That of a boundary node, relative to the body opposite if there is one.
+    const auto add_row_of_node = [&](SeenMotions          &to,
+                                     const unsigned int    part,
+                                     const BoundaryNode   &node,
+                                     const Tensor<1, dim> &direction) {
+      const auto of_node =
+        couplings_of_node.find(relevant.index_within_set(node.first_dof));
+      if (of_node == couplings_of_node.end())
+        return add_row(to, part, node.position, direction);
+      const Coupling &coupling = couplings[of_node->second[0].first];
+      RigidMotion     row(parts.n * n_motions, 0.);
+      set_part(row, part, node.position, direction);
+      set_part(row,
+               static_cast<unsigned int>(
+                 part_numbers.begin()[coupling.others[0].first]),
+               coupling.opposite,
+               -(coupling.projector * direction));
       to.add(row);
     };
     const auto sees_contact = [](const NodalFrame<dim> &frame,
@@ -307,14 +385,15 @@ namespace Viscoplastic
     for (std::size_t m = 0; m < nodes.size(); ++m)
       for (unsigned int i = 0; i < frames[nodes[m].frame].n_fixed; ++i)
         for (const unsigned int part : parts.of_node[m])
-          add_row(seen[part],
-                  nodes[m].position,
-                  column(frames[nodes[m].frame].directions,
-                         frames[nodes[m].frame].fixed[i]));
+          add_row_of_node(seen[group(part)],
+                          part,
+                          nodes[m],
+                          column(frames[nodes[m].frame].directions,
+                                 frames[nodes[m].frame].fixed[i]));
 
     if (scene.has_springs())
       {
-        for (SeenMotions<dim> of_part : seen) // a copy
+        for (SeenMotions of_part : seen) // a copy
           {
             of_part.join(communicator);
             needs_springs |= !of_part.unseen().empty();
@@ -345,16 +424,17 @@ namespace Viscoplastic
                                                  face_values.normal_vector(q));
                     if (const double size = K.norm(); size > 0.)
                       for (unsigned int d = 0; d < dim; ++d)
-                        add_row(seen[part],
+                        add_row(seen[group(part)],
+                                part,
                                 face_values.quadrature_point(q),
                                 K * Point<dim>::unit_vector(d) / size);
                   }
               }
       }
 
-    for (SeenMotions<dim> &of_part : seen)
+    for (SeenMotions &of_part : seen)
       {
-        SeenMotions<dim> with_contact(of_part);
+        SeenMotions with_contact(of_part);
         of_part.join(communicator);
         const auto  free    = of_part.unseen();
         std::string motions = in_words<dim>(free);
@@ -362,12 +442,13 @@ namespace Viscoplastic
           seen.size() == 1 && scene.has_unilateral_contact();
         if (!motions.empty() && may_be_held_by_contact)
           {
-            for (const BoundaryNode &node : nodes)
+            for (std::size_t m = 0; m < nodes.size(); ++m)
               for (unsigned int d = 0; d < dim; ++d)
-                if (sees_contact(frames[node.frame], d))
-                  add_row(with_contact,
-                          node.position,
-                          column(frames[node.frame].directions, d));
+                if (sees_contact(frames[nodes[m].frame], d))
+                  add_row_of_node(with_contact,
+                                  *parts.of_node[m].begin(),
+                                  nodes[m],
+                                  column(frames[nodes[m].frame].directions, d));
             with_contact.join(communicator);
             motions = in_words<dim>(with_contact.unseen());
             if (motions.empty())
@@ -375,8 +456,9 @@ namespace Viscoplastic
           }
         std::ostringstream what;
         what << "The boundary conditions leave a rigid motion free";
-        if (seen.size() > 1)
-          what << " of one of the " << seen.size() << " parts of the body";
+        if (parts.n > 1)
+          what << " of one of the " << parts.n
+               << (are_coupled ? " bodies" : " parts of the body");
         if (scene.stage() > 0)
           what << " from t = " << scene.stage_ends[scene.stage() - 1]
                << " on, when materials are added or removed";
@@ -409,28 +491,36 @@ namespace Viscoplastic
 
 
   template <int dim>
+  DistributedVector
+  AdmissibleSpace<dim>::rigid_motion(const unsigned int motion,
+                                     const unsigned int part) const
+  {
+    DistributedVector cartesian = owned_vector(), in_frames = owned_vector();
+    const Point<dim>  center = this->center();
+    for (std::size_t n = 0; n < node_position.size(); ++n)
+      if (part == all_parts || part_of_node.empty() || part_of_node[n] == part)
+        {
+          const Tensor<1, dim> u =
+            rigid_displacements<dim>(node_position[n] - center)[motion];
+          for (unsigned int d = 0; d < dim; ++d)
+            cartesian.begin()[n * dim + d] = u[d];
+        }
+    DistributedVector ghosted = ghosted_vector();
+    ghosted                   = cartesian;
+    to_frames(ghosted, in_frames);
+    restrict_to_unknowns(in_frames);
+    return in_frames;
+  }
+
+
+
+  template <int dim>
   std::vector<DistributedVector>
   AdmissibleSpace<dim>::rigid_body_modes() const
   {
-    constexpr unsigned int         n_modes = n_rigid_motions<dim>;
-    std::vector<DistributedVector> modes(n_modes, owned_vector());
-    const Point<dim>               center = this->center();
-    for (std::size_t n = 0; n < node_position.size(); ++n)
-      {
-        const NodalFrame<dim> &frame =
-          frames[frame_of_node[(first_owned / dim) + n]];
-        const auto motions =
-          rigid_displacements<dim>(node_position[n] - center);
-        for (unsigned int m = 0; m < n_modes; ++m)
-          {
-            Tensor<1, dim> u = motions[m];
-            if (!frame.is_cartesian)
-              u = transpose(frame.directions) * u;
-            for (unsigned int d = 0; d < dim; ++d)
-              if (!is_excluded[n * dim + d])
-                modes[m].begin()[n * dim + d] = u[d];
-          }
-      }
+    std::vector<DistributedVector> modes;
+    for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
+      modes.push_back(rigid_motion(m, all_parts));
     return modes;
   }
 
@@ -440,11 +530,16 @@ namespace Viscoplastic
   std::vector<DistributedVector>
   AdmissibleSpace<dim>::motions_held_by_contact() const
   {
-    const auto                     modes = rigid_body_modes();
+    constexpr unsigned int         n = n_rigid_motions<dim>;
     std::vector<DistributedVector> result(free_motions.size(), owned_vector());
-    for (std::size_t i = 0; i < free_motions.size(); ++i)
-      for (std::size_t m = 0; m < modes.size(); ++m)
-        result[i].add(free_motions[i][m] / (m < dim ? 1. : radius), modes[m]);
+    if (free_motions.empty())
+      return result;
+    for (std::size_t a = 0; a < free_motions[0].size(); ++a)
+      {
+        const DistributedVector mode = rigid_motion(a % n, a / n);
+        for (std::size_t i = 0; i < free_motions.size(); ++i)
+          result[i].add(free_motions[i][a] / (a % n < dim ? 1. : radius), mode);
+      }
     return result;
   }
 
@@ -455,7 +550,7 @@ namespace Viscoplastic
   AdmissibleSpace<dim>::name_of_motion(
     const std::vector<double> &in_free_motions) const
   {
-    RigidMotion motion{};
+    RigidMotion motion(free_motions[0].size(), 0.);
     double      norm_square = 0.;
     for (std::size_t a = 0; a < motion.size(); ++a)
       {
@@ -478,6 +573,12 @@ namespace Viscoplastic
   AdmissibleSpace<2>::center() const;
   template Point<3>
   AdmissibleSpace<3>::center() const;
+  template DistributedVector
+  AdmissibleSpace<2>::rigid_motion(const unsigned int,
+                                   const unsigned int) const;
+  template DistributedVector
+  AdmissibleSpace<3>::rigid_motion(const unsigned int,
+                                   const unsigned int) const;
   template std::vector<DistributedVector>
   AdmissibleSpace<2>::rigid_body_modes() const;
   template std::vector<DistributedVector>

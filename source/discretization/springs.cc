@@ -102,10 +102,7 @@ namespace Viscoplastic
                                    shape_values[face.number][q][j / dim] *
                                    face.stiffness[q][i % dim][j % dim];
         face.cell->get_dof_indices(dofs);
-        space.rotate(dofs, cell_matrix);
-        space.hanging_nodes().distribute_local_to_global(cell_matrix,
-                                                         dofs,
-                                                         matrix);
+        space.add_cell_matrix(dofs, cell_matrix, matrix);
       }
     matrix.compress(VectorOperation::add);
   }

@@ -170,10 +170,7 @@ namespace Viscoplastic
         cell_matrix = 0.;
         stress_space.add_stiffness(c, change.data(), cell_matrix);
         cell->get_dof_indices(dofs);
-        space.rotate(dofs, cell_matrix);
-        space.hanging_nodes().distribute_local_to_global(cell_matrix,
-                                                         dofs,
-                                                         tangent_matrix);
+        space.add_cell_matrix(dofs, cell_matrix, tangent_matrix);
       }
     tangent_matrix.compress(VectorOperation::add);
   }

@@ -70,6 +70,20 @@ namespace Viscoplastic
         }
       return residual;
     }
+
+
+
+    /// What of the residual of a loaded face is known where another body is in
+    /// contact with it.
+    template <int dim>
+    Tensor<1, dim>
+    on_other_side(const BoundaryCondition<dim> &contact,
+                  const Tensor<1, dim>         &residual)
+    {
+      return contact.is_glued()      ? Tensor<1, dim>() :
+             contact.is_unilateral() ? residual :
+                                       tangential(residual, contact.normal);
+    }
   } // namespace
 
 
@@ -242,7 +256,9 @@ namespace Viscoplastic
     const BoundaryCondition<dim> &condition = *face.condition;
     const LocalCell              &cell      = cells[face.cell];
     const FaceShape              &shape = shapes[cell.shape].faces[face.face];
-    const bool has_multipliers          = condition.has_contact_points(),
+    const bool                    has_multipliers =
+                 condition.has_contact_points() ||
+                 (face.opposite && face.opposite->has_contact_points()),
                varies =
                  condition.carries_load() && condition.load_depends_on_time(),
                has_bound   = condition.has_given_bound(),
@@ -282,7 +298,8 @@ namespace Viscoplastic
                            (bounds_vary ?
                               condition.bound(face.positions[q], *fields.t) :
                               face.bounds[q]));
-            if (opens)
+            // Between two bodies, what nodes leave open is not known here.
+            if (opens && !condition.against)
               {
                 const double gap =
                   bounds_vary ? condition.gap(face.positions[q], *fields.t) :
@@ -298,6 +315,8 @@ namespace Viscoplastic
         if (!face.springs.empty())
           given -= face.springs[q].stiffness * at_point(fields.u.begin());
         result[q] = contradiction(condition, tractions[q], given, density);
+        if (face.opposite)
+          result[q] = on_other_side(*face.opposite, result[q] + density);
         if (!face.springs.empty())
           result[q] = face.springs[q].weight * result[q];
       }

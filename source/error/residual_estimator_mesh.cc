@@ -193,6 +193,11 @@ namespace Viscoplastic
   {
     BoundaryFace face{
       number, f, &condition, cell->face(f)->diameter(), {}, {}, {}, {}, {}, {}};
+    for (const auto &of_boundary : stress_space.space.mortar_rows)
+      if (const auto &contact =
+            stress_space.space.scene.boundary.at(of_boundary.first);
+          *contact.against == condition.id)
+        face.opposite = &contact;
     const FaceShape &shape = shapes[cells[number].shape].faces[f];
     for (unsigned int q = 0; q < n_face_points; ++q)
       {

@@ -55,6 +55,7 @@ namespace Viscoplastic
     , face(restriction.face())
     , begins(1, 0)
     , masks(excluded, hierarchy, restriction)
+    , opposite(hierarchy.opposite)
     , has_direct_coarse_solver(rigid_body_modes.empty())
     , largest_shared_part(options.largest_shared_part)
   {
@@ -124,22 +125,26 @@ namespace Viscoplastic
 
   template <int dim>
   Interpolation
-  GeometricMultigrid<dim>::make_interpolation(
-    const unsigned int       level,
-    const std::vector<Node> &ghosts) const
+  GeometricMultigrid<dim>::make_interpolation(const unsigned int       level,
+                                              const std::vector<Node> &ghosts)
   {
-    const unsigned int mesh = first_mesh + level;
-    const auto         row  = [&](const Node node) {
+    const unsigned int mesh         = first_mesh + level;
+    const auto         displacement = [&](const Node node) {
       const std::size_t n = node - hierarchy.begin;
       if (hierarchy.first_level[n] < mesh)
-        return std::vector<NodeHierarchy::Parent>{{node, 1.}};
-      return std::vector<NodeHierarchy::Parent>(hierarchy.parents.begin() +
-                                                  hierarchy.row_begin[n],
-                                                hierarchy.parents.begin() +
-                                                  hierarchy.row_begin[n + 1]);
+        return Row{{node, 1.}};
+      return Row(hierarchy.parents.begin() + hierarchy.row_begin[n],
+                 hierarchy.parents.begin() + hierarchy.row_begin[n + 1]);
+    };
+    std::map<Node, Row> at_interfaces;
+    if (hierarchy.has_interfaces)
+      at_interfaces = pass_interfaces_on(level, displacement);
+    const auto row = [&](const Node node) {
+      const auto found = at_interfaces.find(node);
+      return found == at_interfaces.end() ? displacement(node) : found->second;
     };
     Interpolation result;
-    const auto    add = [&](const std::vector<NodeHierarchy::Parent> &parents) {
+    const auto    add = [&](const Row &parents) {
       result.parents.insert(result.parents.end(),
                             parents.begin(),
                             parents.end());
@@ -150,6 +155,91 @@ namespace Viscoplastic
     if (begins.size() > 2)
       for (const auto &parents : ask_owners(ghosts, begins, communicator, row))
         add(parents);
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::map<NodeHierarchy::Node, std::vector<NodeHierarchy::Parent>>
+  GeometricMultigrid<dim>::pass_interfaces_on(
+    const unsigned int                    level,
+    const std::function<Row(const Node)> &displacement)
+  {
+    // Rows of nodes that may belong to other ranks.
+    const auto from_owners = [&](const std::set<Node> &nodes, const auto &row) {
+      std::map<Node, Row> result;
+      std::vector<Node>   foreign;
+      for (const Node node : nodes)
+        if (node >= hierarchy.begin && node < hierarchy.end)
+          result[node] = row(node);
+        else
+          foreign.push_back(node);
+      const auto answers = ask_owners(foreign, begins, communicator, row);
+      for (std::size_t i = 0; i < foreign.size(); ++i)
+        result[foreign[i]] = answers[i];
+      return result;
+    };
+    const auto add =
+      [](std::map<Node, double> &sums, const double factor, const Row &row) {
+        for (const auto &[node, weight] : row)
+          sums[node] += factor * weight;
+      };
+    const auto to_row = [](const std::map<Node, double> &sums) {
+      Row row;
+      for (const auto &[node, weight] : sums)
+        if (std::abs(weight) > 1e-12)
+          row.push_back({node, weight});
+      return row;
+    };
+
+    // What lies opposite, by nodes of the coarser mesh.
+    std::set<Node> others;
+    for (const auto &of_node : opposite)
+      for (const auto &other : of_node.second)
+        others.insert(other.node);
+    const auto          of_others = from_owners(others, displacement);
+    std::map<Node, Row> by_coarse_nodes, coarse_opposite;
+    for (const auto &[node, row] : opposite)
+      {
+        std::map<Node, double> sums;
+        for (const auto &[other, weight] : row)
+          add(sums, weight, of_others.at(other));
+        by_coarse_nodes[node] = to_row(sums);
+        if (hierarchy.first_level[node - hierarchy.begin] < first_mesh + level)
+          coarse_opposite[node] = by_coarse_nodes[node];
+      }
+
+    // A displacement is that of its parents, and of what lies opposite to them;
+    // the unknown at an interface is what it differs by from the other side.
+    std::set<Node> parents;
+    for (const Node node : levels[level]->nodes)
+      for (const auto &parent : displacement(node))
+        parents.insert(parent.node);
+    const auto opposite_of_parents = from_owners(parents, [&](const Node node) {
+      const auto found = coarse_opposite.find(node);
+      return found == coarse_opposite.end() ? Row() : found->second;
+    });
+    std::map<Node, Row> result;
+    for (const Node node : levels[level]->nodes)
+      {
+        const Row              row     = displacement(node);
+        const auto             here    = by_coarse_nodes.find(node);
+        bool                   is_near = here != by_coarse_nodes.end();
+        std::map<Node, double> sums;
+        add(sums, 1., row);
+        for (const auto &[parent, weight] : row)
+          {
+            const Row &across = opposite_of_parents.at(parent);
+            is_near |= !across.empty();
+            add(sums, weight, across);
+          }
+        if (here != by_coarse_nodes.end())
+          add(sums, -1., here->second);
+        if (is_near)
+          result[node] = to_row(sums);
+      }
+    opposite = coarse_opposite;
     return result;
   }
 

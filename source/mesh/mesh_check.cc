@@ -122,46 +122,47 @@ namespace Viscoplastic
 
 
 
-    /// Check that all coarse cells, which all ranks know, are connected by
-    /// faces that they share.
-    template <int dim>
-    void
-    check_connection(
-      const parallel::distributed::Triangulation<dim> &triangulation)
-    {
-      std::vector<bool> seen(triangulation.n_cells(0), false);
-      unsigned int      n_parts = 0;
-      Point<dim>        first, other;
-      for (const auto &start : triangulation.cell_iterators_on_level(0))
-        {
-          if (seen[start->index()])
-            continue;
-          (n_parts == 0 ? first : other) = start->center();
-          ++n_parts;
-          seen[start->index()] = true;
-          std::vector<typename Triangulation<dim>::cell_iterator> front{start};
-          while (!front.empty())
-            {
-              const auto cell = front.back();
-              front.pop_back();
-              for (const unsigned int f : cell->face_indices())
-                if (!cell->at_boundary(f) && !seen[cell->neighbor(f)->index()])
-                  {
-                    seen[cell->neighbor(f)->index()] = true;
-                    front.push_back(cell->neighbor(f));
-                  }
-            }
-        }
-      std::ostringstream message;
-      message << "The mesh consists of " << n_parts
-              << " parts that share no faces, e.g. the cells with the centers ("
-              << first << ") and (" << other
-              << ") are not connected; a scene has one body, whose cells have "
-                 "their nodes in common (merge nodes that are at the same "
-                 "place).";
-      AssertThrow(n_parts == 1, ExcMessage(message.str()));
-    }
   } // namespace
+
+
+
+  template <int dim>
+  void
+  check_connection(
+    const parallel::distributed::Triangulation<dim> &triangulation)
+  {
+    std::vector<bool> seen(triangulation.n_cells(0), false);
+    unsigned int      n_parts = 0;
+    Point<dim>        first, other;
+    for (const auto &start : triangulation.cell_iterators_on_level(0))
+      {
+        if (seen[start->index()])
+          continue;
+        (n_parts == 0 ? first : other) = start->center();
+        ++n_parts;
+        seen[start->index()] = true;
+        std::vector<typename Triangulation<dim>::cell_iterator> front{start};
+        while (!front.empty())
+          {
+            const auto cell = front.back();
+            front.pop_back();
+            for (const unsigned int f : cell->face_indices())
+              if (!cell->at_boundary(f) && !seen[cell->neighbor(f)->index()])
+                {
+                  seen[cell->neighbor(f)->index()] = true;
+                  front.push_back(cell->neighbor(f));
+                }
+          }
+      }
+    std::ostringstream message;
+    message << "The mesh consists of " << n_parts
+            << " parts that share no faces, e.g. the cells with the centers ("
+            << first << ") and (" << other
+            << ") are not connected. Bodies of their own need contact with "
+               "each other ('Against'); the cells of one body have their "
+               "nodes in common (merge nodes that are at the same place).";
+    AssertThrow(n_parts == 1, ExcMessage(message.str()));
+  }
 
 
 
@@ -176,7 +177,6 @@ namespace Viscoplastic
     // boundaries is moved.
     if (triangulation.n_global_levels() > 1)
       check_cells<dim>(triangulation.active_cell_iterators(), comm);
-    check_connection(triangulation);
   }
 
 
@@ -185,4 +185,8 @@ namespace Viscoplastic
   check_mesh(const parallel::distributed::Triangulation<2> &);
   template void
   check_mesh(const parallel::distributed::Triangulation<3> &);
+  template void
+  check_connection(const parallel::distributed::Triangulation<2> &);
+  template void
+  check_connection(const parallel::distributed::Triangulation<3> &);
 } // namespace Viscoplastic

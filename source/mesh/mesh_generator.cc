@@ -22,6 +22,11 @@ namespace Viscoplastic
 {
   namespace
   {
+    /// The boundary ids of the second of several bodies begin with this.
+    constexpr types::boundary_id ids_per_body = 20;
+
+
+
     /// Which arguments of a generator, counted from 0, are numbers of cells.
     struct CellCounts
     {
@@ -241,6 +246,117 @@ namespace Viscoplastic
             triangulation.set_manifold(id, *manifold);
           }
     }
+
+
+
+    template <int dim>
+    void
+    generate_body(const GeometryParameters &geometry,
+                  const MPI_Comm            communicator,
+                  Triangulation<dim>       &triangulation)
+    {
+      check_numbers_of_cells(geometry, dim, communicator);
+      check_box(geometry, dim);
+      try
+        {
+          GridGenerator::generate_from_name_and_arguments(triangulation,
+                                                          geometry.generator,
+                                                          geometry.arguments);
+        }
+      catch (const std::exception &exception)
+        {
+          // deal.II describes types of C++ at length where they do not fit.
+          std::string why = reason(exception);
+          if (why.find("does not match the pattern") != std::string::npos)
+            why = "they must be separated by colons and of the types that "
+                  "deal.II's GridGenerator documents.";
+          else if (why.find("not implemented") != std::string::npos)
+            why = "there is no such generator in " + std::to_string(dim) + "D.";
+          AssertThrow(false,
+                      ExcMessage("The mesh generator '" +
+                                 excerpt(geometry.generator) +
+                                 "' refuses the arguments '" +
+                                 excerpt(geometry.arguments) + "': " + why));
+        }
+      AssertThrow(triangulation.all_reference_cells_are_hyper_cube(),
+                  ExcMessage("The mesh must consist of quadrilaterals or "
+                             "hexahedra; simplices are not supported."));
+    }
+
+
+
+    /// Bodies side by side, whose nodes stay apart where they touch.
+    template <int dim>
+    void
+    generate_bodies(const GeometryParameters                  &geometry,
+                    const std::vector<std::string>            &generators,
+                    const std::vector<std::string>            &arguments,
+                    parallel::distributed::Triangulation<dim> &triangulation)
+    {
+      AssertThrow(generators.size() == arguments.size(),
+                  ExcMessage("'Geometry/Generator' has " +
+                             std::to_string(generators.size()) +
+                             " bodies, but 'Arguments' are those of " +
+                             std::to_string(arguments.size()) +
+                             "; both are lists separated by `|'."));
+      std::vector<Point<dim>>                     vertices;
+      std::vector<CellData<dim>>                  cells;
+      SubCellData                                 faces;
+      std::vector<std::unique_ptr<Manifold<dim>>> manifolds;
+      for (std::size_t b = 0; b < generators.size(); ++b)
+        {
+          GeometryParameters of_body = geometry;
+          of_body.generator          = generators[b];
+          of_body.arguments          = arguments[b];
+          Triangulation<dim> body;
+          generate_body(of_body, triangulation.get_communicator(), body);
+          // Ids of manifolds become numbers in the list.
+          std::map<types::manifold_id, types::manifold_id> new_id{
+            {numbers::flat_manifold_id, numbers::flat_manifold_id}};
+          for (const types::manifold_id id : body.get_manifold_ids())
+            if (id != numbers::flat_manifold_id)
+              {
+                new_id[id] = manifolds.size();
+                manifolds.push_back(body.get_manifold(id).clone());
+                AssertThrow(
+                  dynamic_cast<const TransfiniteInterpolationManifold<dim> *>(
+                    manifolds.back().get()) == nullptr,
+                  ExcMessage("The mesh generator '" + excerpt(generators[b]) +
+                             "' cannot be one of several bodies, "
+                             "since it interpolates between curved "
+                             "edges; use a mesh file."));
+              }
+          auto [body_vertices, body_cells, body_faces] =
+            GridTools::get_coarse_mesh_description(body);
+          const auto take = [&](auto &objects, auto &to) {
+            for (auto &object : objects)
+              {
+                for (unsigned int &vertex : object.vertices)
+                  vertex += vertices.size();
+                object.manifold_id = new_id.at(object.manifold_id);
+                to.push_back(object);
+              }
+          };
+          for (auto &cell : body_cells)
+            cell.material_id = b;
+          const auto renumber = [&](auto &faces) {
+            for (auto &face : faces)
+              if (face.boundary_id != numbers::internal_face_boundary_id)
+                face.boundary_id += ids_per_body * b;
+          };
+          renumber(body_faces.boundary_lines);
+          renumber(body_faces.boundary_quads);
+          take(body_cells, cells);
+          take(body_faces.boundary_lines, faces.boundary_lines);
+          take(body_faces.boundary_quads, faces.boundary_quads);
+          vertices.insert(vertices.end(),
+                          body_vertices.begin(),
+                          body_vertices.end());
+        }
+      triangulation.create_triangulation(vertices, cells, faces);
+      for (std::size_t id = 0; id < manifolds.size(); ++id)
+        triangulation.set_manifold(id, *manifolds[id]);
+    }
   } // namespace
 
 
@@ -250,32 +366,14 @@ namespace Viscoplastic
   generate_mesh(const GeometryParameters                  &geometry,
                 parallel::distributed::Triangulation<dim> &triangulation)
   {
-    check_numbers_of_cells(geometry, dim, triangulation.get_communicator());
-    check_box(geometry, dim);
-    try
-      {
-        GridGenerator::generate_from_name_and_arguments(triangulation,
-                                                        geometry.generator,
-                                                        geometry.arguments);
-      }
-    catch (const std::exception &exception)
-      {
-        // deal.II describes types of C++ at length where they do not fit.
-        std::string why = reason(exception);
-        if (why.find("does not match the pattern") != std::string::npos)
-          why = "they must be separated by colons and of the types that "
-                "deal.II's GridGenerator documents.";
-        else if (why.find("not implemented") != std::string::npos)
-          why = "there is no such generator in " + std::to_string(dim) + "D.";
-        AssertThrow(false,
-                    ExcMessage("The mesh generator '" +
-                               excerpt(geometry.generator) +
-                               "' refuses the arguments '" +
-                               excerpt(geometry.arguments) + "': " + why));
-      }
-    AssertThrow(triangulation.all_reference_cells_are_hyper_cube(),
-                ExcMessage("The mesh must consist of quadrilaterals or "
-                           "hexahedra; simplices are not supported."));
+    const auto generators =
+                 Utilities::split_string_list(geometry.generator, '|'),
+               arguments =
+                 Utilities::split_string_list(geometry.arguments, '|');
+    if (generators.size() > 1 || arguments.size() > 1)
+      generate_bodies(geometry, generators, arguments, triangulation);
+    else
+      generate_body(geometry, triangulation.get_communicator(), triangulation);
     if constexpr (dim == 3)
       orient_cells(triangulation);
   }

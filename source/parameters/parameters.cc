@@ -29,10 +29,14 @@ namespace Viscoplastic
   void
   GeometryParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter("Generator",
-                      generator,
-                      "Name of a function of deal.II's namespace GridGenerator "
-                      "that makes the coarse mesh.");
+    prm.add_parameter(
+      "Generator",
+      generator,
+      "Name of a function of deal.II's namespace GridGenerator "
+      "that makes the coarse mesh. Several, separated by `|', "
+      "with as many `Arguments', make bodies of their own: the "
+      "k-th, from 0, has boundary ids from 20 k on and the material "
+      "id k.");
     prm.add_parameter("Arguments",
                       arguments,
                       "Its arguments as "
@@ -320,6 +324,17 @@ namespace Viscoplastic
       Patterns::Selection(
         "not given|bilateral|given normal stress|unilateral|normal "
         "compliance"));
+    prm.add_parameter("Against",
+                      against,
+                      "For the role contact: the boundary of another body, by "
+                      "its name or number, that takes the place of the rigid "
+                      "foundation; it has the role free or traction. "
+                      "Displacements of contact laws are then relative to it, "
+                      "and the gap has the initial distance along the normal "
+                      "added. Give it to the side with the finer mesh, or to "
+                      "the smaller one: nodes with nothing opposite do not "
+                      "touch. Sliding has to be small beside a cell. Empty for "
+                      "a rigid foundation.");
     prm.add_parameter("Gap",
                       gap,
                       "g(x,t) of unilateral contact and normal compliance: how "

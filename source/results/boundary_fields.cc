@@ -17,6 +17,20 @@ namespace Viscoplastic
     for (const RecordedField field : all_fields)
       if (is_of_boundary(field))
         fields.insert(field);
+    if (has(RecordedField::slip))
+      {
+        slip = state.u;
+        if (state.initial_u.size() > 0)
+          for (std::size_t i = 0; i < stress_space.space.relevant.n_elements();
+               ++i)
+            slip.begin()[i] -= state.initial_u.begin()[i];
+        stress_space.space.make_relative(slip);
+      }
+    if (has(RecordedField::slip_rate))
+      {
+        slip_rate = state.velocity;
+        stress_space.space.make_relative(slip_rate);
+      }
     if (face == nullptr)
       return;
     const ContactState        &contact = state.contact;
@@ -145,18 +159,12 @@ namespace Viscoplastic
       switch (field)
         {
           case RecordedField::slip:
-            {
-              const Tensor<1, dim> u = vector(state.u);
-              append(tangential(state.initial_u.size() > 0 ?
-                                  u - vector(state.initial_u) :
-                                  u,
-                                normal) -
-                     condition.sliding(cell->vertex(v), state.t));
-              break;
-            }
+            append(tangential(vector(slip), normal) -
+                   condition.sliding(cell->vertex(v), state.t));
+            break;
           case RecordedField::slip_rate:
             {
-              Tensor<1, dim> rate = tangential(vector(state.velocity), normal);
+              Tensor<1, dim> rate = tangential(vector(slip_rate), normal);
               if (state.k > 0. && condition.foundation_motion)
                 rate -=
                   (condition.sliding(cell->vertex(v), state.t) -

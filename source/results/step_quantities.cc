@@ -139,16 +139,18 @@ namespace Viscoplastic
         for (const auto &[id, force] : of_springs)
           result.reactions[id] += force;
       }
-    result.sum_of_forces =
-      forces.load.resultant - result.friction_force - result.contact.force;
+    result.sum_of_forces = forces.load.resultant;
+    if (d.face)
+      result.sum_of_forces -= d.face->resultant_on_foundations(state.contact);
     result.largest_force = std::max({stable_norm(forces.load.resultant),
                                      stable_norm(result.friction_force),
                                      stable_norm(result.contact.force)});
-    for (const auto &pair : result.reactions)
+    for (const auto &[id, force] : result.reactions)
       {
-        result.sum_of_forces += pair.second;
+        if (!d.scene().condition(id).against)
+          result.sum_of_forces += force;
         result.largest_force =
-          std::max(result.largest_force, stable_norm(pair.second));
+          std::max(result.largest_force, stable_norm(force));
       }
     // Forces may be nothing beside the nodal ones that cancel: of stresses that
     // balance each other, to the tolerance of the solve. And of a body that is

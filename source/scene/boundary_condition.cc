@@ -206,6 +206,8 @@ namespace Viscoplastic
       if (name == "Foundation displacement")
         return is_contact &&
                (condition.is_bilateral() || condition.is_unilateral());
+      if (name == "Against")
+        return is_contact && condition.contact_law != ContactLaw::given_stress;
       if (name == "Foundation motion")
         return condition.has_friction() || condition.is_glued();
       Assert(name == "Friction law" || name == "Contact law",
@@ -385,6 +387,7 @@ namespace Viscoplastic
     compare("Normal stiffness", parameters.normal_stiffness, "0");
     compare("Tangential stiffness", parameters.tangential_stiffness, "0");
     compare("Contact law", parameters.contact_law, "bilateral");
+    compare("Against", parameters.against, "");
     compare("Gap", parameters.gap, "0");
     compare("Foundation normal", parameters.foundation_normal, "");
     compare("Compliance", parameters.compliance, "0");

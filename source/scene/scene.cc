@@ -2,9 +2,11 @@
 #include <deal.II/base/utilities.h>
 
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/laws/strain.h>
 #include <viscoplastic_contact/scene/scene.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -51,6 +53,7 @@ namespace Viscoplastic
     for (const auto &[id, boundary_parameters] : parameters.boundaries)
       boundary.emplace(
         id, BoundaryCondition<dim>(id, boundary_parameters, source_of_data));
+    find_contact_pairs();
     supports = read_supports<dim>(parameters.supports);
     if (source_of_data)
       derive_data();
@@ -64,6 +67,60 @@ namespace Viscoplastic
         quantity_of_interest(names.column(parameters.error_control.quantity),
                              boundary,
                              output_points.size());
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::find_contact_pairs()
+  {
+    for (auto &[id, condition] : boundary)
+      {
+        const std::string name =
+          Utilities::trim(parameters.boundaries.at(id).against);
+        if (name.empty() || condition.role != BoundaryRole::contact ||
+            condition.contact_law == ContactLaw::given_stress)
+          continue;
+        const std::string entry =
+          "'Boundary " + std::to_string(id) + "/Against' = " + excerpt(name);
+        const bool is_number =
+          name.find_first_not_of("0123456789") == std::string::npos;
+        const auto place =
+          names.find(is_number && name.size() < 9 ? "boundary " + name : name);
+        AssertThrow(place && place->kind == "boundary" &&
+                      boundary.count(place->number) == 1,
+                    ExcMessage(entry + " is no boundary of the scene."));
+        const auto &other = boundary.at(place->number);
+        AssertThrow(other.role == BoundaryRole::free ||
+                      other.role == BoundaryRole::traction,
+                    ExcMessage(entry +
+                               " must have the role free (or traction): what "
+                               "happens between the two sides is said once, at "
+                               "boundary " +
+                               std::to_string(id) + "."));
+        AssertThrow(!condition.foundation_motion,
+                    ExcMessage("'Boundary " + std::to_string(id) +
+                               "/Foundation motion' moves a rigid foundation, "
+                               "but 'Against' says that another body is "
+                               "there."));
+        AssertThrow(!exact_solution || !exact_solution->makes_data,
+                    ExcMessage(entry +
+                               ": 'Exact solution/Data' = solution makes no "
+                               "data for two bodies; use 'Data' = scene."));
+        condition.against = place->number;
+      }
+  }
+
+
+
+  template <int dim>
+  bool
+  Scene<dim>::has_contact_pairs() const
+  {
+    return std::any_of(boundary.begin(), boundary.end(), [](const auto &pair) {
+      return pair.second.against.has_value();
+    });
   }
 
 
@@ -353,6 +410,8 @@ namespace Viscoplastic
     add("foundation moving in tangential direction",
         boundaries(
           [](const auto &b) { return b.foundation_motion.has_value(); }));
+    add("contact with another body",
+        boundaries([](const auto &b) { return b.against.has_value(); }));
     if (exact_solution)
       result.push_back(exact_solution->makes_data ?
                          "manufactured solution, which makes loads, initial "

@@ -2,11 +2,13 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 #include <viscoplastic_contact/mesh/mesh_pieces.h>
 #include <viscoplastic_contact/scene/jump_in_time.h>
 #include <viscoplastic_contact/scene/output_check.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -35,10 +37,14 @@ namespace Viscoplastic
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
     warnings.clear();
+    if (!has_contact_pairs())
+      check_connection(triangulation);
     inspect_boundary_ids(boundary_ids(triangulation));
     inspect_unused_entries();
     inspect_flatness(triangulation);
     inspect_junctions(triangulation);
+    if (has_contact_pairs())
+      inspect_contact_pairs(triangulation);
     for (const std::string &warning :
          place_supports(triangulation, boundary, supports))
       warnings.push_back(warning);
@@ -153,6 +159,52 @@ namespace Viscoplastic
                         ".");
           AssertThrow(piece.deviation <= tolerance, ExcMessage(message.str()));
         }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_contact_pairs(
+    const parallel::distributed::Triangulation<dim> &triangulation) const
+  {
+    // What touches whom at each vertex of the coarse mesh, which all ranks
+    // know.
+    std::map<unsigned int, std::set<types::boundary_id>> ids_of_vertex;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          for (const unsigned int v : cell->face(f)->vertex_indices())
+            ids_of_vertex[cell->face(f)->vertex_index(v)].insert(
+              cell->face(f)->boundary_id());
+    for (const auto &[id, condition] : boundary)
+      if (condition.against)
+        for (const auto &[other_id, other] : boundary)
+          {
+            const bool is_contact =
+              other_id != id && other.role == BoundaryRole::contact;
+            const bool is_other_side =
+              other_id == *condition.against ||
+              (other.against && *other.against != *condition.against) ||
+              std::any_of(boundary.begin(),
+                          boundary.end(),
+                          [other_id = other_id](const auto &pair) {
+                            return pair.second.against == other_id;
+                          });
+            if (!is_contact && !is_other_side)
+              continue;
+            for (const auto &[vertex, ids] : ids_of_vertex)
+              AssertThrow(other_id == id || ids.count(id) == 0 ||
+                            ids.count(other_id) == 0,
+                          ExcMessage(
+                            "Boundary " + std::to_string(id) +
+                            ", which is in contact with another body, has "
+                            "nodes in common with boundary " +
+                            std::to_string(other_id) +
+                            ", which is in contact, too; a node can be in "
+                            "contact with one other body or foundation. Leave "
+                            "a face between them free."));
+          }
   }
 
 

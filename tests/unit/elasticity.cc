@@ -293,10 +293,10 @@ namespace
     for (const bool mean_dilatation : {false, true})
       {
         const auto body = oblique_body<dim>(mean_dilatation);
-        EXPECT_GT(
-          Utilities::MPI::sum(body->space->hanging_nodes().n_constraints(),
-                              MPI_COMM_WORLD),
-          0u);
+        EXPECT_GT(Utilities::MPI::sum(
+                    body->space->cartesian_hanging_nodes().n_constraints(),
+                    MPI_COMM_WORLD),
+                  0u);
         DistributedMatrix matrix;
         assemble_elastic_matrix(*body->space,
                                 *body->moduli,
@@ -392,10 +392,7 @@ namespace
         fe_values.reinit(space.cells[c]);
         elastic_cell_matrix(fe_values, (*body.moduli)(c), false, cell_matrix);
         space.cells[c]->get_dof_indices(dofs);
-        space.rotate(dofs, cell_matrix);
-        space.hanging_nodes().distribute_local_to_global(cell_matrix,
-                                                         dofs,
-                                                         matrix);
+        space.add_cell_matrix(dofs, cell_matrix, matrix);
       }
     matrix.compress(VectorOperation::add);
   }

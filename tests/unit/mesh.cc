@@ -4,6 +4,8 @@
 // generators and bodies that are refused. On any number of ranks.
 
 #include "meshes.h"
+#include "refusals.h"
+#include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/mesh/mesh_pieces.h>
 
 #include <sys/resource.h>
@@ -376,10 +378,12 @@ TEST(MeshChecks, BodyInParts)
                                "5 1 0 0\n6 2 0 0\n7 2 1 0\n8 1 1 0\n",
                                "1 3 0 1 2 3 4\n2 3 0 5 6 7 8\n"),
                            ".msh");
-  expect_mesh_refused<2>(from_file(file.name),
-                         "The mesh consists of 2 parts that share no faces, "
-                         "e.g. the cells with the centers (0.5 0.5) and (1.5 "
-                         "0.5) are not connected");
+  parallel::distributed::Triangulation<2> mesh(MPI_COMM_WORLD);
+  make_mesh(from_file(file.name), mesh);
+  expect_refusal([&] { check_connection(mesh); },
+                 "The mesh consists of 2 parts that share no faces, e.g. the "
+                 "cells with the centers (0.5 0.5) and (1.5 0.5) are not "
+                 "connected");
 }
 
 

@@ -5,10 +5,12 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <viscoplastic_contact/base/linear_algebra.h>
+#include <viscoplastic_contact/discretization/mortar_interpolation.h>
 #include <viscoplastic_contact/discretization/nodal_frame.h>
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,13 @@ namespace Viscoplastic
    *   hanging nodes Cartesian. Matrices and load vectors are assembled in this
    *   form, in which every prescribed component is one degree of freedom.
    *
+   * Where two bodies touch, the second form has the jump w = u - Q u of the
+   * displacement across the interface in place of u at the nodes p of the
+   * secondary side, Q being mortar_interpolation(): the change of variables
+   * u_p = w_p + C_p sum_q Q_pq u_q (Wohlmuth and Krause, SIAM J. Sci. Comput.
+   * 25, 2003), in which two bodies are one on a rigid foundation. C_p leaves
+   * out what other conditions prescribe at the node.
+   *
    * Built anew on every mesh, on degrees of freedom from distribute_nodes():
    * the dim ones of a node are consecutive, so nodes are addressed by their
    * first.
@@ -53,7 +62,12 @@ namespace Viscoplastic
     const DoFHandler<dim> &dof_handler;
     const Scene<dim>      &scene;
     const MPI_Comm         communicator;
-    const IndexSet         owned, relevant;
+    /// Of each boundary in contact with another body; see
+    /// mortar_interpolation().
+    const std::map<types::boundary_id, MortarRows> mortar_rows;
+    /// Relevant are those at owned cells and their neighbors, and opposite of
+    /// them.
+    const IndexSet owned, relevant;
 
     /// The owned cells, in the order of owned_cells(): that of all data that
     /// have values in cells.
@@ -80,12 +94,16 @@ namespace Viscoplastic
     types::global_dof_index
     n_first_dofs() const;
 
-    /// Hanging nodes only, in frames; for assembling matrices.
-    const AffineConstraints<double> &
-    hanging_nodes() const
-    {
-      return hanging_in_frames;
-    }
+    /// The pattern of matrices in frames, without constrained entries.
+    /// Collective.
+    void
+    make_sparsity_pattern(TrilinosWrappers::SparsityPattern &pattern) const;
+
+    /// Add a Cartesian cell matrix, which changes, to a matrix in frames.
+    void
+    add_cell_matrix(const std::vector<types::global_dof_index> &dofs,
+                    FullMatrix<double>                         &cell_matrix,
+                    DistributedMatrix                          &matrix) const;
 
     /// Hanging nodes only, in Cartesian components.
     const AffineConstraints<double> &
@@ -115,6 +133,12 @@ namespace Viscoplastic
     to_cartesian(const DistributedVector &in_frames,
                  DistributedVector       &ghosted) const;
 
+    /// Take off a Cartesian vector what lies opposite, at the nodes of
+    /// secondary sides: displacements become those relative to the other body.
+    /// Collective.
+    void
+    make_relative(DistributedVector &ghosted) const;
+
     /// Interpolate hanging nodes of a Cartesian vector of owned entries.
     /// Collective.
     void
@@ -125,10 +149,24 @@ namespace Viscoplastic
     to_frames(const DistributedVector &ghosted,
               DistributedVector       &in_frames) const;
 
-    /// Rotate a Cartesian cell matrix into the frames of its nodes.
-    void
-    rotate(const std::vector<types::global_dof_index> &dofs,
-           FullMatrix<double>                         &cell_matrix) const;
+    /// u_p = w_p + projector sum weight u_q at an independent node; nodes by
+    /// the position of their first entries among the relevant ones.
+    struct Coupling
+    {
+      std::size_t                                 node;
+      Tensor<2, dim>                              projector; // C_p
+      std::vector<std::pair<std::size_t, double>> others;
+      /// The place opposite, by the same interpolation.
+      Point<dim> opposite;
+    };
+
+    /// That of an independent node of a secondary side.
+    const Coupling &
+    coupling_at(const types::global_dof_index first_dof) const
+    {
+      return couplings
+        [couplings_of_node.at(relevant.index_within_set(first_dof))[0].first];
+    }
 
     /// Write the prescribed values at time t into a vector in frames.
     void
@@ -208,17 +246,39 @@ namespace Viscoplastic
     void
     make_hanging_nodes_in_frames();
     void
+    make_couplings();
+    /// v := v + factor C Q u at owned nodes, with u Cartesian.
+    void
+    add_opposite(const double             factor,
+                 const DistributedVector &ghosted_u,
+                 DistributedVector       &v) const;
+    /// Replace a cell matrix by that of the jumps, in the degrees of freedom of
+    /// the cell and opposite.
+    void
+    couple(std::vector<types::global_dof_index> &dofs,
+           FullMatrix<double>                   &cell_matrix) const;
+    /// Rotate a cell matrix into the frames of its nodes.
+    void
+    rotate(const std::vector<types::global_dof_index> &dofs,
+           FullMatrix<double>                         &cell_matrix) const;
+    void
     check_rigid_motions();
+    /// One of the rigid motions of a part, or of all, in frames. Collective.
+    DistributedVector
+    rigid_motion(const unsigned int motion, const unsigned int part) const;
     /// The mean position of the nodes. Collective.
     Point<dim>
     center() const;
 
-    /// The rigid motions that only contact can prevent, by translations and
-    /// rotations times `radius`, the largest distance from the center.
-    std::vector<std::array<double, 6>> free_motions;
-    double                             radius        = 0.;
-    bool                               needs_springs = false;
-    AffineConstraints<double>          hanging_cartesian, hanging_in_frames;
+    /// The rigid motions that only contact can prevent: of each of the parts
+    /// that move by themselves, translations and rotations times `radius`, the
+    /// largest distance from the center.
+    std::vector<std::vector<double>> free_motions;
+    /// Of each owned node; empty where there is one part.
+    std::vector<unsigned int> part_of_node;
+    double                    radius        = 0.;
+    bool                      needs_springs = false;
+    AffineConstraints<double> hanging_cartesian, hanging_in_frames;
     /// Whether any rank has hanging nodes.
     bool any_hanging;
     /// Position of the first owned entry among the relevant ones.
@@ -236,5 +296,11 @@ namespace Viscoplastic
     std::vector<std::size_t> hanging_entries;
     /// Support point of each owned node.
     std::vector<Point<dim>> node_position;
+
+    std::vector<Coupling> couplings;
+    /// Of a node that has or hangs on nodes that have them: couplings and
+    /// weights.
+    std::map<std::size_t, std::vector<std::pair<std::size_t, double>>>
+      couplings_of_node;
   };
 } // namespace Viscoplastic

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deal.II/base/partitioner.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
 #include <viscoplastic_contact/discretization/state.h>
@@ -174,6 +175,11 @@ namespace Viscoplastic
     Tensor<1, dim>
     resultant(const ContactState &state, const bool of_obstacles = false) const;
 
+    /// The sum of all of them that act on rigid foundations, not on other
+    /// bodies. Collective.
+    Tensor<1, dim>
+    resultant_on_foundations(const ContactState &state) const;
+
     /**
      * How far the foundation of each point slides between two times, along the
      * directions of the slip of that point. Empty if no foundation moves.
@@ -190,7 +196,8 @@ namespace Viscoplastic
 
     /**
      * The multiplier as a nodal density lambda_c/m_c, Cartesian and with
-     * ghosts; zero off Gamma_3. That of obstacles is part of it, unless @p
+     * ghosts; zero off Gamma_3, but that of the reverse forces on the other
+     * side where there is one. That of obstacles is part of it, unless @p
      * of_friction_alone. Collective.
      */
     DistributedVector
@@ -236,10 +243,16 @@ namespace Viscoplastic
       double       value;
     };
 
+    /// How far the other body is from a node along the normal, at first.
+    double
+    initial_distance(const Node &node, const Tensor<1, dim> &normal) const;
+
     void
     make_nodes();
     void
     make_shares();
+    void
+    weigh_other_sides();
     void
     make_compliance();
 
@@ -263,6 +276,8 @@ namespace Viscoplastic
     /// no rank has points.
     std::shared_ptr<const Utilities::MPI::Partitioner> numbers;
     std::vector<double>                                point_weights;
+    /// int phi over the other sides, at first components.
+    LinearAlgebra::distributed::Vector<double> other_side_weights;
     bool bounds_vary, any_obstacles = false, any_gives_way = false,
                       any_computed_pressure = false, any_rate = false;
     mutable std::optional<std::vector<double>> constant_bounds;

@@ -151,6 +151,8 @@ namespace Viscoplastic
       };
       /// None without springs.
       std::vector<Spring> springs;
+      /// The contact that another body has with this one here, or null.
+      const BoundaryCondition<dim> *opposite = nullptr;
     };
 
     /// What makes the stress at points of one cell.

@@ -57,6 +57,12 @@ namespace Viscoplastic
     /// The directions, as columns, of owned nodes and ghosts whose frame is not
     /// Cartesian.
     std::map<Node, Tensor<2, 3>> frames;
+
+    /// Whether bodies touch; and of owned nodes there the nodes opposite, with
+    /// their weights: the unknowns of these nodes are displacements relative to
+    /// this sum.
+    bool                                has_interfaces = false;
+    std::map<Node, std::vector<Parent>> opposite;
   };
 
 

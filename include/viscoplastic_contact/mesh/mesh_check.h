@@ -8,11 +8,18 @@ namespace Viscoplastic
   using namespace dealii;
 
   /**
-   * Check that the body is connected, that no cell is inverted or degenerate,
-   * and that lengths can be computed with. Collective. Throws ExcMessage with a
+   * Check that no cell is inverted or degenerate, and that lengths can be
+   * computed with. Collective. Throws ExcMessage with a
    * sentence for the user if not.
    */
   template <int dim>
   void
   check_mesh(const parallel::distributed::Triangulation<dim> &triangulation);
+
+  /// Check that all cells belong to one body, connected by the faces that they
+  /// share. Throws ExcMessage if not.
+  template <int dim>
+  void
+  check_connection(
+    const parallel::distributed::Triangulation<dim> &triangulation);
 } // namespace Viscoplastic

@@ -117,6 +117,7 @@ namespace Viscoplastic
     std::string displacement, traction, pressure;
     std::string normal_stiffness, tangential_stiffness;
     std::string contact_law = "not given";
+    std::string against;
     std::string gap;
     std::string foundation_normal;
     std::string compliance;

@@ -65,6 +65,7 @@ namespace Viscoplastic
     std::set<RecordedField> fields;
     /// Of friction points, at the nodes. A node that other conditions prescribe
     /// has no point; fields that are not asked for are empty.
-    DistributedVector density, bound, utilization, slipping, pressure, gap;
+    DistributedVector slip, slip_rate, density, bound, utilization, slipping,
+      pressure, gap;
   };
 } // namespace Viscoplastic

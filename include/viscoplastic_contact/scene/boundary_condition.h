@@ -64,8 +64,11 @@ namespace Viscoplastic
 
     types::boundary_id id;
     BoundaryRole       role;
-    ContactLaw         contact_law  = ContactLaw::none;
-    FrictionLaw        friction_law = FrictionLaw::none;
+    /// The boundary of another body that is the foundation. Displacements and
+    /// the gap below are then relative to it.
+    std::optional<types::boundary_id> against;
+    ContactLaw                        contact_law  = ContactLaw::none;
+    FrictionLaw                       friction_law = FrictionLaw::none;
 
     /// Role displacement: the given components; empty ones are free.
     std::array<std::optional<Expression<dim>>, dim> displacement;

@@ -112,6 +112,11 @@ namespace Viscoplastic
              !parameters.exact_solution.reference_directory.empty();
     }
 
+    /// Whether boundaries are in contact with each other, of bodies that need
+    /// not share any face.
+    bool
+    has_contact_pairs() const;
+
     /// Whether there is a G: laws, or the source of a manufactured solution.
     bool
     has_viscosity() const;
@@ -268,6 +273,13 @@ namespace Viscoplastic
     /// What follows from an exact solution, and refuse it from elsewhere.
     void
     derive_data();
+
+    /// The other sides of contact between bodies.
+    void
+    find_contact_pairs();
+    void
+    inspect_contact_pairs(
+      const parallel::distributed::Triangulation<dim> &triangulation) const;
 
     struct Entry
     {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/index_set.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
+
+#include <map>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// Two boundaries in contact with each other. Multipliers belong to the nodes
+  /// of the secondary one, whose outward normal this is.
+  template <int dim>
+  struct ContactPair
+  {
+    types::boundary_id secondary, primary;
+    Tensor<1, dim>     normal;
+  };
+
+
+  /// For nodes of the secondary boundary the nodes of the primary one, and the
+  /// weights, of which the displacement opposite is the sum. Nodes have the
+  /// numbers of NodeHierarchy.
+  using MortarRows =
+    std::map<NodeHierarchy::Node, std::vector<NodeHierarchy::Parent>>;
+
+
+  /**
+   * The interpolation Q of the trace v of the primary side at the nodes p of
+   * the secondary side by dual basis functions psi_p, which are biorthogonal to
+   * the nodal ones phi_q on each face e,
+   *
+   *     (Q v)_p = sum_e int_e psi_p v / int phi_p,
+   *     int_e psi_p phi_q = delta_pq int_e phi_p
+   *
+   * (Wohlmuth, SIAM J. Numer. Anal. 38, 2000). Sides are projected along the
+   * normal; integrals are exact for faces that are parallelograms. With a
+   * hanging node h between a and b, (Q v)_a becomes
+   *
+   *     (Q v)_a + sum_h c_h ((Q v)_h - (Q v)_a/2 - (Q v)_b/2),
+   *     c_h = D_h/(D_a + D_b),
+   *
+   * where D are the integrals of the basis functions, for a and b of those that
+   * hanging nodes leave. So linear v are exact, and sum_p D_p (Q v)_p is the
+   * integral of v: rigid motions meet no resistance, and a constant pressure
+   * passes the interface as it is.
+   *
+   * Returns the rows of independent nodes among the locally relevant ones,
+   * without those of which some part of the support has nothing opposite.
+   * Collective.
+   */
+  template <int dim>
+  MortarRows
+  mortar_interpolation(const DoFHandler<dim>           &dof_handler,
+                       const AffineConstraints<double> &hanging_nodes,
+                       const ContactPair<dim>          &pair);
+} // namespace Viscoplastic

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contact between two bodies that deform: exact states, and the limits in which
+they are one."""
+
+import numpy as np
+
+from harness import TestCase, main, run
+
+SOLVERS = ("direct", "multigrid", "algebraic multigrid")
+TIGHT = {"Solver/Contact tolerance": 1e-12}
+
+
+class Blocks(TestCase):
+    """two_blocks_2d and _3d: a constant pressure passes the interface as it is."""
+
+    def check(self, dim, ranks=1, **more):
+        more = {path.replace("_", " "): value for path, value in more.items()}
+        result = run(f"two_blocks_{dim}d", {**TIGHT, **more}, ranks=ranks)
+        self.check_identities(result, 1e-12)
+        p, close = 0.01, {"absolute": 1e-12}
+        down = "xyz"[dim - 1]
+        moduli = [(1, 0.3), (2, 0.2)]
+        if dim == 2:
+            moduli = [(E / (1 - nu**2), nu / (1 - nu)) for E, nu in moduli]
+        self.assertClose(
+            result[f"point0_{down}"][-1], -sum(p / E for E, nu in moduli), **close
+        )
+        E, nu = moduli[1]
+        self.assertClose(result["point0_x"][-1], nu * p / E, **close)
+        self.assertClose(result["max_pressure"][-1], p, **close)
+        self.assertClose(result[f"contact_force_{down}"][-1], p, **close)
+        self.assertLess(result["estimate_space"][-1], 1e-12)
+        return result
+
+    def test_plane(self):
+        for solver in SOLVERS:
+            self.check(2, **{"Solver/Linear solver": solver})
+        for law in ("bilateral", "normal compliance"):
+            with self.subTest(law):
+                result = run(
+                    "two_blocks_2d",
+                    {
+                        **TIGHT,
+                        "Boundary 3/Contact law": law,
+                        "Boundary 3/Compliance": "0 " if law == "bilateral" else 0.5,
+                    },
+                )
+                # the compliance gives way by p/c
+                more = 0 if law == "bilateral" else 0.02
+                self.assertClose(
+                    result["point0_y"][-1], -0.0139 - more, absolute=1e-12
+                )
+
+    def test_hanging_nodes(self):
+        """On either side, and on ranks that do not have both."""
+        for dim, sides in ((2, "0: 1, 22: 2"), (3, "0: 1"), (3, "22: 1, 2: 1")):
+            for ranks, solver in ((1, "direct"), (2, "multigrid"), (3, "multigrid")):
+                if dim == 3 and ranks == 2:
+                    continue
+                with self.subTest(dim=dim, sides=sides, ranks=ranks):
+                    self.check(
+                        dim,
+                        ranks,
+                        **{
+                            "Geometry/Boundary refinements": sides,
+                            "Solver/Linear solver": solver,
+                        },
+                    )
+
+    def test_turned(self):
+        for dim, ranks in ((2, 1), (3, 3)):
+            result = run(
+                f"two_blocks_{dim}d",
+                {
+                    **TIGHT,
+                    "Geometry/Rotation angle": 30,
+                    "Geometry/Boundary refinements": "0: 1",
+                    "Output/Points": "",
+                },
+                ranks=ranks,
+            )
+            self.assertClose(result["max_pressure"][-1], 0.01, absolute=1e-12)
+            straight = 0.0139 if dim == 2 else 0.015
+            self.assertGreater(result["max_displacement"][-1], straight)
+            self.assertLess(result["estimate_space"][-1], 1e-12)
+
+
+GLUED = {
+    "Boundary 3/Contact law": "bilateral",
+    "Boundary 3/Friction law": "glued",
+}
+SIDE_BY_SIDE = "6, 4 : 0, 0 : 1, 1 : true | 6, 4 : 0, 1 : 1, 2 : true"
+
+
+class Limits(TestCase):
+    """What two bodies have in common with one."""
+
+    def test_glued_bodies_are_one(self):
+        """On meshes that match, to rounding, also in flow."""
+        load = {
+            **TIGHT,
+            "Boundary 0/Role": "free",
+            "Boundary 2/Role": "clamped",
+            "Material 0/Law": "maxwell",
+            "Material 0/maxwell/Viscosity": 2,
+            "Time/Phases": "2: 4",
+        }
+        shear = {"Pressure": "0.01*t*(1 + x)", "Traction": "0.01*t; 0"}
+        two = run(
+            "two_blocks_2d",
+            {
+                **load,
+                **GLUED,
+                "Geometry/Arguments": SIDE_BY_SIDE,
+                "Boundary 20/Role": "free",
+                **{f"Boundary 23/{name}": value for name, value in shear.items()},
+            },
+        )
+        text = "\n".join(
+            part
+            for part in self.scene_of_one_body().split("\n\n")
+            if not part.startswith(("# the upper", "subsection Boundary 2"))
+            or part.startswith("subsection Boundary 2\n")
+        )
+        one = run(
+            "one_block",
+            {
+                **load,
+                "Geometry/Generator": "subdivided_hyper_rectangle",
+                "Geometry/Arguments": "6, 8 : 0, 0 : 1, 2 : true",
+                "Geometry/Material ids": "if(y < 1, 0, 1)",
+                "Boundary 3/Role": "traction",
+                "Boundary 3/Contact law": "not given",
+                "Boundary 3/Against": "",
+                **{f"Boundary 3/{name}": value for name, value in shear.items()},
+            },
+            text=text,
+        )
+        for column in ("point0_x", "point0_y", "point1_x", "strain_energy"):
+            scale = abs(one[column]).max()
+            self.assertClose(two[column], one[column], absolute=1e-10 * scale)
+        self.assertGreater(abs(one["point0_x"]).max(), 0.05)
+
+    @staticmethod
+    def scene_of_one_body():
+        from harness import scene_file
+
+        return scene_file("two_blocks_2d").read_text()
+
+    def test_equal_bodies_meet_like_one_on_a_rigid_plane(self):
+        """By symmetry, with friction that has nothing to do; contact opens."""
+        equal = {
+            **TIGHT,
+            "Boundary 3/Friction law": "coulomb",
+            "Boundary 3/Friction coefficient": 0.5,
+            "Material 1/Young's modulus": 1,
+            "Material 1/Poisson's ratio": 0.3,
+        }
+        way = "0.02*t*(1 - 2*x)"
+        two = run(
+            "two_blocks_2d",
+            {
+                **equal,
+                "Geometry/Arguments": SIDE_BY_SIDE,
+                "Boundary 2/Role": "displacement",
+                "Boundary 2/Displacement": f"free; {way}",
+                "Boundary 23/Role": "displacement",
+                "Boundary 23/Displacement": f"free; -{way}",
+            },
+        )
+        text = self.scene_of_one_body()
+        keep = [
+            part
+            for part in text.split("\n\n")
+            if not part.startswith(("# the upper", "subsection Boundary 2"))
+            or part.startswith("subsection Boundary 2\n")
+        ]
+        one = run(
+            "one_block",
+            {
+                **equal,
+                "Boundary 3/Friction law": "none",
+                "Geometry/Generator": "subdivided_hyper_rectangle",
+                "Geometry/Arguments": "6, 4 : 0, 0 : 1, 1 : true",
+                "Geometry/Material ids": "0",
+                "Boundary 2/Role": "displacement",
+                "Boundary 2/Displacement": f"free; {way}",
+                "Boundary 3/Against": "",
+                "Output/Points": "0.5, 1; 0.5, 1",
+            },
+            text="\n\n".join(
+                part
+                for part in keep
+                if not part.startswith("subsection Material 1")
+            ),
+        )
+        scale = one["contact_force_y"][-1]
+        self.assertClose(two["contact_force_y"], one["contact_force_y"], 0, 1e-9 * scale)
+        self.assertClose(two["contact_area"], one["contact_area"], absolute=1e-12)
+        self.assertLess(one["contact_area"][-1], 0.9)
+        self.assertClose(two["max_pressure"], one["max_pressure"], 1e-8)
+        self.assertClose(two["friction_dissipation"], 0, absolute=1e-10 * scale)
+        self.assertClose(two["strain_energy"], 2 * one["strain_energy"], 1e-9)
+
+    def test_layers_flow_in_series(self):
+        """Displacements add up, those of layers by themselves being known."""
+        flow = {
+            **TIGHT,
+            "Boundary 23/Pressure": 0.01,
+            "Initial state/Equilibrate": "true",
+            "Time/Phases": "3: 6",
+        }
+        for n, viscosity in ((0, 1), (1, 4)):
+            flow[f"Material {n}/Law"] = "maxwell"
+            flow[f"Material {n}/maxwell/Viscosity"] = viscosity
+        both = run("two_blocks_2d", flow)
+        # the lower block alone is what lies below its top
+        lower = both["point1_y"] * 1
+        self.assertClose(both["max_pressure"], 0.01, absolute=1e-12)
+        single = run(
+            "two_blocks_2d",
+            {**flow, "Material 1/Law": "elastic", "Material 1/Young's modulus": 1e6},
+        )
+        self.assertClose(
+            single["point0_y"], lower, absolute=1e-7, what="the lower one alone"
+        )
+        self.assertGreater(-lower[-1], 1.5 * -lower[0])
+
+    def test_rigid_motions_meet_no_resistance(self):
+        """A body that is glued to one that turns follows without stress."""
+        for dim, ranks in ((2, 1), (3, 3)):
+            base, law = (2, 3) if dim == 2 else (4, 5)
+            turn = "0.01*t*(y - 0.3); -0.01*t*x"
+            changes = {
+                f"Boundary {law}/Contact law": "bilateral",
+                f"Boundary {law}/Friction law": "glued",
+                f"Boundary {base}/Role": "displacement",
+                f"Boundary {base}/Displacement": turn
+                + (" + 0.02*t*z; -0.02*t*y" if dim == 3 else ""),
+                "Geometry/Boundary refinements": "0: 1",
+            }
+            for side in (0, 2, 20, 22):
+                if side != base and (dim == 3 or side != 22):
+                    changes[f"Boundary {side}/Role"] = "free"
+            top = 23 if dim == 2 else 25
+            changes[f"Boundary {top}/Role"] = "free"
+            result = run(f"two_blocks_{dim}d", {**TIGHT, **changes}, ranks=ranks)
+            self.assertGreater(result["max_displacement"][-1], 0.01)
+            # of strains to the tolerance of the solve
+            self.assertLess(result["strain_energy"][-1], 1e-17)
+
+
+class Refused(TestCase):
+    refused_scene = ("two_blocks_2d", {}, None)
+
+    def test_sentences(self):
+        for changes, sentence in (
+            ({"Boundary 3/Against": "seabed"}, "is no boundary of the scene"),
+            ({"Boundary 3/Against": 23}, "Nothing of boundary 23 lies opposite"),
+            ({"Boundary 22/Role": "symmetry"}, "must have the role free"),
+            ({"Boundary 3/Against": 1}, "has nodes in common with boundary 1"),
+            (
+                {
+                    "Boundary 3/Friction law": "tresca",
+                    "Boundary 3/Friction bound": 1,
+                    "Boundary 3/Foundation motion": "t; 0",
+                },
+                "another body is there",
+            ),
+            ({"Boundary 3/Role": "free"}, "are not connected"),
+            ({"Boundary 20/Role": "free"}, "of one of the 2 bodies"),
+        ):
+            with self.subTest(sentence):
+                self.refused(changes, sentence)
+
+
+if __name__ == "__main__":
+    main()

@@ -191,8 +191,7 @@ namespace Viscoplastic
                       const Load<dim>           &load)
   {
     const Scene<dim> &scene = discretization.scene();
-    const double      tolerance =
-      scene.parameters.initial_state.compatibility_tolerance;
+    constexpr double  tolerance = 1e-6;
     const CompatibilityViolation<dim> violation =
       compatibility_violation(discretization.space,
                               load,
@@ -206,8 +205,7 @@ namespace Viscoplastic
     message << "The initial data are not in equilibrium with the loads at "
                "t = 0, (2.12): the relative violation is "
             << violation.relative
-            << ", and 'Initial state/Compatibility tolerance' is " << tolerance
-            << "; it is largest at x = (" << violation.position << "), "
+            << ", more than " << tolerance << "; it is largest at x = (" << violation.position << "), "
             << (violation.boundaries.empty() ?
                   "inside of the body" :
                   "on boundary " + list(violation.boundaries))

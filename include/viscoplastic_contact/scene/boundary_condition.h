@@ -16,35 +16,6 @@
 
 namespace Viscoplastic
 {
-  enum class BoundaryRole
-  {
-    clamped,
-    displacement,
-    traction,
-    free,
-    symmetry,
-    contact
-  };
-
-  /// What acts along the normal of a contact piece.
-  enum class ContactLaw
-  {
-    none,
-    bilateral,    // u_nu = d
-    given_stress, // sigma_nu = S
-    unilateral,   // u_n <= g + d, sigma_n <= 0, and one of them with equality
-    compliance    // sigma_n = -c (u_n - g - d)_+^m
-  };
-
-  enum class FrictionLaw
-  {
-    none,
-    tresca,  // rho = g, (5.22)
-    coulomb, // rho = mu |S|, (5.6), or mu p of contact that opens
-    glued    // no slip whatever the force: rho = infinity
-  };
-
-
   /// What happens on one boundary id, with its data as functions of x and t.
   template <int dim>
   struct BoundaryCondition
@@ -64,7 +35,7 @@ namespace Viscoplastic
 
     types::boundary_id id;
     BoundaryRole       role;
-    ContactLaw         contact_law  = ContactLaw::none;
+    ContactLaw         contact_law  = ContactLaw::not_given;
     FrictionLaw        friction_law = FrictionLaw::none;
 
     /// Role displacement: the given components; empty ones are free.

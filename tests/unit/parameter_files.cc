@@ -462,7 +462,7 @@ namespace
   }
 
 
-  TEST(ParameterFiles, AutomaticChoicesDependOnTheTolerance)
+  TEST(Parameters, AutomaticChoicesDependOnTheTolerance)
   {
     const Parameters without(std::vector<std::string>{});
     EXPECT_EQ(without.time.scheme, TimeScheme::forward_euler);

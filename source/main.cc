@@ -120,12 +120,11 @@ namespace
 
 
   std::string
-  run(const CommandLine &command_line, const bool has_terminal)
+  run(const CommandLine &command_line)
   {
     Console         console(MPI_COMM_WORLD,
                     command_line.quiet,
                     command_line.log,
-                    has_terminal,
                     command_line.verbose);
     const Heartbeat heartbeat(console);
     try
@@ -227,8 +226,7 @@ int
 main(int argc, char *argv[])
 {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  const bool                     has_terminal = stdout_is_terminal();
-  const bool                     is_single    = run_without_mpi_job();
+  const bool                     is_single = run_without_mpi_job();
 
   CommandLine command_line;
   std::string text, complaint;
@@ -276,7 +274,7 @@ main(int argc, char *argv[])
       if (text.empty())
         {
           const UnexpectedEnd unexpected_end("running the scene");
-          const std::string   interruption = run(command_line, has_terminal);
+          const std::string   interruption = run(command_line);
           if (interruption.empty())
             return 0;
           if (rank == 0)

@@ -3,37 +3,16 @@
 
 #include <viscoplastic_contact/base/console.h>
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
 
 namespace Viscoplastic
 {
-  bool
-  stdout_is_terminal()
-  {
-    const char *type = std::getenv("TERM");
-    bool        sees = isatty(STDOUT_FILENO) != 0 && type != nullptr &&
-                std::string(type) != "dumb";
-    // Variables of Open MPI, MPICH and others.
-    for (const char *variable :
-         {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"})
-      sees = sees && std::getenv(variable) == nullptr;
-    return sees;
-  }
-
-
-
   Console::Console(const MPI_Comm     communicator,
                    const bool         quiet,
                    const std::string &log_name,
-                   const bool         has_terminal,
                    const bool         verbose)
     : speaks(!quiet && Utilities::MPI::this_mpi_process(communicator) == 0)
-    , is_terminal(speaks && has_terminal)
     , verbose(verbose)
     , log_name(log_name)
     , buffer(*this)
@@ -52,8 +31,6 @@ namespace Viscoplastic
   Console::~Console()
   {
     everywhere.flush();
-    if (status_is_shown)
-      std::cout << std::endl;
   }
 
 
@@ -74,31 +51,6 @@ namespace Viscoplastic
                                std::chrono::duration_cast<Clock::duration>(
                                  std::chrono::duration<double>(seconds)),
                                (now - beginning) / 100);
-  }
-
-
-
-  unsigned int
-  Console::width() const
-  {
-    winsize size{};
-    ioctl(STDOUT_FILENO, TIOCGWINSZ, &size);
-    return size.ws_col > 0 ? size.ws_col : 80;
-  }
-
-
-
-  void
-  Console::show_status(const std::string &line)
-  {
-    if (!is_terminal)
-      return;
-    everywhere.flush();
-    last_text = Clock::now();
-    // The last column stays free: a character there would begin a new line.
-    // The escape sequence erases what is left of a longer line before.
-    std::cout << '\r' << line.substr(0, width() - 1) << "\033[K" << std::flush;
-    status_is_shown = true;
   }
 
 
@@ -139,11 +91,7 @@ namespace Viscoplastic
     if (!text.empty())
       console.last_text = Clock::now();
     if (console.speaks && !text.empty())
-      {
-        std::cout << (console.status_is_shown ? "\r\033[K" : "") << text
-                  << std::flush;
-        console.status_is_shown = false;
-      }
+      std::cout << text << std::flush;
     if (console.log_file.is_open())
       console.log_file << text << std::flush;
     return 0;

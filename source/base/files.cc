@@ -228,7 +228,8 @@ namespace Viscoplastic
 
 
   void
-  DirectoryLock::acquire(const std::string &directory)
+  DirectoryLock::acquire(const std::string &directory,
+                         const std::string &otherwise)
   {
     if (descriptor >= 0)
       return;
@@ -261,9 +262,8 @@ namespace Viscoplastic
                         ExcMessage("Another run" +
                                    (holder.empty() ? "" : " (" + holder + ")") +
                                    " is writing into '" + directory +
-                                   "'; wait until it has ended, or choose "
-                                   "another 'Output/Directory' and "
-                                   "'Checkpoint/Directory'."));
+                                   "'; wait until it has ended, or " +
+                                   otherwise + "."));
           }
         struct stat mine, there;
         if (fstat(opened, &mine) == 0 && stat(file.c_str(), &there) == 0 &&

@@ -76,8 +76,6 @@ namespace Viscoplastic
           separator = ", ";
         }
     text << " iterations  elapsed " << duration(elapsed);
-    std::ostream &out = console.has_status() ? console.log() : console.stream();
-    out << text.str() << std::endl;
-    console.show_status(text.str());
+    console.stream() << text.str() << std::endl;
   }
 } // namespace Viscoplastic

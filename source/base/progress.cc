@@ -77,37 +77,25 @@ namespace Viscoplastic
     const bool   is_last = step.done ? *step.done >= 1. : step.n == n_steps;
     const double done =
       is_last ? 1. : step.done.value_or(static_cast<double>(step.n) / n_steps);
-    const std::string place = place_of(step, n_steps, time_unit),
-                      state = state_of(step, time_unit),
-                      left  = !step.done || step.expected_steps ?
-                                "  left " +
-                                 duration(remaining.seconds(all - step.n,
-                                                            step.n_cells)) :
-                                "";
     // Asked in each step: it keeps count.
-    if (is_worth_a_line(step, done) || is_last || console.is_verbose() ||
-        console.is_silent_for(long_silence))
+    if (!is_worth_a_line(step, done) && !is_last && !console.is_verbose() &&
+        !console.is_silent_for(long_silence))
       {
-        std::ostream &out =
-          console.has_status() && !is_last ? console.log() : console.stream();
-        out << place << "  " << state << "  elapsed " << duration(elapsed)
-            << left;
-        if (n_left_out > 0)
-          out << "  (" << n_left_out << (n_left_out == 1 ? " step" : " steps")
-              << " left out)";
-        out << std::endl;
-        done_at_line = done;
-        n_left_out   = 0;
+        ++n_left_out;
+        return;
       }
-    else
-      ++n_left_out;
-    // Ten changes a second are enough; what matters most comes first, since a
-    // terminal may be narrow.
-    if (console.has_status() && !is_last && elapsed - last_shown >= 0.1)
-      {
-        console.show_status(place + left + "  " + state);
-        last_shown = elapsed;
-      }
+    std::ostream &out = console.stream();
+    out << place_of(step, n_steps, time_unit) << "  "
+        << state_of(step, time_unit) << "  elapsed " << duration(elapsed);
+    if (!step.done || step.expected_steps)
+      out << "  left "
+          << duration(remaining.seconds(all - step.n, step.n_cells));
+    if (n_left_out > 0)
+      out << "  (" << n_left_out << (n_left_out == 1 ? " step" : " steps")
+          << " left out)";
+    out << std::endl;
+    done_at_line = done;
+    n_left_out   = 0;
   }
 
 

@@ -84,8 +84,7 @@ namespace Viscoplastic
     request.checkpoint = all[0] != 0;
     if (all[1] != 0)
       request.stop = all[1] == SIGINT ? "SIGINT" : "SIGTERM";
-    else if (all[2] != 0)
-      request.stop = "'Checkpoint/Wall time limit'";
+    request.is_late = all[2] != 0;
     return request;
   }
 

@@ -7,11 +7,8 @@
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/checkpoint/checkpoint_store.h>
 
-#include <boost/crc.hpp>
-
 #include <algorithm>
 #include <filesystem>
-#include <iomanip>
 #include <regex>
 #include <sstream>
 
@@ -23,22 +20,10 @@ namespace Viscoplastic
   namespace
   {
     const std::string manifest_name = "manifest.txt";
-    const std::string any_format    = "viscoplastic_contact checkpoint ";
-    const std::string first_line    = any_format + "9";
     const std::string unfinished = ".unfinished", outdated = ".outdated";
     // What an unfinished checkpoint has instead of a manifest.
     const std::string list_name       = "unfinished.txt";
     const std::string first_of_a_list = "viscoplastic_contact list of files 1";
-
-
-
-    std::uint32_t
-    checksum(const std::string &bytes)
-    {
-      boost::crc_32_type crc;
-      crc.process_bytes(bytes.data(), bytes.size());
-      return crc.checksum();
-    }
 
 
 
@@ -105,82 +90,6 @@ namespace Viscoplastic
 
 
     std::string
-    to_text(const CheckpointManifest &manifest)
-    {
-      std::ostringstream text;
-      text << first_line << "\nversion " << manifest.version << "\ndimension "
-           << manifest.dimension << "\nranks " << manifest.n_ranks << "\nstep "
-           << manifest.n << "\ntime " << std::setprecision(17) << manifest.t
-           << '\n';
-      for (const auto &file : manifest.files)
-        text << "file " << file.name << ' ' << file.size << ' ' << file.checksum
-             << '\n';
-      for (const auto &[path, value] : manifest.parameters)
-        text << "set " << path << " = " << value << '\n';
-      const std::uint32_t sum = checksum(text.str());
-      text << "checksum " << sum << '\n';
-      return text.str();
-    }
-
-
-
-    CheckpointManifest
-    from_text(const std::string &text)
-    {
-      const auto require = [](const bool condition) {
-        AssertThrow(condition, ExcMessage("the manifest is damaged"));
-      };
-      AssertThrow(
-        text.compare(0, first_line.size() + 1, first_line + '\n') == 0,
-        ExcMessage("its format is that of another version of the program"));
-      const std::size_t last = text.rfind("\nchecksum ");
-      require(last != std::string::npos &&
-              text.substr(last + 1) ==
-                "checksum " +
-                  std::to_string(checksum(text.substr(0, last + 1))) + '\n');
-
-      CheckpointManifest manifest;
-      std::istringstream lines(text.substr(0, last + 1));
-      std::string        line;
-      std::getline(lines, line);
-      while (std::getline(lines, line))
-        {
-          std::istringstream words(line);
-          std::string        key;
-          words >> key;
-          if (key == "set")
-            {
-              const std::size_t equals = line.find(" = ");
-              require(equals != std::string::npos && equals >= 4);
-              manifest.parameters[line.substr(4, equals - 4)] =
-                line.substr(equals + 3);
-              continue;
-            }
-          if (key == "version")
-            std::getline(words >> std::ws, manifest.version);
-          else if (key == "dimension")
-            words >> manifest.dimension;
-          else if (key == "ranks")
-            words >> manifest.n_ranks;
-          else if (key == "step")
-            words >> manifest.n;
-          else if (key == "time")
-            words >> manifest.t;
-          else if (key == "file")
-            {
-              CheckpointManifest::File file;
-              words >> file.name >> file.size >> file.checksum;
-              require(file.name.find('/') == std::string::npos);
-              manifest.files.push_back(file);
-            }
-          require(!words.fail());
-        }
-      return manifest;
-    }
-
-
-
-    std::string
     list_of_files(const std::vector<std::string> &names)
     {
       std::string text = first_of_a_list + '\n';
@@ -202,7 +111,7 @@ namespace Viscoplastic
     {
       std::vector<std::string> names, lists;
       for (const auto &[name, beginning] :
-           {std::make_pair(manifest_name, any_format),
+           {std::make_pair(manifest_name, first_words_of_manifests),
             std::make_pair(list_name, first_of_a_list + '\n')})
         {
           const auto text = read_file_if_any(directory + '/' + name);
@@ -420,7 +329,7 @@ namespace Viscoplastic
           while (words >> file.name >> file.size >> file.checksum)
             manifest.files.push_back(file);
         }
-      write_file(temporary + manifest_name, to_text(manifest));
+      write_file(temporary + manifest_name, manifest.text());
       fs::remove(temporary + list_name);
       synchronize_directory(temporary);
       // A directory cannot replace another one.
@@ -465,7 +374,7 @@ namespace Viscoplastic
         CheckpointManifest manifest;
         if (failure.empty())
           failure = attempt([&]() {
-            manifest = from_text(text);
+            manifest = CheckpointManifest::of_text(text);
             AssertThrow(manifest.n == n,
                         ExcMessage("it is of step " +
                                    std::to_string(manifest.n)));

@@ -45,13 +45,12 @@ namespace Viscoplastic
                           "Compliance exponent",
                           "Normal stiffness",
                           "Tangential stiffness"});
-      if (section == "Initial state")
-        return entry != "Compatibility tolerance";
-      return section == "Dimension" || section == "Units" ||
-             section == "Supports" || path == "Mesh refinement/Strategy" ||
-             path == "Output/Points" || path == "Output/Point fields" ||
-             path == "Output/Lines" || path == "Output/Line fields" ||
-             path == "Output/Integrals" || path == "Error control/Error bar" ||
+      return section == "Initial state" || section == "Dimension" ||
+             section == "Units" || section == "Supports" ||
+             path == "Mesh refinement/Strategy" || path == "Output/Points" ||
+             path == "Output/Point fields" || path == "Output/Lines" ||
+             path == "Output/Line fields" || path == "Output/Integrals" ||
+             path == "Error control/Error bar" ||
              path == "Error control/Quantity";
     }
 

@@ -179,7 +179,7 @@ namespace Viscoplastic
     message << "The active set iteration did not converge in "
             << report.iterations << " iterations: the relative error bound is "
             << best_error << " at best, and the tolerance is " << tolerance
-            << " ('Solver/Contact tolerance'); ";
+            << "; ";
     if (bounds)
       AssertThrow(false, NoCoulombSolution(message.str() + bounds->failure()));
     // Rounding of displacements makes forces of all sizes of it.
@@ -195,8 +195,7 @@ namespace Viscoplastic
     if (stiffest > beyond_rounding)
       message << "the foundation is " << stiffest
               << " times as stiff as the body, which no number resolves: give "
-                 "a smaller 'Compliance', or 'Contact law' = unilateral, its "
-                 "limit.";
+                 "a smaller compliance, or its limit, unilateral contact.";
     else if (const double rounding =
                report.iterations >= last_gain + stalled_after ?
                  bulk.rounding_of_residual() / size :
@@ -213,9 +212,9 @@ namespace Viscoplastic
       }
     else
       message << (bulk.is_exact ? "" :
-                                  "use 'Solver/Linear solver' = direct, on "
-                                  "one rank, ")
-              << "raise 'Solver/Maximal contact iterations' or the tolerance.";
+                                  "use the direct linear solver, on one "
+                                  "rank, ")
+              << "allow more iterations or a larger tolerance of contact.";
     AssertThrow(false, ExcMessage(message.str()));
   }
 } // namespace Viscoplastic

@@ -202,8 +202,7 @@ namespace Viscoplastic
             << largest_coefficient << "); friction and pressure fit worst at "
             << place_of_largest(of_nodes)
             << ". None was found on the way from smaller coefficients, either. "
-               "Smaller steps may follow a solution; 'Solver/Coulomb "
-               "pressure' = lagged takes the pressure of the step before.";
+               "Smaller steps may follow a solution.";
     return message.str();
   }
 } // namespace Viscoplastic

@@ -38,6 +38,7 @@ namespace Viscoplastic
       Tensor<1, dim> residual;
       switch (condition.role)
         {
+          case BoundaryRole::not_given:
           case BoundaryRole::clamped:
             break;
           case BoundaryRole::displacement:

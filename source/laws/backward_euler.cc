@@ -184,8 +184,8 @@ namespace Viscoplastic
             message << "The stress of backward Euler at x = (" << point.x
                     << "), t = " << point.t
                     << " cannot be found for the time step " << k
-                    << ": its law of flow may soften or jump there; take more "
-                       "steps in 'Time/Phases'.";
+                    << ": its law of flow may soften or jump there; take "
+                       "shorter steps.";
             AssertThrow(false, ExcMessage(message.str()));
           }
       }

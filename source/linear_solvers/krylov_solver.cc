@@ -274,8 +274,8 @@ namespace Viscoplastic
         AssertThrow(failure.last_residual < 0.5 * size,
                     ExcMessage(
                       "The conjugate gradient method does not "
-                      "converge; for nearly incompressible bodies use "
-                      "'Solver/Linear solver' = direct, on one rank."));
+                      "converge; for nearly incompressible bodies use the "
+                      "direct linear solver, on one rank."));
       }
     solver.restriction.tilt_motions(truncation, w);
     face_part = solver.restriction.gather(w);

@@ -132,10 +132,11 @@ namespace Viscoplastic
   {
     const LinearSolver choice = demand.choice;
     AssertThrow(choice != LinearSolver::direct || demand.n_ranks == 1,
-                ExcMessage("'Solver/Linear solver' = direct works on one MPI "
-                           "rank, but the run has " +
-                           std::to_string(demand.n_ranks) +
-                           "; use multigrid or automatic."));
+                ExcMessage(
+                  "The direct linear solver works on one MPI rank, but "
+                  "the run has " +
+                  std::to_string(demand.n_ranks) +
+                  "; let it be multigrid or automatic."));
     if (choice == LinearSolver::direct ||
         (choice == LinearSolver::automatic && demand.n_ranks == 1 &&
          prefer_direct(demand)))

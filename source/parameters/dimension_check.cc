@@ -100,18 +100,25 @@ namespace Viscoplastic
         return at < text.size() ? text[at] : '\0';
       }
 
-      /// Whether one of these comes next; then it is behind.
-      bool
-      takes(const std::vector<std::string> &operators)
+      /// The first of these that comes next, which is behind then; empty if
+      /// none does.
+      std::string
+      take(const std::vector<std::string> &tokens)
       {
         next();
-        for (const std::string &one : operators)
-          if (text.compare(at, one.size(), one) == 0)
+        for (const std::string &token : tokens)
+          if (text.compare(at, token.size(), token) == 0)
             {
-              at += one.size();
-              return true;
+              at += token.size();
+              return token;
             }
-        return false;
+        return "";
+      }
+
+      bool
+      takes(const std::string &token)
+      {
+        return !take({token}).empty();
       }
 
       /// The value of two operands that have to have the same dimension.
@@ -152,77 +159,59 @@ namespace Viscoplastic
       {
         const Level       level(*this);
         const std::size_t begin = at;
-        const Value       value = condition();
-        if (!takes({"?"}))
+        const Value       value = binary(0);
+        if (!takes("?"))
           return value;
         const Value first = choice();
-        if (!takes({":"}))
+        if (!takes(":"))
           throw Unreadable();
         return common(first, choice(), begin);
       }
 
+      /// Operands between binary operators, of which the later ones in the
+      /// table bind closer.
       Value
-      condition()
+      binary(const std::size_t precedence)
       {
-        Value value = comparison();
-        while (takes({"&&", "||", "&", "|"}))
-          {
-            comparison();
-            value = anything;
-          }
-        return value;
-      }
-
-      Value
-      comparison()
-      {
+        static const std::vector<std::vector<std::string>> operators{
+          {"&&", "||", "&", "|"},
+          {"<=", ">=", "==", "!=", "<", ">"},
+          {"+", "-"},
+          {"*", "/"}};
+        if (precedence == operators.size())
+          return factor();
         const std::size_t begin = at;
-        Value             value = sum();
-        while (takes({"<=", ">=", "==", "!=", "<", ">"}))
+        Value             value = binary(precedence + 1);
+        for (std::string sign; !(sign = take(operators[precedence])).empty();)
           {
-            common(value, sum(), begin);
-            value = anything;
+            const Value other = binary(precedence + 1);
+            value =
+              precedence == 0 ? anything : result(value, sign, other, begin);
           }
         return value;
       }
 
       Value
-      sum()
+      result(const Value       &a,
+             const std::string &sign,
+             const Value       &b,
+             const std::size_t  begin) const
       {
-        const std::size_t begin = at;
-        Value             value = product();
-        while (next() == '+' || next() == '-')
+        if (sign != "*" && sign != "/")
           {
-            const double sign   = text[at] == '+' ? 1. : -1.;
-            const auto   number = value.number;
-            ++at;
-            const Value other = product();
-            value             = common(value, other, begin);
-            if (number && other.number)
-              value.number = *number + sign * *other.number;
+            Value value = common(a, b, begin);
+            if (sign != "+" && sign != "-")
+              return anything; // of a comparison
+            if (a.number && b.number)
+              value.number = *a.number + (sign == "+" ? 1. : -1.) * *b.number;
+            return value;
           }
-        return value;
-      }
-
-      Value
-      product()
-      {
-        Value value = factor();
-        while (next() == '*' || next() == '/')
-          {
-            const double exponent = text[at] == '*' ? 1. : -1.;
-            ++at;
-            const Value other = factor();
-            if (value.number && other.number)
-              value.number = *value.number * std::pow(*other.number, exponent);
-            else
-              value.number.reset();
-            if (value.dimension && other.dimension)
-              value.dimension =
-                *value.dimension * other.dimension->power(exponent);
-            else
-              value.dimension.reset();
-          }
+        const double exponent = sign == "*" ? 1. : -1.;
+        Value        value;
+        if (a.number && b.number)
+          value.number = *a.number * std::pow(*b.number, exponent);
+        if (a.dimension && b.dimension)
+          value.dimension = *a.dimension * b.dimension->power(exponent);
         return value;
       }
 
@@ -230,26 +219,26 @@ namespace Viscoplastic
       factor()
       {
         const Level level(*this);
-        if (takes({"-"}))
+        if (takes("-"))
           {
             Value value = factor();
             if (value.number)
               value.number = -*value.number;
             return value;
           }
-        if (takes({"+", "!"}))
+        if (!take({"+", "!"}).empty())
           return factor();
         const Value base = atom();
-        return takes({"^"}) ? power(base, factor()) : base;
+        return takes("^") ? power(base, factor()) : base;
       }
 
       Value
       atom()
       {
-        if (takes({"("}))
+        if (takes("("))
           {
             const Value value = choice();
-            if (!takes({")"}))
+            if (!takes(")"))
               throw Unreadable();
             return value;
           }
@@ -270,7 +259,7 @@ namespace Viscoplastic
         at += name.size();
         if (name.empty())
           throw Unreadable();
-        if (takes({"("}))
+        if (takes("("))
           return call(name, begin);
         const auto variable = variables.find(name);
         return variable == variables.end() ? anything : variable->second;
@@ -283,8 +272,8 @@ namespace Viscoplastic
         if (next() != ')')
           do
             arguments.push_back(choice());
-          while (takes({","}));
-        if (!takes({")"}))
+          while (takes(","));
+        if (!takes(")"))
           throw Unreadable();
         const std::size_t n = arguments.size();
         if (n == 1 && of_pure_numbers.count(name) > 0)

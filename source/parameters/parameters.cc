@@ -47,13 +47,9 @@ namespace Viscoplastic
     prm.add_parameter("File",
                       file,
                       "A mesh file that replaces the generator, relative to "
-                      "the parameter file that names it; empty for none.");
-    prm.add_parameter("File format",
-                      file_format,
-                      "Format of that file: Gmsh (.msh 2 and 4), AVS UCD, VTK "
-                      "or ABAQUS (.inp); `automatic' decides by the file's "
-                      "name and first line.",
-                      Patterns::Selection("automatic|msh|ucd|vtk|abaqus"));
+                      "the parameter file that names it: of Gmsh (.msh, "
+                      "version 2 or 4), AVS UCD (.ucd, .avs or .inp), VTK "
+                      "(.vtk) or ABAQUS (.inp); empty for none.");
     prm.add_parameter("Boundary ids",
                       boundary_ids,
                       "The boundary id of each face of the coarse mesh as an "
@@ -216,7 +212,8 @@ namespace Viscoplastic
                       equilibrate,
                       "Whether to put the body into equilibrium with the loads "
                       "at t = 0 by an elastic step with friction, instead of "
-                      "refusing initial data that violate (2.12). The "
+                      "refusing initial data that violate (2.12) by more than "
+                      "1e-6 of the loads. The "
                       "displacement of that step counts in all displacements, "
                       "unless `Reset displacement' is set.");
     prm.add_parameter("Reset displacement",
@@ -225,11 +222,6 @@ namespace Viscoplastic
                       "from the initial state on, as where ground has settled "
                       "long ago. Stresses, slip and energies are the same with "
                       "and without.");
-    prm.add_parameter("Compatibility tolerance",
-                      compatibility_tolerance,
-                      "Violation of (2.12), relative to the loads, up to which "
-                      "initial data are accepted.",
-                      Patterns::Double(0.));
   }
 
 
@@ -273,15 +265,14 @@ namespace Viscoplastic
                       "record and in entries such as `Error control/Quantity', "
                       "as in `roof'; by default `boundary' and its id, or the "
                       "name of its physical group in a mesh file of Gmsh.");
-    prm.add_parameter(
+    add_choice(
+      prm,
       "Role",
       role,
       "`clamped': u = 0; `displacement': given components of u; `traction': "
       "sigma nu = F - p nu, also with springs; `free': sigma nu = 0; `symmetry': u_nu = 0 without "
       "friction on a flat piece; `contact': a flat piece of Gamma_3 with a "
-      "friction law.",
-      Patterns::Selection("not given|clamped|displacement|traction|free|"
-                          "symmetry|contact"));
+      "friction law.");
     prm.add_parameter("Displacement",
                       displacement,
                       "For the role displacement: components as expressions of "
@@ -310,7 +301,8 @@ namespace Viscoplastic
                       tangential_stiffness,
                       "k_t(x) >= 0 of these springs along the piece. Unit: "
                       "stress/length.");
-    prm.add_parameter(
+    add_choice(
+      prm,
       "Contact law",
       contact_law,
       "For the role contact, what acts along the normal: `bilateral': u_nu = "
@@ -320,10 +312,7 @@ namespace Viscoplastic
       "with a foundation that gives way, sigma_n = -c (u_n - g - d)_+^m. "
       "Where it is not given, it is "
       "that of the paper for the friction law: given normal stress for "
-      "coulomb, otherwise bilateral.",
-      Patterns::Selection(
-        "not given|bilateral|given normal stress|unilateral|normal "
-        "compliance"));
+      "coulomb, otherwise bilateral.");
     prm.add_parameter("Against",
                       against,
                       "For the role contact: the boundary of another body, by "
@@ -357,15 +346,15 @@ namespace Viscoplastic
                       compliance_exponent,
                       "m >= 1 of normal compliance. Unit: 1.",
                       Patterns::Double(1.));
-    prm.add_parameter(
+    add_choice(
+      prm,
       "Friction law",
       friction_law,
       "For the role contact, what acts along the face: `tresca' has a given "
       "friction bound (5.22); `coulomb' has the bound mu |S| of a given normal "
       "stress (5.6), or in unilateral contact and normal compliance mu p with "
       "the pressure p that comes out (`Solver/Coulomb pressure'); `none' is contact without friction; `glued' "
-      "holds the body fast to the foundation.",
-      Patterns::Selection("not given|none|tresca|coulomb|glued"));
+      "holds the body fast to the foundation.");
     prm.add_parameter("Friction bound",
                       friction_bound,
                       "g(x,t) >= 0 of the law tresca. Unit: stress.");

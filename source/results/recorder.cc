@@ -25,9 +25,7 @@ namespace Viscoplastic
     , timer(timer)
     , budget(budget)
     , has_error_estimate(scene.parameters.error_control.error_estimator)
-    , progress(console,
-               scene.schedule.n_steps(),
-               scene.parameters.units.suffix(Quantity::time))
+    , progress(console, scene.schedule.n_steps(), scene.unit(Quantity::time))
   {
     if (has_error_estimate)
       run.errors.emplace();

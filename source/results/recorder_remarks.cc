@@ -36,9 +36,8 @@ namespace Viscoplastic
   {
     // The contact tolerance bounds the error in the energy norm, in which
     // nearly incompressible bodies hide large errors of reactions.
-    const double      defect = balance_defect(quantities);
-    const std::string time_unit =
-      scene.parameters.units.suffix(Quantity::time, dim);
+    const double       defect    = balance_defect(quantities);
+    const std::string  time_unit = scene.unit(Quantity::time);
     constexpr double   lost = 1e-3, far = 1e3;
     const double       times = quantities.max_displacement / body_size();
     std::ostringstream loss;
@@ -120,7 +119,7 @@ namespace Viscoplastic
             text
               << "Note: at t = " << step.time_step.t << time_unit
               << " the support at " << support.place << " carries a force, of "
-              << force << scene.parameters.units.suffix(Quantity::force, dim)
+              << force << scene.unit(Quantity::force)
               << "; there is no bounded stress there, and the body gives way "
                  "at the support without bound as the mesh is refined.";
             console.remark(text.str());
@@ -131,8 +130,7 @@ namespace Viscoplastic
         std::ostringstream text;
         text << "Warning: the stress has passed the cap of a law, in the "
                 "volume "
-             << step.capped_volume
-             << scene.parameters.units.suffix(Quantity::volume, dim)
+             << step.capped_volume << scene.unit(Quantity::volume)
              << " at t = " << step.time_of_rate() << time_unit
              << "; beyond it the law is continued linearly.";
         console.remark(text.str());
@@ -159,8 +157,8 @@ namespace Viscoplastic
     text << std::setprecision(3)
          << "Warning: 'Error control/Tolerance' = " << budget->tolerance
          << " has not been kept: at t = " << summary.t
-         << scene.parameters.units.suffix(Quantity::time, dim)
-         << " the error is estimated as " << summary.relative() << " of the "
+         << scene.unit(Quantity::time) << " the error is estimated as "
+         << summary.relative() << " of the "
          << (scene.quantity ? "largest " + scene.quantity->name : "solution")
          << ", of it " << errors.space / size << " by the mesh, "
          << (errors.time + errors.friction) / size << " by the time steps and "
@@ -190,12 +188,11 @@ namespace Viscoplastic
   Recorder<dim>::remarks(const State<dim> &state) const
   {
     std::vector<std::string> result;
-    const std::string        time_unit =
-      scene.parameters.units.suffix(Quantity::time, dim);
-    const double fluctuation =
+    const std::string        time_unit = scene.unit(Quantity::time);
+    const double             fluctuation =
       scene.has_viscosity() ?
-        relative_stress_fluctuation(discretization->stress_space, state) :
-        0.;
+                    relative_stress_fluctuation(discretization->stress_space, state) :
+                    0.;
     if (fluctuation > 0.2 &&
         scene.parameters.stress.stress_history == StressHistory::cell_means)
       {

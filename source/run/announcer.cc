@@ -54,7 +54,7 @@ namespace Viscoplastic
       return;
     console.stream()
       << "Equilibrium at t = 0: the body has moved by up to " << largest_u0
-      << scene.parameters.units.suffix(Quantity::length)
+      << scene.unit(Quantity::length)
       << (scene.parameters.initial_state.reset_displacement ?
             "; displacements count from there\n" :
             ", which counts in all displacements ('Initial state/Reset "
@@ -69,7 +69,7 @@ namespace Viscoplastic
   {
     const std::string absent = enumeration(scene.absent_materials());
     console.stream() << "From t = " << scene.stage_ends[scene.stage() - 1]
-                     << scene.parameters.units.suffix(Quantity::time) << " on "
+                     << scene.unit(Quantity::time) << " on "
                      << (absent.empty() ? "with all materials" :
                                           "without " + absent)
                      << '\n';

@@ -50,10 +50,12 @@ namespace Viscoplastic
         return;
       if (make_results)
         make_results_directory(results);
-      results_lock.acquire(results);
+      const std::string otherwise = "choose another 'Output/Directory' and "
+                                    "'Checkpoint/Directory'";
+      results_lock.acquire(results, otherwise);
       std::error_code none;
       if (!std::filesystem::equivalent(results, checkpoints.directory, none))
-        checkpoint_lock.acquire(checkpoints.directory);
+        checkpoint_lock.acquire(checkpoints.directory, otherwise);
     });
   }
 

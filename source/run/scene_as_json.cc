@@ -137,7 +137,7 @@ namespace Viscoplastic
               add(section + '/' + name, [&, id = id](const std::string &text) {
                 return data.over_boundary(text, id);
               });
-            if (boundary.role == "contact")
+            if (boundary.role == BoundaryRole::contact)
               json["areas"][std::to_string(id)] = data.area(id);
           }
         add("Loads/Body force",

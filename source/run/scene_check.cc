@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/known_solution.h>
 #include <viscoplastic_contact/error/solution_errors.h>
@@ -75,10 +76,10 @@ namespace Viscoplastic
           const TimeStep largest = scene.schedule.largest_step();
           out << "Stability limit 2/r before the initial state is brought into "
                  "equilibrium: "
-              << 2. / rate << scene.parameters.units.suffix(Quantity::time, dim)
+              << 2. / rate << scene.unit(Quantity::time)
               << (scene.is_implicit() ? " of explicit schemes" : "")
               << "; the largest step is " << largest.k
-              << scene.parameters.units.suffix(Quantity::time, dim) << '\n';
+              << scene.unit(Quantity::time) << '\n';
         }
     }
 
@@ -137,8 +138,8 @@ namespace Viscoplastic
                 "conjugate gradients with " + to_string(solver))
           << "\nSteps: " << scene.schedule.n_steps()
           << " until t = " << scene.schedule.end_time()
-          << scene.parameters.units.suffix(Quantity::time, dim)
-          << "\nMemory: about " << std::ceil(bytes / 1e7) / 100. << " GB"
+          << scene.unit(Quantity::time) << "\nMemory: about "
+          << std::ceil(bytes / 1e7) / 100. << " GB"
           << (scene.is_adaptive() ? " on the initial mesh" : "") << '\n';
     }
   } // namespace
@@ -190,9 +191,8 @@ namespace Viscoplastic
                       State<dim>                &initial,
                       const Load<dim>           &load)
   {
-    const Scene<dim> &scene = discretization.scene();
-    const double      tolerance =
-      scene.parameters.initial_state.compatibility_tolerance;
+    const Scene<dim>                 &scene     = discretization.scene();
+    constexpr double                  tolerance = 1e-6;
     const CompatibilityViolation<dim> violation =
       compatibility_violation(discretization.space,
                               load,
@@ -205,8 +205,7 @@ namespace Viscoplastic
     std::ostringstream message;
     message << "The initial data are not in equilibrium with the loads at "
                "t = 0, (2.12): the relative violation is "
-            << violation.relative
-            << ", and 'Initial state/Compatibility tolerance' is " << tolerance
+            << violation.relative << ", more than " << tolerance
             << "; it is largest at x = (" << violation.position << "), "
             << (violation.boundaries.empty() ?
                   "inside of the body" :
@@ -240,8 +239,7 @@ namespace Viscoplastic
                            scene.schedule.step(1));
     if (rate == 0.)
       return;
-    const std::string time_unit =
-      scene.parameters.units.suffix(Quantity::time, dim);
+    const std::string time_unit = scene.unit(Quantity::time);
     console.stream() << "Stability limit 2/r of the initial state: "
                      << 2. / rate << time_unit
                      << (scene.is_implicit() ? " of explicit schemes\n" : "\n");

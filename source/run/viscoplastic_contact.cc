@@ -394,14 +394,17 @@ namespace Viscoplastic
       decision = {};
     const SignalRequests::Request request =
       signals.agree(communicator, decision.is_due, decision.is_late);
-    const bool stops = !request.stop.empty() && !is_last;
+    const std::string stop  = request.stop.empty() && request.is_late ?
+                                "'Checkpoint/Wall time limit'" :
+                                request.stop;
+    const bool        stops = !stop.empty() && !is_last;
     if (!request.checkpoint && !stops)
       return "";
     write_checkpoint();
     checkpoint_schedule.restart_clock(recorder.elapsed());
     std::ostringstream text;
     text << "step " << state.n << " (t = " << state.t
-         << parameters.units.suffix(Quantity::time, dim) << "): '"
+         << scene.unit(Quantity::time) << "): '"
          << directories.checkpoints.path(state.n) << "'";
     if (!stops)
       {
@@ -414,7 +417,7 @@ namespace Viscoplastic
     if (const auto relative = recorder.relative_error(accepted.errors))
       error << " The error up to there is estimated as " << std::setprecision(2)
             << 100. * *relative << " %.";
-    const std::string interruption = request.stop +
+    const std::string interruption = stop +
                                      " has ended the run after the checkpoint "
                                      "of " +
                                      text.str() + "; --restart goes on." +

@@ -5,7 +5,6 @@
 #include <viscoplastic_contact/scene/boundary_condition.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace Viscoplastic
 {
@@ -19,84 +18,51 @@ namespace Viscoplastic
 
 
 
-    BoundaryRole
-    role_by_name(const types::boundary_id id, const std::string &name)
+    /// Throws unless the entry is there.
+    template <typename Choice>
+    void
+    require_given(const types::boundary_id id,
+                  const std::string       &name,
+                  const Choice             choice)
     {
-      if (name == "clamped")
-        return BoundaryRole::clamped;
-      if (name == "displacement")
-        return BoundaryRole::displacement;
-      if (name == "traction")
-        return BoundaryRole::traction;
-      if (name == "free")
-        return BoundaryRole::free;
-      if (name == "symmetry")
-        return BoundaryRole::symmetry;
-      if (name == "contact")
-        return BoundaryRole::contact;
+      if (choice != Choice::not_given)
+        return;
+      // What comes first stands for nothing.
+      std::string       names = choices(choice);
+      const std::size_t last  = names.rfind('|');
+      names.replace(last, 1, " or ");
+      names.erase(0, names.find('|') + 1);
       AssertThrow(false,
-                  ExcMessage("'" + entry(id, "Role") +
-                             "' is missing; it must be clamped, displacement, "
-                             "traction, free, symmetry or contact."));
-      return BoundaryRole::free;
-    }
-
-
-
-    FrictionLaw
-    friction_law_by_name(const types::boundary_id id, const std::string &name)
-    {
-      if (name == "none")
-        return FrictionLaw::none;
-      if (name == "tresca")
-        return FrictionLaw::tresca;
-      if (name == "coulomb")
-        return FrictionLaw::coulomb;
-      if (name == "glued")
-        return FrictionLaw::glued;
-      AssertThrow(false,
-                  ExcMessage("'" + entry(id, "Friction law") +
-                             "' is missing; it must be none, tresca, coulomb "
-                             "or glued."));
-      return FrictionLaw::none;
+                  ExcMessage(
+                    "'" + entry(id, name) + "' is missing; it must be " +
+                    Utilities::replace_in_string(names, "|", ", ") + "."));
     }
 
 
 
     /// The contact law that is given, or that of the friction law in the paper.
     ContactLaw
-    contact_law_by_name(const types::boundary_id id,
-                        const std::string       &name,
-                        const FrictionLaw        friction_law)
+    contact_law_of(const types::boundary_id id, const BoundaryParameters &given)
     {
-      const bool is_coulomb = friction_law == FrictionLaw::coulomb;
-      const auto refuse     = [&](const std::string &reason) {
-        AssertThrow(false,
-                    ExcMessage("'" + entry(id, "Contact law") + "' is " + name +
-                               ", but " + reason));
+      const ContactLaw law        = given.contact_law;
+      const bool       is_coulomb = given.friction_law == FrictionLaw::coulomb;
+      const auto refuse = [&](const bool when, const std::string &reason) {
+        AssertThrow(!when,
+                    ExcMessage("'" + entry(id, "Contact law") + "' is " +
+                               name_of(law) + ", but " + reason));
       };
-      if (name == "bilateral")
-        {
-          if (is_coulomb)
-            refuse("'Friction law' = coulomb needs a pressure: that of "
-                   "unilateral contact, or a given normal stress.");
-          return ContactLaw::bilateral;
-        }
-      if (name == "given normal stress")
-        {
-          if (!is_coulomb)
-            refuse("with 'Friction law' other than coulomb that is a load: "
-                   "use the role traction with a 'Pressure'.");
-          return ContactLaw::given_stress;
-        }
-      if (name == "unilateral" || name == "normal compliance")
-        {
-          if (friction_law == FrictionLaw::glued)
-            refuse("what is glued cannot open; leave one of them out.");
-          return name == "unilateral" ? ContactLaw::unilateral :
-                                        ContactLaw::compliance;
-        }
-      return is_coulomb ? ContactLaw::given_stress : ContactLaw::bilateral;
+      refuse(law == ContactLaw::bilateral && is_coulomb,
+             "'Friction law' = coulomb needs a pressure: that of unilateral "
+             "contact, or a given normal stress.");
+      refuse(law == ContactLaw::given_stress && !is_coulomb,
+             "with 'Friction law' other than coulomb that is a load: use the "
+             "role traction with a 'Pressure'.");
+      refuse((law == ContactLaw::unilateral || law == ContactLaw::compliance) &&
+               given.friction_law == FrictionLaw::glued,
+             "what is glued cannot open; leave one of them out.");
+      return law != ContactLaw::not_given ? law :
+             is_coulomb                   ? ContactLaw::given_stress :
+                                            ContactLaw::bilateral;
     }
 
 
@@ -210,9 +176,8 @@ namespace Viscoplastic
         return is_contact && condition.contact_law != ContactLaw::given_stress;
       if (name == "Foundation motion")
         return condition.has_friction() || condition.is_glued();
-      Assert(name == "Friction law" || name == "Contact law",
-             ExcInternalError());
-      return is_contact;
+      Assert(false, ExcInternalError());
+      return false;
     }
   } // namespace
 
@@ -224,17 +189,18 @@ namespace Viscoplastic
     const BoundaryParameters &parameters,
     const ExactSolution<dim> *solution)
     : id(id)
-    , role(role_by_name(id, parameters.role))
+    , role(parameters.role)
     , solution(solution)
   {
+    require_given(id, "Role", role);
     if (role == BoundaryRole::contact)
       {
-        friction_law = friction_law_by_name(id, parameters.friction_law);
-        contact_law =
-          contact_law_by_name(id, parameters.contact_law, friction_law);
+        friction_law = parameters.friction_law;
+        require_given(id, "Friction law", friction_law);
+        contact_law = contact_law_of(id, parameters);
         AssertThrow(!(solution && is_unilateral()),
                     ExcMessage("'" + entry(id, "Contact law") + "' is " +
-                               parameters.contact_law +
+                               name_of(contact_law) +
                                ", for which 'Exact solution/Data' = solution "
                                "makes no data; use 'Data' = scene."));
       }
@@ -264,7 +230,7 @@ namespace Viscoplastic
                                 "contact law given normal stress" :
                               name == "Compliance" ?
                                 "contact law normal compliance" :
-                                "friction law " + parameters.friction_law) +
+                                "friction law " + name_of(friction_law)) +
                              " needs it."));
       if (is_given(text))
         result.emplace(text, entry(id, name));
@@ -377,8 +343,7 @@ namespace Viscoplastic
                              const std::string &text,
                              const std::string &nothing) {
       const std::string given = Utilities::trim(text);
-      if (!given.empty() && given != nothing && given != "not given" &&
-          !uses(*this, name))
+      if (!given.empty() && given != nothing && !uses(*this, name))
         names.push_back(name);
     };
     compare("Displacement", parameters.displacement, "");
@@ -386,14 +351,17 @@ namespace Viscoplastic
     compare("Pressure", parameters.pressure, "0");
     compare("Normal stiffness", parameters.normal_stiffness, "0");
     compare("Tangential stiffness", parameters.tangential_stiffness, "0");
-    compare("Contact law", parameters.contact_law, "bilateral");
+    const bool is_contact = role == BoundaryRole::contact;
+    if (!is_contact && parameters.contact_law > ContactLaw::bilateral)
+      names.emplace_back("Contact law");
     compare("Against", parameters.against, "");
     compare("Gap", parameters.gap, "0");
     compare("Foundation normal", parameters.foundation_normal, "");
     compare("Compliance", parameters.compliance, "0");
     if (parameters.compliance_exponent != 1. && !gives_way())
       names.push_back("Compliance exponent");
-    compare("Friction law", parameters.friction_law, "none");
+    if (!is_contact && parameters.friction_law > FrictionLaw::none)
+      names.emplace_back("Friction law");
     compare("Friction bound", parameters.friction_bound, "0");
     compare("Friction coefficient", parameters.friction_coefficient, "0");
     compare("Slip rate factor", parameters.slip_rate_factor, "1");
@@ -405,229 +373,15 @@ namespace Viscoplastic
 
 
 
-  template <int dim>
-  double
-  BoundaryCondition<dim>::bound(const Point<dim> &x, const double t) const
-  {
-    const bool   is_tresca = friction_law == FrictionLaw::tresca;
-    const double factor    = is_tresca ? friction_bound->value(x, t) :
-                                         friction_coefficient->value(x, t);
-    if (factor < 0.)
-      {
-        std::ostringstream message;
-        message << "'"
-                << entry(id,
-                         is_tresca ? "Friction bound" : "Friction coefficient")
-                << "' is " << factor << " at x = (" << x << "), t = " << t
-                << "; it must not be negative.";
-        AssertThrow(false, ExcMessage(message.str()));
-      }
-    // rho = g, (5.22), or mu |S|, (5.6).
-    return is_tresca || has_computed_pressure() ?
-             factor :
-             factor * std::abs(normal_stress->value(x, t));
-  }
+#define INSTANTIATE(dim)                                                    \
+  template BoundaryCondition<dim>::BoundaryCondition(                       \
+    const types::boundary_id,                                               \
+    const BoundaryParameters &,                                             \
+    const ExactSolution<dim> *);                                            \
+  template std::vector<std::string> BoundaryCondition<dim>::unused_entries( \
+    const BoundaryParameters &) const;
 
-
-
-  template <int dim>
-  double
-  BoundaryCondition<dim>::bound_factor(const double slip_rate) const
-  {
-    if (!slip_rate_factor)
-      return 1.;
-    const double result = slip_rate_factor->value(Point<1>(slip_rate), 0.);
-    if (result < 0.)
-      {
-        std::ostringstream message;
-        message << "'" << entry(id, "Slip rate factor") << "' is " << result
-                << " at v = " << slip_rate << "; it must not be negative.";
-        AssertThrow(false, ExcMessage(message.str()));
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
-  double
-  BoundaryCondition<dim>::compliance(const Point<dim> &x) const
-  {
-    const double result = given_compliance->value(x, 0.);
-    if (!(result >= 0.))
-      {
-        std::ostringstream message;
-        message << "'" << entry(id, "Compliance") << "' is " << result
-                << " at x = (" << x << "); it must not be negative.";
-        AssertThrow(false, ExcMessage(message.str()));
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
-  double
-  BoundaryCondition<dim>::gap(const Point<dim> &x, const double t) const
-  {
-    return (given_gap ? given_gap->value(x, t) : 0.) +
-           (foundation_displacement ? foundation_displacement->value(x, t) :
-                                      0.);
-  }
-
-
-
-  template <int dim>
-  void
-  BoundaryCondition<dim>::derive_data()
-  {
-    if (solution && contact_law == ContactLaw::given_stress)
-      normal_stress.emplace(
-        [solution = solution, normal = normal](const Point<dim> &x,
-                                               const double      t) {
-          return solution->traction(x, normal, t) * normal;
-        },
-        "Exact solution/Stress");
-  }
-
-
-
-  template <int dim>
-  bool
-  BoundaryCondition<dim>::load_depends_on_time() const
-  {
-    return (traction && traction->depends_on_time()) ||
-           (pressure && pressure->depends_on_time()) ||
-           (normal_stress && normal_stress->depends_on_time()) ||
-           has_derived_traction();
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  BoundaryCondition<dim>::load(const Point<dim>     &x,
-                               const Tensor<1, dim> &outward_normal,
-                               const double          t) const
-  {
-    if (normal_stress)
-      return normal_stress->value(x, t) * outward_normal;
-    Tensor<1, dim> result;
-    if (has_derived_traction())
-      {
-        result = solution->traction(x, outward_normal, t);
-        if (has_springs())
-          result +=
-            spring_stiffness(x, outward_normal) * solution->displacement(x, t);
-      }
-    if (traction)
-      result = traction->vector(x, t);
-    if (pressure)
-      result -= pressure->value(x, t) * outward_normal;
-    for (unsigned int d = 0; d < dim; ++d)
-      if (displacement[d])
-        result[d] = 0.;
-    return result;
-  }
-
-
-
-  template <int dim>
-  SymmetricTensor<2, dim>
-  BoundaryCondition<dim>::spring_stiffness(
-    const Point<dim>     &x,
-    const Tensor<1, dim> &outward_normal) const
-  {
-    const auto value = [&](const std::optional<Expression<dim>> &datum,
-                           const std::string                    &name) {
-      const double result = datum ? datum->value(x, 0.) : 0.;
-      if (!(result >= 0.))
-        {
-          std::ostringstream message;
-          message << "'" << entry(id, name) << "' is " << result << " at x = ("
-                  << x << "); it must not be negative.";
-          AssertThrow(false, ExcMessage(message.str()));
-        }
-      return result;
-    };
-    const double k_n = value(normal_stiffness, "Normal stiffness"),
-                 k_t = value(tangential_stiffness, "Tangential stiffness");
-    return k_t * unit_symmetric_tensor<dim>() +
-           (k_n - k_t) *
-             symmetrize(outer_product(outward_normal, outward_normal));
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  BoundaryCondition<dim>::sliding(const Point<dim> &x, const double t) const
-  {
-    if (!foundation_motion)
-      return {};
-    const Tensor<1, dim> w =
-      foundation_motion->vector(x, t) - foundation_motion->vector(x, 0.);
-    return w - (w * normal) * normal;
-  }
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  BoundaryCondition<dim>::glued_displacement(const Point<dim> &x,
-                                             const double      t) const
-  {
-    Tensor<1, dim> u = sliding(x, t);
-    if (foundation_displacement)
-      u += foundation_displacement->value(x, t) * normal;
-    return u;
-  }
-
-
-
-  template <int dim>
-  std::vector<const Expression<dim> *>
-  BoundaryCondition<dim>::data() const
-  {
-    std::vector<const Expression<dim> *> result;
-    const auto add = [&](const std::optional<Expression<dim>> &datum) {
-      if (datum)
-        result.push_back(&*datum);
-    };
-    for (const auto &component : displacement)
-      add(component);
-    add(given_gap);
-    add(given_compliance);
-    add(normal_stiffness);
-    add(tangential_stiffness);
-    add(foundation_displacement);
-    add(friction_bound);
-    add(friction_coefficient);
-    add(normal_stress);
-    add(pressure);
-    for (const auto *vector : {&traction, &foundation_motion})
-      if (*vector)
-        for (unsigned int d = 0; d < dim; ++d)
-          result.push_back(&(**vector)[d]);
-    return result;
-  }
-
-
-
-  template <int dim>
-  bool
-  BoundaryCondition<dim>::bound_depends_on_time() const
-  {
-    return (friction_bound && friction_bound->depends_on_time()) ||
-           (friction_coefficient && friction_coefficient->depends_on_time()) ||
-           (normal_stress && normal_stress->depends_on_time()) ||
-           (is_unilateral() && ((given_gap && given_gap->depends_on_time()) ||
-                                (foundation_displacement &&
-                                 foundation_displacement->depends_on_time())));
-  }
-
-
-
-  template struct BoundaryCondition<2>;
-  template struct BoundaryCondition<3>;
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
 } // namespace Viscoplastic

@@ -431,7 +431,7 @@ namespace Viscoplastic
       result.push_back("support at " + support.place);
     if (initial_displacement || initial_stress)
       result.push_back("initial displacement or stress");
-    const std::string time_unit = parameters.units.suffix(Quantity::time);
+    const std::string time_unit = unit(Quantity::time);
     for (const auto &[id, entry] : entries)
       {
         const Material<dim> &material = *entry.material;

@@ -110,12 +110,12 @@ namespace Viscoplastic
         for (const std::string &name : condition.unused_entries(given))
           warnings.push_back(
             "'Boundary " + std::to_string(id) + "/" + name +
-            "' is not used by the role " + given.role +
+            "' is not used by the role " + name_of(given.role) +
             (condition.role == BoundaryRole::contact ?
-               (given.contact_law == "not given" ?
+               (given.contact_law == ContactLaw::not_given ?
                   "" :
-                  " with the contact law " + given.contact_law) +
-                 " with the friction law " + given.friction_law :
+                  " with the contact law " + name_of(given.contact_law)) +
+                 " with the friction law " + name_of(given.friction_law) :
                "") +
             ".");
       }

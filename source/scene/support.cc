@@ -86,7 +86,7 @@ namespace Viscoplastic
     {
       const std::size_t  colon = text.find(':');
       BoundaryParameters held;
-      held.role         = "displacement";
+      held.role         = BoundaryRole::displacement;
       held.displacement = displacement_of<dim>(
         colon == std::string::npos ? "" : text.substr(colon + 1), entry, text);
       Support<dim>       result{"", {}, {}, BoundaryCondition<dim>(id, held)};

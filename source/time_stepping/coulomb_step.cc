@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/time_stepping/step_solver.h>
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <sstream>
 
@@ -40,8 +40,7 @@ namespace Viscoplastic
     if (springs)
       contact.bound = springs->bounds_that_hold(problem, contact.bound);
     if (problem.bounds_follow_pressure && discretization.slipping_face() &&
-        discretization.scene().parameters.solver.coulomb_pressure ==
-          CoulombPressure::newton)
+        problem.parameters.coulomb_pressure == CoulombPressure::newton)
       {
         const DistributedVector first_u(u);
         const ContactState      first(contact);
@@ -50,13 +49,13 @@ namespace Viscoplastic
             return solve_with_own_pressure(
               problem, right_side, tolerance, u, contact);
           }
-        catch (const NoCoulombSolution &)
+        catch (const NoCoulombSolution &failure)
           {
             // Where Newton's method jams, as on flat bodies whose foundations
             // meet at an edge, solves with given bounds may get through.
-            const std::exception_ptr failure = std::current_exception();
-            u                                = first_u;
-            contact                          = first;
+            const std::string why = reason(failure);
+            u                     = first_u;
+            contact               = first;
             try
               {
                 return find_fixed_point(
@@ -64,7 +63,10 @@ namespace Viscoplastic
               }
             catch (const ExceptionBase &)
               {
-                std::rethrow_exception(failure);
+                AssertThrow(false,
+                            NoCoulombSolution(
+                              why + " 'Solver/Coulomb pressure' = lagged takes "
+                                    "the pressure of the step before."));
               }
           }
       }
@@ -81,9 +83,8 @@ namespace Viscoplastic
                                     DistributedVector       &u,
                                     ContactState            &contact)
   {
-    const SolverParameters &parameters =
-      discretization.scene().parameters.solver;
-    ContactReport report =
+    const SolverParameters &parameters = problem.parameters;
+    ContactReport           report =
       solve_with_bounds(problem, right_side, tolerance, u, contact);
     if (!problem.bounds_follow_pressure || !discretization.slipping_face())
       return report;

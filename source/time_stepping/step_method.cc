@@ -75,8 +75,8 @@ namespace Viscoplastic
                      const StepProblem<dim>    &problem)
   {
     const EvaluatedState<dim> &old = problem.old;
-    if (!discretization.scene().parameters.solver.reuse_unchanged ||
-        !old.is_solution || old.report.relative_error > problem.tolerance)
+    if (!problem.parameters.reuse_unchanged || !old.is_solution ||
+        old.report.relative_error > problem.tolerance)
       return false;
     const auto same = [](const DistributedVector &a,
                          const DistributedVector &b) {

@@ -65,6 +65,7 @@ namespace Viscoplastic
                                 TimerOutput               &timer)
     : discretization(discretization)
     , scene(discretization.scene())
+    , solver_parameters(scene.parameters.solver)
     , error_estimator(error_estimator)
     , control(control)
     , timer(timer)
@@ -219,6 +220,7 @@ namespace Viscoplastic
                              {},
                              {},
                              tolerance(accepted),
+                             solver_parameters,
                              accepted,
                              old_rate};
     if (d.face)
@@ -238,7 +240,7 @@ namespace Viscoplastic
         problem.bounds =
           d.face->step_bounds(time_step.t, u, problem.slip_rates);
         if (d.face->has_computed_pressure() &&
-            scene.parameters.solver.coulomb_pressure != CoulombPressure::lagged)
+            solver_parameters.coulomb_pressure != CoulombPressure::lagged)
           {
             problem.bounds_follow_pressure = true;
             problem.given_bounds           = problem.bounds;
@@ -303,7 +305,7 @@ namespace Viscoplastic
     step.end.is_solution = true;
     step.end.report      = step.report;
     // G at the end of this step is that at the start of the next one.
-    if (needs_rate() && scene.parameters.solver.reuse_unchanged)
+    if (needs_rate() && solver_parameters.reuse_unchanged)
       {
         if (step.is_unchanged && discretization.laws.are_autonomous())
           step.end.rate = *old_rate;
@@ -538,7 +540,7 @@ namespace Viscoplastic
   TimeStepper<dim>::tolerance(const EvaluatedState<dim> &accepted) const
   {
     return error_estimator ? error_estimator->tolerance(accepted.errors) :
-                             scene.parameters.solver.strict_tolerance();
+                             solver_parameters.strict_tolerance();
   }
 
 

@@ -423,5 +423,18 @@ class TestCase(unittest.TestCase):
         )
 
 
+class WithoutRanks(unittest.TestLoader):
+    """Leaves out the tests that have ranks in their names."""
+
+    def getTestCaseNames(self, case):
+        return [name for name in super().getTestCaseNames(case) if "rank" not in name]
+
+
 def main():
-    unittest.main(verbosity=2)
+    """Those of unittest; `--on-one-rank' leaves out the tests that have ranks in their
+    names, as `-k rank' leaves out the others."""
+    loader = unittest.defaultTestLoader
+    if "--on-one-rank" in sys.argv:
+        sys.argv.remove("--on-one-rank")
+        loader = WithoutRanks()
+    unittest.main(verbosity=2, testLoader=loader)

@@ -3,7 +3,6 @@
 parameter files, what it prints where, and that it describes itself."""
 
 import os
-import pty
 import re
 import shutil
 import subprocess
@@ -266,49 +265,12 @@ class Voice(Manners):
             # That slip is to come nobody knows before it begins.
             self.assertGreater(int(expected), n_steps / 3, f"step {n}, t = {t}")
 
-    def test_one_line_on_a_terminal(self):
-        """The present step is written over the one before, within the width
-        of the terminal; the log gets lines all the same, here of all steps."""
-        master, slave = pty.openpty()
-        environment = {
-            name: value
-            for name, value in os.environ.items()
-            if not name.startswith(("OMPI_", "PMI"))
-        }
-        process = subprocess.Popen(
-            [EXECUTABLE, SLAB, "--log", "log", "--verbose", "--set", "Time/Phases=1: 60"],
-            cwd=self.work,
-            env={**environment, "OMP_NUM_THREADS": "1", "TERM": "xterm"},
-            stdin=subprocess.DEVNULL,
-            stdout=slave,
-            stderr=subprocess.PIPE,
+    def test_all_steps_of_a_verbose_run(self):
+        process = self.call(
+            "--log", "log", "--verbose", "--set", "Time/Phases=1: 60", SLAB
         )
-        os.close(slave)
-        chunks = []
-        while True:
-            try:
-                chunk = os.read(master, 65536)
-            except OSError:  # the other end is closed
-                break
-            if not chunk:
-                break
-            chunks.append(chunk)
-        os.close(master)
-        process.stderr.close()
-        self.assertEqual(process.wait(), 0)
-        text = b"".join(chunks).decode()
-        status = re.findall(r"\r(Step [^\r\n\x1b]*)\x1b\[K", text)
-        self.assertGreaterEqual(len(status), 1)
-        for line in status:
-            self.assertLess(len(line), 80, line)
-            self.assertRegex(line, r"^Step +\d+/60  t = .*left ")
-        # only the last step stays
-        self.assertEqual(
-            re.findall(r"\nStep +(\d+)/60", text.replace("\r\x1b[K", "\n")), ["60"]
-        )
-        log = (self.work / "log").read_text()
-        self.assertEqual(len(re.findall(r"^Step +\d+/60", log, re.M)), 60)
-        self.assertNotIn("\033", log)
+        for text in process.stdout, (self.work / "log").read_text():
+            self.assertEqual(len(re.findall(r"^Step +\d+/60", text, re.M)), 60)
 
     def test_quiet(self):
         process = self.call("--quiet", SLAB, *SHORT)

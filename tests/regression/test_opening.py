@@ -383,7 +383,7 @@ class HardCases(Contact):
             # the tolerance of the fixed point is 1e-6
             self.assertLess(abs(one[name] - four[name]).max(), 1e-5 * size, name)
 
-    def test_jumps(self):
+    def test_jumps_on_ranks(self):
         """Pressure and coefficient that jump: the body is pressed and let go from
         one step to the next. In the plane on two ranks."""
         plate = (

@@ -168,7 +168,7 @@ class Identical(RestartCase):
         overrides = {"Time/Phases": "2.6: 10", "Output/Fields every": 4}
         self.check("cantilever_creep", overrides, (1, 5))
 
-    def test_history_at_quadrature_points_adaptive(self):
+    def test_history_at_quadrature_points_adaptive_two_ranks(self):
         overrides = {
             "Time/Phases": "2.6: 10",
             "Mesh refinement/Strategy": "residual",
@@ -224,7 +224,7 @@ class Identical(RestartCase):
             (2, 9),
         )
 
-    def test_foundation_that_gives_way(self):
+    def test_foundation_that_gives_way_two_ranks(self):
         """With friction that depends on the slip rate, on new meshes."""
         overrides = {
             "Boundary 4/Slip rate factor": "0.6 + 0.4*exp(-v/0.01)",
@@ -232,7 +232,7 @@ class Identical(RestartCase):
         }
         self.check("soft_ground_3d", overrides, (1, 3), ranks=2)
 
-    def test_contact_that_opens_in_space(self):
+    def test_contact_that_opens_in_space_two_ranks(self):
         overrides = {
             "Time/Phases": "1.5: 8",
             "Boundary 4/Contact law": "unilateral",
@@ -489,7 +489,7 @@ class Signals(RestartCase):
     def test_sigusr1_two_ranks(self):
         self.check(signal.SIGUSR1, 2)
 
-    def test_mpirun_forwards_sigusr1(self):
+    def test_mpirun_forwards_sigusr1_to_ranks(self):
         with Job("slab", self.OVERRIDES) as job:
             process = job.start(ranks=2)
             wait_for(lambda: self.n_rows(job) > 3)

@@ -546,7 +546,7 @@ class NonSymmetric(TestCase):
                 )
                 Slab.compare(self, one, other)
 
-    def test_in_3d_with_hanging_nodes(self):
+    def test_in_3d_with_hanging_nodes_on_two_ranks(self):
         """Where slip turns, on a foundation with hanging nodes."""
         law = pressure(20, 0.1)
         law["Material/parsed/Strain rate"] = "max(0, sigma_eq - max(0, 0.025 + p))"

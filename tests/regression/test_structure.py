@@ -6,6 +6,7 @@ The rooms and their order are those of the table in doc/tutorial.md.
 
 import re
 import unittest
+from fnmatch import fnmatchcase
 
 from harness import SOURCE
 
@@ -38,6 +39,24 @@ class Rooms(unittest.TestCase):
             sorted(re.findall(r"source/\S+\.cc", library)),
             sorted(str(path.relative_to(SOURCE)) for path in files),
         )
+
+    def test_each_unit_test_is_an_entry_of_ctest(self):
+        unit = SOURCE / "tests" / "unit"
+        entries = re.findall(
+            r'^unit_test\(\w+\s+"([^"]+)"', (unit / "CMakeLists.txt").read_text(), re.M
+        )
+        filters = [one for entry in entries for one in entry.split(":")]
+        suites = {
+            (suite, kind == "TYPED_")
+            for path in unit.glob("*.cc")
+            for kind, suite in re.findall(
+                r"^ *(TYPED_|)TEST(?:_F)?\((\w+),", path.read_text(), re.M
+            )
+        }
+        self.assertGreater(len(suites), 40)
+        for suite, is_typed in sorted(suites):
+            name = suite + ("/0.Test" if is_typed else ".Test")
+            self.assertTrue(any(fnmatchcase(name, one) for one in filters), suite)
 
     def test_no_room_includes_one_below_it(self):
         order = rooms()

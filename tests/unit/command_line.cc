@@ -119,7 +119,7 @@ namespace
     const Folder      folder;
     const std::string log = (folder.path / "log").string();
     {
-      Console  console(MPI_COMM_SELF, true, log, false, verbose);
+      Console  console(MPI_COMM_SELF, true, log, verbose);
       Progress progress(console, n_steps);
       for (unsigned int n = 0; n <= n_steps; ++n)
         progress.report(step(n), 0.01 * n);

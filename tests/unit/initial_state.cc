@@ -7,6 +7,7 @@
 
 #include "body.h"
 #include "refusals.h"
+#include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 
 #include <cmath>

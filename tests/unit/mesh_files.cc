@@ -139,13 +139,12 @@ TEST(MeshFilesRefused, WhereThereIsNoFile)
   expect_mesh_refused<2>(from_file(empty.name), "is empty.");
   const TemporaryFile other(content(two_materials<2>()[0]), ".grid");
   expect_mesh_refused<2>(from_file(other.name),
-                         "cannot be told from its name; set 'Geometry/File "
-                         "format' to msh, ucd, vtk or abaqus.");
-  GeometryParameters geometry = from_file(other.name);
-  geometry.file_format        = "msh";
-  EXPECT_EQ(make<2>(geometry)->n_global_active_cells(), 8u);
-  geometry.file_format = "vtk";
-  expect_mesh_refused<2>(geometry,
+                         "cannot be told from its name; rename it, for example "
+                         "mesh.msh, mesh.ucd, mesh.vtk or mesh.inp.");
+  const TemporaryFile renamed(content(two_materials<2>()[0]), ".MSH");
+  EXPECT_EQ(make<2>(from_file(renamed.name))->n_global_active_cells(), 8u);
+  const TemporaryFile wrong(content(two_materials<2>()[0]), ".vtk");
+  expect_mesh_refused<2>(from_file(wrong.name),
                          "cannot be read as vtk: meshio refuses it ('Illegal "
                          "VTK header')");
 }

@@ -30,8 +30,9 @@ namespace
     EXPECT_EQ(parameters->material.poissons_ratio, "0.4");
     EXPECT_EQ(parameters->material.law, "elastic");
     EXPECT_EQ(parameters->boundaries.size(), 2u);
-    EXPECT_EQ(parameters->boundaries.at(7).role, "clamped");
-    EXPECT_EQ(parameters->boundaries.at(2).friction_law, "not given");
+    EXPECT_EQ(parameters->boundaries.at(7).role, BoundaryRole::clamped);
+    EXPECT_EQ(parameters->boundaries.at(2).friction_law,
+              FrictionLaw::not_given);
     EXPECT_EQ(parameters->solver.linear_solver, LinearSolver::automatic);
     EXPECT_FALSE(parameters->initial_state.equilibrate);
   }
@@ -78,9 +79,9 @@ namespace
     EXPECT_EQ(parameters.file, scene);
     EXPECT_EQ(parameters.dimension, 3u);
     EXPECT_EQ(parameters.boundaries.size(), 3u);
-    EXPECT_EQ(parameters.boundaries.at(1).role, "clamped");
-    EXPECT_EQ(parameters.boundaries.at(3).role, "contact");
-    EXPECT_EQ(parameters.boundaries.at(20).role, "free");
+    EXPECT_EQ(parameters.boundaries.at(1).role, BoundaryRole::clamped);
+    EXPECT_EQ(parameters.boundaries.at(3).role, BoundaryRole::contact);
+    EXPECT_EQ(parameters.boundaries.at(20).role, BoundaryRole::free);
     EXPECT_EQ(parameters.time.phases, "3: 1");
     parameters.handler.enter_subsection("Material");
     parameters.handler.enter_subsection("maxwell");
@@ -461,7 +462,7 @@ namespace
   }
 
 
-  TEST(ParameterFiles, AutomaticChoicesDependOnTheTolerance)
+  TEST(Parameters, AutomaticChoicesDependOnTheTolerance)
   {
     const Parameters without(std::vector<std::string>{});
     EXPECT_EQ(without.time.scheme, TimeScheme::forward_euler);

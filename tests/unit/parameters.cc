@@ -290,8 +290,8 @@ namespace
   TEST(Boundary, FrictionBounds)
   {
     BoundaryParameters entries;
-    entries.role           = "contact";
-    entries.friction_law   = "tresca";
+    entries.role           = BoundaryRole::contact;
+    entries.friction_law   = FrictionLaw::tresca;
     entries.friction_bound = "0.5 - x + t";
     const BoundaryCondition<2> tresca(2, entries);
     EXPECT_TRUE(tresca.is_bilateral());
@@ -303,7 +303,7 @@ namespace
                    "it must not be negative.");
 
     // mu |S|: the sign of S does not matter, that of mu does.
-    entries.friction_law         = "coulomb";
+    entries.friction_law         = FrictionLaw::coulomb;
     entries.friction_coefficient = "0.5 - x";
     entries.normal_stress        = "-3";
     const BoundaryCondition<2> coulomb(3, entries);
@@ -323,7 +323,7 @@ namespace
   TEST(Boundary, ComponentsThatStayFree)
   {
     BoundaryParameters entries;
-    entries.role         = "displacement";
+    entries.role         = BoundaryRole::displacement;
     entries.displacement = "free; -0.1*t";
     const BoundaryCondition<2> condition(1, entries);
     EXPECT_FALSE(condition.displacement[0].has_value());

@@ -221,6 +221,7 @@ namespace Viscoplastic::Testing
     Tensor<1, dim> residual;
     switch (condition.role)
       {
+        case BoundaryRole::not_given:
         case BoundaryRole::clamped:
           break;
         case BoundaryRole::displacement:

@@ -199,6 +199,7 @@ namespace
                              body.discretization->face->bounds(0.5),
                              {},
                              1e-12,
+                             body.parameters->solver,
                              body.accepted,
                              &at_rest});
             body.accepted.state = start.state;

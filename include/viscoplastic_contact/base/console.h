@@ -15,25 +15,21 @@ namespace Viscoplastic
 
   /**
    * Where a run speaks: the standard output of rank 0, and a log file on
-   * request. On a terminal there is a status line, too, that changes in place
-   * and makes room for text.
+   * request.
    */
   class Console
   {
   public:
     /**
-     * @p quiet leaves the standard output alone, not the log. @p has_terminal
-     * allows a status line, see stdout_is_terminal(). @p verbose: nothing is
-     * left out for brevity. Throws ExcMessage if @p log_file, unless empty,
-     * cannot be written.
+     * @p quiet leaves the standard output alone, not the log. @p verbose:
+     * nothing is left out for brevity. Throws ExcMessage if @p log_file, unless
+     * empty, cannot be written.
      */
     explicit Console(const MPI_Comm     communicator = MPI_COMM_WORLD,
                      const bool         quiet        = false,
                      const std::string &log_file     = "",
-                     const bool         has_terminal = false,
                      const bool         verbose      = false);
 
-    /// Leaves the last status line where it is.
     ~Console();
 
     Console(const Console &) = delete;
@@ -53,13 +49,6 @@ namespace Viscoplastic
     log()
     {
       return everywhere.flush(), log_file;
-    }
-
-    /// Whether there is a status line.
-    bool
-    has_status() const
-    {
-      return is_terminal;
     }
 
     /// Whether all is to be told, also what repeats itself.
@@ -85,14 +74,6 @@ namespace Viscoplastic
     /// flood.
     bool
     is_silent_for(const double seconds) const;
-
-    /// Columns of the terminal.
-    unsigned int
-    width() const;
-
-    /// Replace the status line.
-    void
-    show_status(const std::string &line);
 
     /// Print a sentence that the user should not overlook; it is repeated at
     /// the end.
@@ -128,26 +109,13 @@ namespace Viscoplastic
     using Clock = std::chrono::steady_clock;
 
     const bool               speaks;
-    const bool               is_terminal;
     const bool               verbose;
     const std::string        log_name;
     std::ofstream            log_file;
     Buffer                   buffer;
     std::ostream             everywhere;
-    bool                     status_is_shown = false;
-    const Clock::time_point  beginning       = Clock::now();
-    Clock::time_point        last_text       = beginning;
+    const Clock::time_point  beginning = Clock::now();
+    Clock::time_point        last_text = beginning;
     std::vector<std::string> all_remarks;
   };
-
-
-
-  /**
-   * Whether somebody sees the standard output on a terminal. Not so under
-   * mpirun, which gives its processes terminals even if it writes to a file
-   * itself; it is recognized by environment variables, which MPI libraries
-   * set in all processes later: call this before MPI is initialized.
-   */
-  bool
-  stdout_is_terminal();
 } // namespace Viscoplastic

@@ -67,13 +67,15 @@ namespace Viscoplastic
     operator=(const DirectoryLock &) = delete;
 
     /**
-     * Take the lock of a directory, unless this object has one already. Throws
+     * Take the lock of a directory, unless this object has one already. @p
+     * otherwise: what else the user may do than wait. Throws
      * ExcMessage if another process has it, or if the lock is no regular file.
      * Without a lock goes on where there is none to be had: the directory does
      * not exist yet or cannot be written, or its file system has no locks.
      */
     void
-    acquire(const std::string &directory);
+    acquire(const std::string &directory,
+            const std::string &otherwise = "choose another directory");
 
   private:
     std::string file;

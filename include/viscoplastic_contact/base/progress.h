@@ -106,10 +106,9 @@ namespace Viscoplastic
 
 
   /**
-   * Tells how a run proceeds. A terminal shows the present step in a line that
-   * changes. Otherwise, and in the log, steps are lines: of 200 equal parts of
-   * the run each has at most one, and another one if the mesh changes or slip
-   * begins or ends in it; after a long silence the next step has one, too.
+   * Tells how a run proceeds, in lines: of 200 equal parts of the run each has
+   * at most one, and another one if the mesh changes or slip begins or ends in
+   * it; after a long silence the next step has one, too.
    * Lines tell how many steps have been left out before them. statistics.csv
    * has all steps.
    */
@@ -146,7 +145,7 @@ namespace Viscoplastic
     const unsigned int n_steps;
     const std::string  time_unit;
     RemainingTime      remaining;
-    double             last_elapsed = 0., last_shown = -1.;
+    double             last_elapsed = 0.;
 
     /// Steps without a line since the last one with a line.
     unsigned int n_left_out = 0;

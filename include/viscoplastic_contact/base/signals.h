@@ -25,9 +25,10 @@ namespace Viscoplastic
     struct Request
     {
       bool checkpoint = false;
-      /// What ends the run, if it is to end: "SIGTERM", "SIGINT" or the limit
-      /// on time.
+      /// The signal that ends the run, if there is one: "SIGTERM" or "SIGINT".
       std::string stop;
+      /// Whether there is no time for another step.
+      bool is_late = false;
     };
 
     /**

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <viscoplastic_contact/checkpoint/checkpoint_manifest.h>
+
 #include <mpi.h>
 
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,29 +12,6 @@
 
 namespace Viscoplastic
 {
-  /// What a checkpoint says of itself.
-  struct CheckpointManifest
-  {
-    /// Number and time of the step at whose end it was written.
-    unsigned int n         = 0;
-    double       t         = 0.;
-    unsigned int dimension = 0, n_ranks = 0;
-    /// The version of the program that wrote it.
-    std::string version;
-    /// Every parameter of the run, by `Section/Entry'.
-    std::map<std::string, std::string> parameters;
-
-    struct File
-    {
-      std::string   name;
-      std::uint64_t size     = 0;
-      std::uint32_t checksum = 0;
-    };
-    std::vector<File> files;
-  };
-
-
-
   /**
    * The checkpoints of a run: a directory with a subdirectory `step_000012' for
    * each of the last ones, which holds any number of files and a manifest with

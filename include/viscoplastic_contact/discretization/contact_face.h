@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/discretization/state.h>
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -259,9 +260,8 @@ namespace Viscoplastic
     /// Sums of the shares of each point of friction, each times factor(sample)
     /// and what its slip rate does (null: nothing; empty: zero), or of
     /// each obstacle. Collective.
-    template <typename Factor>
     std::vector<double>
-    sum_shares(const Factor                    &factor,
+    sum_shares(const std::function<double(const Sample &)> &factor,
                const bool                       of_obstacles = false,
                const std::vector<double> *const slip_rates   = nullptr) const;
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/discretization/contact_face.h>
-#include <viscoplastic_contact/discretization/loads.h>
 #include <viscoplastic_contact/discretization/state.h>
+#include <viscoplastic_contact/discretization/stress_space.h>
 
-#include <set>
 #include <vector>
 
 namespace Viscoplastic
@@ -42,6 +40,13 @@ namespace Viscoplastic
                  const Point<dim>        &x,
                  const types::material_id id);
 
+  /// int sigma0 : eps(v) as a load in frames, by quadrature with this number
+  /// of points in each direction.
+  template <int dim>
+  DistributedVector
+  work_of_initial_stress(const AdmissibleSpace<dim> &space,
+                         const unsigned int          n_points);
+
   /**
    * z_0 = sigma0^h - E eps(u0^h) at the samples; @p u0 is Cartesian, with
    * ghosts, or of size 0 if it is zero.
@@ -76,35 +81,4 @@ namespace Viscoplastic
   enter_stage(const StressSpace<dim>  &stress_space,
               const std::vector<bool> &was_present,
               State<dim>              &state);
-
-  /// By how much initial data and loads are not in equilibrium.
-  template <int dim>
-  struct CompatibilityViolation
-  {
-    /// Relative to the loads.
-    double relative = 0.;
-    /// The node with the largest force that nothing balances, and the
-    /// boundaries that it is on; none inside of the body.
-    Point<dim>                   position;
-    std::set<types::boundary_id> boundaries;
-  };
-
-  /**
-   * The violation of compatibility (2.12),
-   *
-   *     (sigma0, eps(v)) + j(v) >= L(0, v)  for all v,
-   *
-   * relative to the loads: the norm of the residual off Gamma_3 and of its
-   * excess over the friction ball on Gamma_3. Evaluated with sigma0 itself by
-   * quadrature: its projection would violate equilibrium by O(h). Also gives
-   * the multipliers at t = 0. @p face is null without contact points.
-   * Collective.
-   */
-  template <int dim>
-  CompatibilityViolation<dim>
-  compatibility_violation(const AdmissibleSpace<dim> &space,
-                          const Load<dim>            &load,
-                          const ContactFace<dim>     *face,
-                          const DistributedVector    &u,
-                          ContactState               &contact);
 } // namespace Viscoplastic

@@ -41,6 +41,55 @@ namespace Viscoplastic
     return "cell means|quadrature points";
   }
 
+  enum class BoundaryRole
+  {
+    not_given,
+    clamped,
+    displacement,
+    traction,
+    free,
+    symmetry,
+    contact
+  };
+
+  inline const char *
+  choices(BoundaryRole)
+  {
+    return "not given|clamped|displacement|traction|free|symmetry|contact";
+  }
+
+  /// What acts along the normal of a contact piece.
+  enum class ContactLaw
+  {
+    not_given,
+    bilateral,    // u_nu = d
+    given_stress, // sigma_nu = S
+    unilateral,   // u_n <= g + d, sigma_n <= 0, and one of them with equality
+    compliance    // sigma_n = -c (u_n - g - d)_+^m
+  };
+
+  inline const char *
+  choices(ContactLaw)
+  {
+    return "not given|bilateral|given normal stress|unilateral|normal "
+           "compliance";
+  }
+
+  enum class FrictionLaw
+  {
+    not_given,
+    none,
+    tresca,  // rho = g, (5.22)
+    coulomb, // rho = mu |S|, (5.6), or mu p of contact that opens
+    glued    // no slip whatever the force: rho = infinity
+  };
+
+  inline const char *
+  choices(FrictionLaw)
+  {
+    return "not given|none|tresca|coulomb|glued";
+  }
+
   /// What the data of a scene with an exact solution are.
   enum class DataSource
   {

@@ -31,7 +31,6 @@ namespace Viscoplastic
     std::string  generator = "subdivided_hyper_rectangle";
     std::string  arguments = "8, 8 : 0, 0 : 1, 1 : true";
     std::string  file;
-    std::string  file_format = "automatic";
     std::string  boundary_ids, material_ids;
     std::string  coordinates;
     double       rotation_angle = 0.;
@@ -91,9 +90,8 @@ namespace Viscoplastic
   struct InitialStateParameters
   {
     std::string displacement, stress;
-    bool        equilibrate             = false;
-    bool        reset_displacement      = false;
-    double      compatibility_tolerance = 1e-6;
+    bool        equilibrate        = false;
+    bool        reset_displacement = false;
 
     void
     declare(ParameterHandler &prm);
@@ -112,23 +110,23 @@ namespace Viscoplastic
 
   struct BoundaryParameters
   {
-    std::string name;
-    std::string role = "not given";
-    std::string displacement, traction, pressure;
-    std::string normal_stiffness, tangential_stiffness;
-    std::string contact_law = "not given";
-    std::string against;
-    std::string gap;
-    std::string foundation_normal;
-    std::string compliance;
-    double      compliance_exponent = 1.;
-    std::string friction_law        = "not given";
-    std::string friction_bound;
-    std::string friction_coefficient;
-    std::string slip_rate_factor = "1";
-    std::string normal_stress;
-    std::string foundation_displacement = "0";
-    std::string foundation_motion;
+    std::string  name;
+    BoundaryRole role = BoundaryRole::not_given;
+    std::string  displacement, traction, pressure;
+    std::string  normal_stiffness, tangential_stiffness;
+    ContactLaw   contact_law = ContactLaw::not_given;
+    std::string  against;
+    std::string  gap;
+    std::string  foundation_normal;
+    std::string  compliance;
+    double       compliance_exponent = 1.;
+    FrictionLaw  friction_law        = FrictionLaw::not_given;
+    std::string  friction_bound;
+    std::string  friction_coefficient;
+    std::string  slip_rate_factor = "1";
+    std::string  normal_stress;
+    std::string  foundation_displacement = "0";
+    std::string  foundation_motion;
 
     void
     declare(ParameterHandler &prm);

@@ -16,35 +16,6 @@
 
 namespace Viscoplastic
 {
-  enum class BoundaryRole
-  {
-    clamped,
-    displacement,
-    traction,
-    free,
-    symmetry,
-    contact
-  };
-
-  /// What acts along the normal of a contact piece.
-  enum class ContactLaw
-  {
-    none,
-    bilateral,    // u_nu = d
-    given_stress, // sigma_nu = S
-    unilateral,   // u_n <= g + d, sigma_n <= 0, and one of them with equality
-    compliance    // sigma_n = -c (u_n - g - d)_+^m
-  };
-
-  enum class FrictionLaw
-  {
-    none,
-    tresca,  // rho = g, (5.22)
-    coulomb, // rho = mu |S|, (5.6), or mu p of contact that opens
-    glued    // no slip whatever the force: rho = infinity
-  };
-
-
   /// What happens on one boundary id, with its data as functions of x and t.
   template <int dim>
   struct BoundaryCondition
@@ -67,7 +38,7 @@ namespace Viscoplastic
     /// The boundary of another body that is the foundation. Displacements and
     /// the gap below are then relative to it.
     std::optional<types::boundary_id> against;
-    ContactLaw                        contact_law  = ContactLaw::none;
+    ContactLaw                        contact_law  = ContactLaw::not_given;
     FrictionLaw                       friction_law = FrictionLaw::none;
 
     /// Role displacement: the given components; empty ones are free.

@@ -223,6 +223,13 @@ namespace Viscoplastic
       return parameters.refinement.strategy != RefinementStrategy::none;
     }
 
+    /// " MPa", behind a number of a result; empty if no units are declared.
+    std::string
+    unit(const Quantity quantity) const
+    {
+      return parameters.units.suffix(quantity, dim);
+    }
+
     const Parameters &parameters;
     const PlaceNames  names;
     TimeSchedule      schedule;

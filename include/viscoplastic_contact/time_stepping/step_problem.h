@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/contact/contact_report.h>
 #include <viscoplastic_contact/discretization/loads.h>
 #include <viscoplastic_contact/error/evaluated_state.h>
+#include <viscoplastic_contact/parameters/parameters.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
 
 #include <algorithm>
@@ -35,7 +36,8 @@ namespace Viscoplastic
     /// foundation does.
     std::vector<Tensor<1, 2>> foundation_step;
     /// Relative to the solution, at which the iterations stop.
-    double tolerance;
+    double                  tolerance;
+    const SolverParameters &parameters;
     /// The state at t_{n-1}, which stays as it is, and G there (null where the
     /// step does not ask for it).
     const EvaluatedState<dim> &old;

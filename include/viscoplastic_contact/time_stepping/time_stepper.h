@@ -129,6 +129,7 @@ namespace Viscoplastic
 
     const Discretization<dim> &discretization;
     const Scene<dim>          &scene;
+    const SolverParameters    &solver_parameters;
     const ErrorEstimator<dim> *error_estimator;
     StepControl               &control;
     TimerOutput               &timer;

@@ -30,7 +30,7 @@ namespace Viscoplastic
 
     /// The text and, if there is none, why: the end of a sentence.
     std::pair<std::string, std::string>
-    run_script(const std::string &name, const std::string &format)
+    run_script(const std::string &name)
     {
       namespace process         = boost::process;
       const std::string python  = VISCOPLASTIC_CONTACT_PYTHON;
@@ -42,8 +42,6 @@ namespace Viscoplastic
       process::child    script(
         python,
         path_of_resource("contrib/convert_mesh"),
-        "--format",
-        format,
         "--",
         name,
         process::std_in<process::null, process::std_out> output,
@@ -73,13 +71,11 @@ namespace Viscoplastic
 
 
   std::string
-  convert_mesh_file(const std::string &name,
-                    const std::string &format,
-                    const MPI_Comm     communicator)
+  convert_mesh_file(const std::string &name, const MPI_Comm communicator)
   {
     std::pair<std::string, std::string> result;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      result = run_script(name, format);
+      result = run_script(name);
     result = Utilities::MPI::broadcast(communicator, result, 0);
     AssertThrow(result.second.empty(),
                 ExcMessage("The mesh file '" + name + "' " + result.second +

@@ -220,19 +220,16 @@ namespace Viscoplastic
 
   MeshFile
   read_mesh_file(const std::string &name,
-                 const std::string &format,
                  const unsigned int dim,
                  const MPI_Comm     communicator)
   {
     std::string text   = content(name);
     std::string suffix = std::filesystem::path(name).extension();
     std::transform(suffix.begin(), suffix.end(), suffix.begin(), ::tolower);
-    if (format == "automatic")
-      refuse_geometry(name, suffix);
-    const bool is_msh =
-      format == "msh" || (format == "automatic" && suffix == ".msh");
+    refuse_geometry(name, suffix);
+    const bool is_msh = suffix == ".msh";
     if (!is_msh)
-      text = convert_mesh_file(name, format, communicator);
+      text = convert_mesh_file(name, communicator);
 
     MeshReader reader(std::move(text), dim);
     try

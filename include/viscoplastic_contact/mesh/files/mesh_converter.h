@@ -11,11 +11,9 @@ namespace Viscoplastic
    * What contrib/convert_mesh makes of the mesh file @p name: the same mesh in
    * Gmsh's format, as text, the same on all ranks. The first rank runs the
    * script as a process of its own: what a damaged file does to a reader ends
-   * there. @p format is automatic, ucd, vtk or abaqus. Collective. Throws
-   * ExcMessage with a sentence for the user that names the file.
+   * there. Collective. Throws ExcMessage with a sentence for the user that
+   * names the file.
    */
   std::string
-  convert_mesh_file(const std::string &name,
-                    const std::string &format,
-                    const MPI_Comm     communicator);
+  convert_mesh_file(const std::string &name, const MPI_Comm communicator);
 } // namespace Viscoplastic

@@ -10,8 +10,8 @@
 namespace Viscoplastic
 {
   /**
-   * Read @p name as one of the formats of the parameter file: automatic, msh,
-   * ucd, vtk or abaqus, for a body of @p dim dimensions. What is returned is
+   * Read @p name, whose ending says the format, for a body of @p dim
+   * dimensions. What is returned is
    * consistent: indices are in range, numbers are finite, there are cells, none
    * of them twice, no face belongs to more than two of them, and the faces are
    * those on the boundary; what else a file has is left out. Collective. Throws
@@ -25,7 +25,6 @@ namespace Viscoplastic
    */
   MeshFile
   read_mesh_file(const std::string &name,
-                 const std::string &format,
                  const unsigned int dim,
                  const MPI_Comm     communicator);
 } // namespace Viscoplastic

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /// What a checkpoint says of itself.
+  struct CheckpointManifest
+  {
+    /// Number and time of the step at whose end it was written.
+    unsigned int n         = 0;
+    double       t         = 0.;
+    unsigned int dimension = 0, n_ranks = 0;
+    /// The version of the program that wrote it.
+    std::string version;
+    /// Every parameter of the run, by `Section/Entry'.
+    std::map<std::string, std::string> parameters;
+
+    struct File
+    {
+      std::string   name;
+      std::uint64_t size     = 0;
+      std::uint32_t checksum = 0;
+    };
+    std::vector<File> files;
+
+    /// The text of manifest.txt, which ends with a checksum of itself.
+    std::string
+    text() const;
+
+    /// Throws ExcMessage where the text is damaged or of another version.
+    static CheckpointManifest
+    of_text(const std::string &text);
+  };
+
+  /// What the text of a manifest begins with, whatever the version.
+  extern const std::string first_words_of_manifests;
+
+  std::uint32_t
+  checksum(const std::string &bytes);
+} // namespace Viscoplastic

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/loads.h>
+
+#include <set>
+
+namespace Viscoplastic
+{
+  /// By how much initial data and loads are not in equilibrium.
+  template <int dim>
+  struct CompatibilityViolation
+  {
+    /// Relative to the loads.
+    double relative = 0.;
+    /// The node with the largest force that nothing balances, and the
+    /// boundaries that it is on; none inside of the body.
+    Point<dim>                   position;
+    std::set<types::boundary_id> boundaries;
+  };
+
+  /**
+   * The violation of compatibility (2.12),
+   *
+   *     (sigma0, eps(v)) + j(v) >= L(0, v)  for all v,
+   *
+   * relative to the loads: the norm of the residual off Gamma_3 and of its
+   * excess over the friction ball on Gamma_3. Evaluated with sigma0 itself by
+   * quadrature: its projection would violate equilibrium by O(h). Also gives
+   * the multipliers at t = 0. @p face is null without contact points.
+   * Collective.
+   */
+  template <int dim>
+  CompatibilityViolation<dim>
+  compatibility_violation(const AdmissibleSpace<dim> &space,
+                          const Load<dim>            &load,
+                          const ContactFace<dim>     *face,
+                          const DistributedVector    &u,
+                          ContactState               &contact);
+} // namespace Viscoplastic

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/largest_place.h>
+#include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/contact/contact_solver.h>
+#include <viscoplastic_contact/discretization/compatibility.h>
+#include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/discretization/springs.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The node with the largest of some forces, and its boundaries. Forces of
+    /// hanging nodes are zero.
+    template <int dim>
+    void
+    locate_largest_force(const AdmissibleSpace<dim>  &space,
+                         const DistributedVector     &forces,
+                         CompatibilityViolation<dim> &result)
+    {
+      LargestPlace<dim> largest;
+      for (const auto &cell : space.cells)
+        for (const unsigned int v : cell->vertex_indices())
+          if (const auto dof = cell->vertex_dof_index(v, 0);
+              space.owned.is_element(dof))
+            {
+              Tensor<1, dim> force;
+              for (unsigned int d = 0; d < dim; ++d)
+                force[d] =
+                  forces.begin()[space.owned.index_within_set(dof) + d];
+              largest.add(stable_norm(force), cell->vertex(v));
+            }
+      largest.reduce(space.communicator);
+      result.position = largest.position();
+
+      // Which ranks see its faces, not only the one that owns it.
+      std::set<types::boundary_id> here;
+      for (const auto &cell : space.cells)
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            for (const unsigned int v : cell->face(f)->vertex_indices())
+              if (cell->face(f)->vertex(v) == result.position)
+                here.insert(cell->face(f)->boundary_id());
+      result.boundaries =
+        Utilities::MPI::compute_set_union(here, space.communicator);
+    }
+
+
+
+    /// Find out which obstacles are touched at t = 0. Throws ExcMessage where
+    /// the body is beyond one.
+    template <int dim>
+    void
+    touch_obstacles(const AdmissibleSpace<dim> &space,
+                    const ContactFace<dim>     &face,
+                    const DistributedVector    &u,
+                    ContactState               &contact)
+    {
+      DistributedVector in_frames = space.owned_vector();
+      space.to_frames(u, in_frames);
+      double size = u.linfty_norm(), deepest = 0.;
+      for (unsigned int p = 0; p < contact.n_points(); ++p)
+        if (face.layout().points[p].is_obstacle)
+          size = std::max(size, std::abs(contact.bound[p]));
+      size = Utilities::MPI::max(size, space.communicator);
+
+      contact.bound = face.step_bounds(0., in_frames, {});
+      for (unsigned int p = 0; p < contact.n_points(); ++p)
+        if (face.layout().points[p].gives_way())
+          contact.sticks[p] = contact.bound[p] < 0.;
+        else if (face.layout().points[p].is_obstacle)
+          {
+            contact.sticks[p] = contact.bound[p] <= 1e-10 * size;
+            deepest           = std::max(deepest, -contact.bound[p]);
+          }
+      deepest = Utilities::MPI::max(deepest, space.communicator);
+      std::ostringstream message;
+      message
+        << "At t = 0 the body is inside of the foundation of unilateral "
+           "contact, by "
+        << deepest
+        << ": 'Gap' and 'Foundation displacement' add up to less than "
+           "'Initial state/Displacement' takes of it; let them begin with "
+           "a gap of zero or more, or set 'Initial state/Equilibrate'.";
+      AssertThrow(deepest <= 1e-8 * size, ExcMessage(message.str()));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  CompatibilityViolation<dim>
+  compatibility_violation(const AdmissibleSpace<dim> &space,
+                          const Load<dim>            &load,
+                          const ContactFace<dim>     *face,
+                          const DistributedVector    &u,
+                          ContactState               &contact)
+  {
+    DistributedVector residual = load.values;
+    space.restrict_to_unknowns(residual);
+    double size = residual.l2_norm(), largest = 0.;
+    if (space.scene.initial_stress)
+      {
+        // More points than elsewhere: what remains is quadrature error.
+        DistributedVector internal = work_of_initial_stress(space, 4);
+        largest                    = internal.l2_norm();
+        space.restrict_to_unknowns(internal);
+        size = std::max(size, internal.l2_norm());
+        residual -= internal;
+      }
+
+    if (space.scene.has_springs() && space.scene.initial_displacement)
+      {
+        DistributedVector of_springs = space.owned_vector();
+        Springs<dim>(space).add_force(u, of_springs);
+        space.restrict_to_unknowns(of_springs);
+        size = std::max(size, of_springs.l2_norm());
+        residual += of_springs;
+      }
+
+    if (face != nullptr)
+      {
+        // (2.12): sigma0 + the subdifferential of j at 0, which are forces
+        // within the friction bounds, contains L(0).
+        const Vector<double> on_face = face->restriction().gather(residual);
+        Vector<double>       force(on_face.size());
+        contact = ContactState(face->bounds(0.));
+        if (face->has_obstacles())
+          touch_obstacles(space, *face, u, contact);
+        fit_multipliers(face->layout(), on_face, contact, force);
+        if (face->has_computed_pressure())
+          {
+            face->add_computed_bounds(0., contact, contact.bound);
+            fit_multipliers(face->layout(), on_face, contact, force);
+          }
+        face->restriction().add(-1., force, residual);
+      }
+    // Where reactions balance the initial stress, nothing but rounding is left
+    // of it.
+    CompatibilityViolation<dim> result;
+    if (size > 1e-12 * largest)
+      result.relative = residual.l2_norm() / size;
+    if (result.relative > 0.)
+      locate_largest_force(space, residual, result);
+    return result;
+  }
+
+
+
+  template CompatibilityViolation<2>
+  compatibility_violation<2>(const AdmissibleSpace<2> &,
+                             const Load<2> &,
+                             const ContactFace<2> *,
+                             const DistributedVector &,
+                             ContactState &);
+  template CompatibilityViolation<3>
+  compatibility_violation<3>(const AdmissibleSpace<3> &,
+                             const Load<3> &,
+                             const ContactFace<3> *,
+                             const DistributedVector &,
+                             ContactState &);
+} // namespace Viscoplastic

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/precondition.h>
+#include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/solver_gmres.h>
+
+#include <viscoplastic_contact/base/linear_algebra.h>
+#include <viscoplastic_contact/linear_solvers/residual_rounding.h>
+#include <viscoplastic_contact/linear_solvers/schur_solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+// A contact problem on the face, by its Schur complement.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The Schur complement on the truncated space, with springs.
+    struct TruncatedFace
+    {
+      const FullMatrix<double> &S;
+      const ContactLayout      &face;
+      const FaceTruncation     &truncation;
+
+      void
+      vmult(Vector<double> &y, const Vector<double> &x) const
+      {
+        // x lies in the truncated space, where the iteration keeps it.
+        if (truncation.transposed)
+          {
+            Vector<double> motion(x);
+            truncation.tilt_motions(face, motion);
+            S.vmult(y, motion);
+          }
+        else
+          S.vmult(y, x);
+        truncation.tilt_equations(face, y);
+        for (unsigned int n = 0; n < face.n_nodes(); ++n)
+          face.set_node_values(truncation.projector[n] *
+                                 (face.node_values(y, n) +
+                                  truncation.spring[n] *
+                                    face.node_values(x, n)),
+                               n,
+                               y);
+      }
+    };
+
+
+
+    /// Inverse diagonal blocks of that, as a preconditioner.
+    struct NodalBlocks
+    {
+      const ContactLayout      &face;
+      std::vector<Tensor<2, 3>> inverse;
+
+      void
+      vmult(Vector<double> &y, const Vector<double> &x) const
+      {
+        for (unsigned int n = 0; n < face.n_nodes(); ++n)
+          face.set_node_values(inverse[n] * face.node_values(x, n), n, y);
+      }
+    };
+  } // namespace
+
+
+
+  /// A solve under way, after the forward substitution: the bulk follows the
+  /// face.
+  class SchurSolver::Solve : public ContactSolve
+  {
+  public:
+    Solve(const SchurSolver       &solver,
+          const DistributedVector &load,
+          DistributedVector       &u,
+          const SolutionScale     &scale)
+      : ContactSolve(solver.schur_complement.get(), true, scale)
+      , solver(solver)
+      , face(solver.face)
+      , load(load)
+      , u(u)
+      , face_load(face.n_dofs())
+      , face_change(face_load)
+      , correction(face_load)
+      , product(face_load)
+    {
+      DistributedVector residual(load);
+      solver.matrix.vmult(residual, u);
+      squared_norm = u * residual;
+      residual.sadd(-1., 1., load);
+      y = solver.forward(residual);
+      if (face.n_dofs() == 0)
+        return;
+      // y = (y_i, y_c); the face's load after condensation is L_cc y_c.
+      std::copy(y.end() - face.n_dofs(), y.end(), product.begin());
+      solver.face_factor.vmult(face_load, product);
+    }
+
+    Vector<double>
+    face_residual() const override
+    {
+      Vector<double> r(face.n_dofs());
+      solver.schur_complement->matrix().vmult(r, face_change);
+      r.sadd(-1., 1., face_load);
+      return r;
+    }
+
+    void
+    move_face(const Vector<double> &change) override
+    {
+      face_change += change;
+    }
+
+    void
+    set_truncation(const FaceTruncation &truncation_,
+                   const bool /*may_rebuild*/) override
+    {
+      truncation = truncation_;
+    }
+
+    double
+    dual_norm(const Vector<double> &force) override
+    {
+      // The bulk is in equilibrium, so the residual lives on the face, and its
+      // dual norm is that of the Schur complement.
+      product = face_residual();
+      product -= force;
+      solver.face_factor.solve(product);
+      return product.l2_norm();
+    }
+
+    double
+    rounding_of_residual() override
+    {
+      DistributedVector end(u);
+      solver.backward(change(), end);
+      return Viscoplastic::rounding_of_residual(
+        solver.matrix, load, end, [&](const DistributedVector &error) {
+          return solver.forward(error).norm_sqr();
+        });
+    }
+
+    double
+    energy_norm() const override;
+
+    unsigned int
+    correct(const Vector<double> &force,
+            const double          tolerance,
+            Vector<double>       &w) override;
+
+    SearchTerms
+    search_terms(const Vector<double> &w) override
+    {
+      correction = w;
+      solver.schur_complement->matrix().vmult(product, correction);
+      return {face_residual() * correction, product * correction, product};
+    }
+
+    void
+    take_step(const double step) override
+    {
+      face_change.add(step, correction);
+    }
+
+    unsigned int
+    finish() override
+    {
+      solver.backward(change(), u);
+      return 1;
+    }
+
+  private:
+    /// What this has added to the displacement from which it began, times L^T:
+    /// (y_i, L_cc^T face_change).
+    Vector<double>
+    change() const
+    {
+      Vector<double> c(face_change.size()), v(y);
+      solver.face_factor.Tvmult(c, face_change);
+      std::copy(c.begin(), c.end(), v.end() - c.size());
+      return v;
+    }
+
+    const SchurSolver       &solver;
+    const ContactLayout     &face;
+    const DistributedVector &load;
+    DistributedVector       &u;
+    Vector<double>           y, face_load, face_change, correction, product;
+    FaceTruncation           truncation;
+    double                   squared_norm; // of the start
+    /// L^{-1} load, once it has been asked for.
+    mutable Vector<double> forward_load;
+  };
+
+
+
+  double
+  SchurSolver::Solve::energy_norm() const
+  {
+    // Begun at g, u = g + L^{-T} v.
+    const Vector<double> v   = change();
+    double               sum = squared_norm + v.norm_sqr();
+    // Prescribed values that jump begin with a large energy in the cells beside
+    // them, which v takes back. Otherwise one of the two is much smaller, and
+    // the product of both, which takes another solve, does not count.
+    constexpr double apart = 1e-2;
+    if (std::min(squared_norm, v.norm_sqr()) >
+        apart * std::max(squared_norm, v.norm_sqr()))
+      {
+        // A g = load - r, and L y = r.
+        if (forward_load.size() == 0)
+          forward_load = solver.forward(load);
+        sum += 2. * (v * forward_load - v * y);
+      }
+    // Of a translation it is rounding, of either sign.
+    return std::sqrt(std::max(0., sum));
+  }
+
+
+
+  unsigned int
+  SchurSolver::Solve::correct(const Vector<double> &force,
+                              const double          tolerance,
+                              Vector<double>       &w)
+  {
+    product = face_residual();
+    product -= force;
+    truncation.tilt_equations(face, product);
+    truncation.project(face, product);
+    w                 = 0.;
+    const double size = product.l2_norm();
+    if (size == 0.)
+      return 0;
+
+    NodalBlocks blocks{face, std::vector<Tensor<2, 3>>(face.n_nodes())};
+    for (unsigned int n = 0; n < face.n_nodes(); ++n)
+      {
+        // Blocked directions get a multiple of the identity, which keeps the
+        // block regular, of the size of the others.
+        const Tensor<2, 3> &P = truncation.projector[n];
+        const Tensor<2, 3>  stiffness =
+          solver.schur_complement->diagonal_block(n);
+        const double one   = stiffness.norm();
+        Tensor<2, 3> block = P * (stiffness + truncation.spring[n]) * P;
+        for (unsigned int d = 0; d < 3; ++d)
+          for (unsigned int e = 0; e < 3; ++e)
+            block[d][e] += one * ((d == e ? 1. : 0.) - P[d][e]);
+        blocks.inverse[n] = P * invert(block) * P;
+      }
+    // A small face problem costs nothing: solve it to the end, and the active
+    // set iteration is finite in 2D. In a large one, follow the caller.
+    const double reduction =
+      face.n_dofs() <= 600 ? 1e-13 : std::max(1e-13, 0.01 * tolerance);
+    SolverControl control(std::max(100u, 4 * face.n_dofs()), reduction * size);
+    const TruncatedFace system{solver.schur_complement->matrix(),
+                               face,
+                               truncation};
+    try
+      {
+        if (truncation.tilt.empty())
+          SolverCG<Vector<double>>(control).solve(system, w, product, blocks);
+        else
+          SolverGMRES<Vector<double>>(
+            control,
+            SolverGMRES<Vector<double>>::AdditionalData(
+              /* max_n_tmp_vectors = */ 200,
+              /* right_preconditioning = */ true))
+            .solve(system, w, product, blocks);
+      }
+    catch (const SolverControl::NoConvergence &)
+      {
+        // Rounding stopped it; the line search and the error bound judge what
+        // came out.
+      }
+    truncation.tilt_motions(face, w);
+    return 0;
+  }
+
+
+
+  std::unique_ptr<ContactSolve>
+  SchurSolver::begin(const DistributedVector &load,
+                     DistributedVector       &u,
+                     const SolutionScale     &scale)
+  {
+    return std::make_unique<Solve>(*this, load, u, scale);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/scene/boundary_condition.h>
+
+#include <sstream>
+
+// The data of a boundary condition at places and times.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The value of an entry at a place, whose description comes in parts.
+    template <typename... Place>
+    double
+    not_negative(const double             value,
+                 const types::boundary_id id,
+                 const std::string       &name,
+                 const Place &...place)
+    {
+      if (!(value >= 0.))
+        {
+          std::ostringstream message;
+          message << "'Boundary " << id << '/' << name << "' is " << value
+                  << " at ";
+          (message << ... << place) << "; it must not be negative.";
+          AssertThrow(false, ExcMessage(message.str()));
+        }
+      return value;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::bound(const Point<dim> &x, const double t) const
+  {
+    const bool   is_tresca = friction_law == FrictionLaw::tresca;
+    const double factor    = not_negative(
+      (is_tresca ? friction_bound : friction_coefficient)->value(x, t),
+      id,
+      is_tresca ? "Friction bound" : "Friction coefficient",
+      "x = (",
+      x,
+      "), t = ",
+      t);
+    // rho = g, (5.22), or mu |S|, (5.6).
+    return is_tresca || has_computed_pressure() ?
+             factor :
+             factor * std::abs(normal_stress->value(x, t));
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::bound_factor(const double slip_rate) const
+  {
+    if (!slip_rate_factor)
+      return 1.;
+    return not_negative(slip_rate_factor->value(Point<1>(slip_rate), 0.),
+                        id,
+                        "Slip rate factor",
+                        "v = ",
+                        slip_rate);
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::compliance(const Point<dim> &x) const
+  {
+    return not_negative(
+      given_compliance->value(x, 0.), id, "Compliance", "x = (", x, ")");
+  }
+
+
+
+  template <int dim>
+  double
+  BoundaryCondition<dim>::gap(const Point<dim> &x, const double t) const
+  {
+    return (given_gap ? given_gap->value(x, t) : 0.) +
+           (foundation_displacement ? foundation_displacement->value(x, t) :
+                                      0.);
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryCondition<dim>::derive_data()
+  {
+    if (solution && contact_law == ContactLaw::given_stress)
+      normal_stress.emplace(
+        [solution = solution, normal = normal](const Point<dim> &x,
+                                               const double      t) {
+          return solution->traction(x, normal, t) * normal;
+        },
+        "Exact solution/Stress");
+  }
+
+
+
+  template <int dim>
+  bool
+  BoundaryCondition<dim>::load_depends_on_time() const
+  {
+    return (traction && traction->depends_on_time()) ||
+           (pressure && pressure->depends_on_time()) ||
+           (normal_stress && normal_stress->depends_on_time()) ||
+           has_derived_traction();
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::load(const Point<dim>     &x,
+                               const Tensor<1, dim> &outward_normal,
+                               const double          t) const
+  {
+    if (normal_stress)
+      return normal_stress->value(x, t) * outward_normal;
+    Tensor<1, dim> result;
+    if (has_derived_traction())
+      {
+        result = solution->traction(x, outward_normal, t);
+        if (has_springs())
+          result +=
+            spring_stiffness(x, outward_normal) * solution->displacement(x, t);
+      }
+    if (traction)
+      result = traction->vector(x, t);
+    if (pressure)
+      result -= pressure->value(x, t) * outward_normal;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (displacement[d])
+        result[d] = 0.;
+    return result;
+  }
+
+
+
+  template <int dim>
+  SymmetricTensor<2, dim>
+  BoundaryCondition<dim>::spring_stiffness(
+    const Point<dim>     &x,
+    const Tensor<1, dim> &outward_normal) const
+  {
+    const auto value = [&](const std::optional<Expression<dim>> &datum,
+                           const std::string                    &name) {
+      return datum ?
+               not_negative(datum->value(x, 0.), id, name, "x = (", x, ")") :
+               0.;
+    };
+    const double k_n = value(normal_stiffness, "Normal stiffness"),
+                 k_t = value(tangential_stiffness, "Tangential stiffness");
+    return k_t * unit_symmetric_tensor<dim>() +
+           (k_n - k_t) *
+             symmetrize(outer_product(outward_normal, outward_normal));
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::sliding(const Point<dim> &x, const double t) const
+  {
+    if (!foundation_motion)
+      return {};
+    const Tensor<1, dim> w =
+      foundation_motion->vector(x, t) - foundation_motion->vector(x, 0.);
+    return w - (w * normal) * normal;
+  }
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  BoundaryCondition<dim>::glued_displacement(const Point<dim> &x,
+                                             const double      t) const
+  {
+    Tensor<1, dim> u = sliding(x, t);
+    if (foundation_displacement)
+      u += foundation_displacement->value(x, t) * normal;
+    return u;
+  }
+
+
+
+  template <int dim>
+  std::vector<const Expression<dim> *>
+  BoundaryCondition<dim>::data() const
+  {
+    std::vector<const Expression<dim> *> result;
+    const auto add = [&](const std::optional<Expression<dim>> &datum) {
+      if (datum)
+        result.push_back(&*datum);
+    };
+    for (const auto &component : displacement)
+      add(component);
+    add(given_gap);
+    add(given_compliance);
+    add(normal_stiffness);
+    add(tangential_stiffness);
+    add(foundation_displacement);
+    add(friction_bound);
+    add(friction_coefficient);
+    add(normal_stress);
+    add(pressure);
+    for (const auto *vector : {&traction, &foundation_motion})
+      if (*vector)
+        for (unsigned int d = 0; d < dim; ++d)
+          result.push_back(&(**vector)[d]);
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  BoundaryCondition<dim>::bound_depends_on_time() const
+  {
+    return (friction_bound && friction_bound->depends_on_time()) ||
+           (friction_coefficient && friction_coefficient->depends_on_time()) ||
+           (normal_stress && normal_stress->depends_on_time()) ||
+           (is_unilateral() && ((given_gap && given_gap->depends_on_time()) ||
+                                (foundation_displacement &&
+                                 foundation_displacement->depends_on_time())));
+  }
+
+
+
+  template struct BoundaryCondition<2>;
+  template struct BoundaryCondition<3>;
+} // namespace Viscoplastic

@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/heartbeat.h>
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/discretization/implicit_flow.h>
+#include <viscoplastic_contact/time_stepping/implicit_step.h>
+#include <viscoplastic_contact/time_stepping/nonsymmetric_correction.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+// Newton's method of a step of backward Euler.
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// sum_s w_s stress_s : eps_s(v) for a ghosted v. Collective.
+    template <int dim>
+    double
+    virtual_work(const StressSpace<dim>   &stress_space,
+                 const IrreversibleStress &stress,
+                 const DistributedVector  &ghosted_change)
+    {
+      const unsigned int                 n   = stress_space.n_samples;
+      double                             sum = 0.;
+      std::vector<SymmetricTensor<2, 3>> strain(n);
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        {
+          stress_space.strains(c, ghosted_change.begin(), strain.data());
+          for (unsigned int s = 0; s < n; ++s)
+            sum += stress_space.weight(c, s) * (stress[c * n + s] * strain[s]);
+        }
+      return Utilities::MPI::sum(sum, stress_space.space.communicator);
+    }
+
+
+
+    IrreversibleStress
+    difference(const IrreversibleStress &a, const IrreversibleStress &b)
+    {
+      IrreversibleStress result(a);
+      for (std::size_t i = 0; i < a.size(); ++i)
+        result[i] -= b[i];
+      return result;
+    }
+
+
+
+    /// Where an increasing function is near zero in (0, 1), given its values at
+    /// the ends, by regula falsi in the manner of Illinois. Where the function
+    /// jumps over zero the result is near the jump, which is as far as the
+    /// energy decreases; the iteration that asks for it has an end of its own.
+    template <typename Function>
+    double
+    find_root(const Function &f, const double f_0, const double f_1)
+    {
+      double left = 0., right = 1., f_left = f_0, f_right = f_1, s = 1.;
+      int    side = 0;
+      for (unsigned int i = 0; i < 20; ++i)
+        {
+          s = (left * f_right - right * f_left) / (f_right - f_left);
+          const double value = f(s);
+          if (std::fabs(value) <= 0.2 * std::fabs(f_0))
+            break;
+          if (value < 0.)
+            {
+              left   = s;
+              f_left = value;
+              if (side == -1)
+                f_right *= 0.5;
+              side = -1;
+            }
+          else
+            {
+              right   = s;
+              f_right = value;
+              if (side == 1)
+                f_left *= 0.5;
+              side = 1;
+            }
+        }
+      return s;
+    }
+  } // namespace
+
+
+
+  /// The iteration of one step.
+  template <int dim>
+  class ImplicitStep<dim>::Newton
+  {
+  public:
+    Newton(ImplicitStep &method, const StepProblem<dim> &problem);
+
+    StepSolution<dim>
+    solve();
+
+  private:
+    /// z at the end of the step for the strains of a ghosted displacement, from
+    /// a guess of it. Collective.
+    IrreversibleStress
+    stress(const DistributedVector  &ghosted_u,
+           const IrreversibleStress &guess) const;
+
+    /// The first tangent is that of a body that goes on as it did.
+    void
+    predict();
+
+    /// u, sets and multipliers with the present tangent, and z of that u.
+    void
+    solve_with_tangent();
+
+    /// What the tangent has missed, and the size of the solution, in the norm
+    /// of the tangent matrix.
+    void
+    measure_error();
+
+    void
+    give_up() const;
+
+    /// Where the next tangent is taken: at the solution, or as far towards it
+    /// as is of use. Returns the share of the whole way.
+    double
+    move();
+
+    /// What the matrix misses of tangents that are not symmetric may be all
+    /// that matters. Returns the share of the correction that is taken.
+    double
+    correct();
+
+    /// How far to go from base to u: 1 unless the energy of the step increases
+    /// before.
+    double
+    step_length() const;
+
+    /// Whether a new tangent costs less than the iterations that the present
+    /// one still needs.
+    bool
+    tangent_is_outdated(const double length, const bool tangent_is_new) const;
+
+    ImplicitStep                        &method;
+    const Discretization<dim>           &d;
+    const StepProblem<dim>              &problem;
+    const typename FlowLaws<dim>::AtTime laws;
+    const bool                           tangents_are_symmetric;
+    const DistributedVector              zero; // ghosted
+    /// z_{n-1}, and what a source adds to it.
+    IrreversibleStress target;
+
+    StepSolution<dim> solution;
+    /// The solution in frames.
+    DistributedVector u;
+    /// Where the tangent is: ghosted, with the z there; and the same in frames,
+    /// empty for the prediction, which need not satisfy the boundary
+    /// conditions.
+    DistributedVector  at;
+    IrreversibleStress z;
+    DistributedVector  base;
+
+    /// The tolerance in the energy norm of the present matrix.
+    double tolerance = 0.;
+    double error = 0., size = 0.,
+           last_error = std::numeric_limits<double>::infinity(),
+           best_error = std::numeric_limits<double>::infinity();
+  };
+
+
+
+  template <int dim>
+  ImplicitStep<dim>::Newton::Newton(ImplicitStep           &method,
+                                    const StepProblem<dim> &problem)
+    : method(method)
+    , d(method.discretization)
+    , problem(problem)
+    , laws(d.laws.at(problem.time_step.t))
+    , tangents_are_symmetric(
+        method.tangent.is_constant ||
+        have_symmetric_tangents(d.laws, problem.time_step.t))
+    , zero(d.space.ghosted_vector())
+    , target(problem.old.state.z)
+    , solution(problem)
+  {
+    if (d.laws.source_solution)
+      fail_together(d.space.communicator, [&] {
+        const unsigned int n = d.stress_space.n_samples;
+        for (std::size_t i = 0; i < target.size(); ++i)
+          target[i] +=
+            problem.time_step.k *
+            d.laws.source(laws, i / n, i % n, ExactSolution<dim>::Side::before);
+      });
+  }
+
+
+
+  template <int dim>
+  StepSolution<dim>
+  ImplicitStep<dim>::Newton::solve()
+  {
+    const TimeStep    &step           = problem.time_step;
+    const unsigned int max_iterations = problem.parameters.maximal_iterations;
+    predict();
+    bool is_outdated = true;
+    for (solution.newton_iterations = 1;; ++solution.newton_iterations)
+      {
+        Heartbeat::count(Loop::newton);
+        if (is_outdated)
+          method.linearize(at, z, step.t, step.k);
+        const bool tangent_is_new = is_outdated;
+        solve_with_tangent();
+        measure_error();
+        if (error <= tolerance * size)
+          break;
+        best_error = std::min(best_error, error / size);
+        if (solution.newton_iterations == max_iterations)
+          give_up();
+        const double length = move();
+        is_outdated         = tangent_is_outdated(length, tangent_is_new);
+        last_error          = error;
+      }
+
+    const double ratio = method.tangent.norm_ratio();
+    if (size > 0.)
+      solution.report.relative_error += error / size;
+    solution.report.error     = ratio * (solution.report.error + error);
+    solution.report.tolerance = 2. * tolerance;
+
+    TimerOutput::Scope phase(method.timer, "rate");
+    solution.end_rate =
+      evaluate_flow(d.laws, solution.state.u, solution.state.z, step.t);
+    solution.note(*solution.end_rate);
+    return std::move(solution);
+  }
+
+
+
+  template <int dim>
+  IrreversibleStress
+  ImplicitStep<dim>::Newton::stress(const DistributedVector  &ghosted_u,
+                                    const IrreversibleStress &guess) const
+  {
+    TimerOutput::Scope phase(method.timer, "rate");
+    return implicit_irreversible_stress<dim>(
+      laws, d.stress_space, ghosted_u, target, problem.time_step.k, guess);
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitStep<dim>::Newton::predict()
+  {
+    const State<dim> &old = problem.old.state;
+    u = method.solver.initial_guess(problem, old, solution.state.contact);
+    DistributedVector ahead(problem.old_u());
+    d.space.to_frames(old.velocity, ahead);
+    ahead.sadd(problem.time_ahead(old), 1., problem.old_u());
+    at = zero;
+    d.space.to_cartesian(ahead, at);
+    z = stress(at, old.z);
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitStep<dim>::Newton::solve_with_tangent()
+  {
+    // In the energy norm of a(.,.), which may be as much larger; but not
+    // beyond what rounding allows. Half of it for friction, half for z.
+    tolerance = 0.5 * std::max(problem.tolerance / method.tangent.norm_ratio(),
+                               std::min(problem.tolerance, 1e-10));
+    {
+      TimerOutput::Scope phase(method.timer, "contact");
+      DistributedVector  right_side(problem.load.values);
+      add_irreversible_load(d.stress_space,
+                            method.tangent.extrapolate(z, at, zero),
+                            right_side);
+      ContactReport report = method.solver.solve(
+        problem, right_side, tolerance, u, solution.state.contact);
+      report.add_earlier(solution.report);
+      solution.report = report;
+      method.solver.set_displacement(problem, u, solution.state);
+    }
+    solution.state.z = stress(solution.state.u, z);
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitStep<dim>::Newton::measure_error()
+  {
+    const TangentMatrix<dim> &tangent = method.tangent;
+    const State<dim>         &state   = solution.state;
+    error =
+      tangent.norm(difference(state.z, tangent.extrapolate(z, at, state.u)));
+    AssertThrow(std::isfinite(error),
+                ExcMessage("Newton's method met a value that is not finite."));
+    DistributedVector product(u);
+    tangent.matrix().vmult(product, u);
+    // Rounding of stresses does not vanish with u.
+    const double rounding =
+      std::max(solution.report.rounding_error, 1e-13 * tangent.norm(state.z));
+    size = std::max(std::sqrt(std::max(0., u * product)), rounding / tolerance);
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitStep<dim>::Newton::give_up() const
+  {
+    std::ostringstream message;
+    message << "Newton's method for backward Euler did not converge in "
+            << solution.newton_iterations
+            << " iterations: the relative error is " << best_error
+            << " at best, and the tolerance is " << tolerance
+            << " ('Solver/Contact tolerance'); take more steps in "
+               "'Time/Phases'.";
+    AssertThrow(false, ExcMessage(message.str()));
+  }
+
+
+
+  template <int dim>
+  double
+  ImplicitStep<dim>::Newton::move()
+  {
+    if (!tangents_are_symmetric)
+      if (const double share = correct(); share > 0.)
+        return share;
+    const double length = base.size() > 0 ? step_length() : 1.;
+    if (length == 1.)
+      {
+        base = u;
+        at   = solution.state.u;
+        z    = solution.state.z;
+      }
+    else
+      {
+        base.sadd(1. - length, length, u);
+        d.space.to_cartesian(base, at);
+        z = stress(at, z);
+      }
+    return length;
+  }
+
+
+
+  template <int dim>
+  double
+  ImplicitStep<dim>::Newton::correct()
+  {
+    State<dim>        &state = solution.state;
+    NewtonIterate<dim> iterate{u, state.u, state.z, state.contact};
+    const NonsymmetricCorrection<dim> newton(d, problem, method.solver.bulk());
+    const auto                        correction = newton.correct(
+      std::max(0.1 * tolerance * size / error, std::min(1e-2, error / size)),
+      [this](const DistributedVector  &ghosted_u,
+             const IrreversibleStress &guess) {
+        return stress(ghosted_u, guess);
+      },
+      iterate);
+    solution.report.linear_iterations += correction.iterations;
+    if (correction.share > 0.)
+      {
+        u = base      = iterate.u;
+        at            = iterate.ghosted_u;
+        z             = iterate.z;
+        state.contact = iterate.contact;
+      }
+    return correction.share;
+  }
+
+
+
+  template <int dim>
+  double
+  ImplicitStep<dim>::Newton::step_length() const
+  {
+    // J' d at base + s d: linear in s but for friction and z.
+    DistributedVector change(u), product(u);
+    change -= base;
+    d.matrix.vmult(product, change);
+    const double curvature = change * product;
+    d.matrix.vmult(product, base);
+    product -= problem.load.values;
+    const double slope = change * product;
+
+    DistributedVector ghosted_change = d.space.ghosted_vector();
+    d.space.to_cartesian(change, ghosted_change);
+    const std::vector<double> &bounds = solution.state.contact.bound;
+    std::vector<Tensor<1, 2>>  slips, slip_changes;
+    if (d.face)
+      {
+        DistributedVector increment(base);
+        increment -= problem.old_u();
+        slips        = d.face->slips(increment, problem.foundation_step);
+        slip_changes = d.face->slips(change);
+      }
+    const auto derivative = [&](const double              s,
+                                const IrreversibleStress &z_there) {
+      double friction = 0.;
+      for (unsigned int p = 0; p < slips.size(); ++p)
+        {
+          const ContactLayout::Point &point = d.face->layout().points[p];
+          const Tensor<1, 2>          slip  = slips[p] + s * slip_changes[p];
+          const double norm = slip.norm(), rest = slip_changes[p].norm();
+          if (point.gives_way())
+            friction +=
+              point.compliance.force(slip[0] - bounds[p]) * slip_changes[p][0];
+          else if (rest > 0. && std::isfinite(bounds[p]) && !point.is_obstacle)
+            friction += bounds[p] * (norm > 1e-14 * rest ?
+                                       (slip * slip_changes[p]) / norm :
+                                       (s < 0.5 ? rest : -rest));
+        }
+      return slope + s * curvature +
+             Utilities::MPI::sum(friction, d.space.communicator) +
+             virtual_work(d.stress_space, z_there, ghosted_change);
+    };
+
+    const double at_0 = derivative(0., z),
+                 at_1 = derivative(1., solution.state.z);
+    if (!(at_0 < 0.) || at_1 <= 0.5 * std::fabs(at_0))
+      return 1.;
+    DistributedVector  there = d.space.ghosted_vector();
+    IrreversibleStress z_there(z);
+    return find_root(
+      [&](const double s) {
+        DistributedVector between(base);
+        between.add(s, change);
+        d.space.to_cartesian(between, there);
+        z_there = stress(there, z_there);
+        return derivative(s, z_there);
+      },
+      at_0,
+      at_1);
+  }
+
+
+
+  template <int dim>
+  bool
+  ImplicitStep<dim>::Newton::tangent_is_outdated(
+    const double length,
+    const bool   tangent_is_new) const
+  {
+    const double iterations_left =
+      error < last_error ?
+        std::log(tolerance * size / error) / std::log(error / last_error) :
+        std::numeric_limits<double>::infinity();
+    // A new tangent in iterations with the present one: a preconditioner is
+    // made anew at little cost, factors are not.
+    const bool   is_iterative = !method.solver.bulk().is_exact();
+    const double price        = is_iterative ? 1. : dim == 2 ? 5. : 12.;
+    if (length < 1.)
+      return true;
+    // After one iteration nothing is known of the next ones.
+    if (tangent_is_new && solution.newton_iterations == 1)
+      return is_iterative;
+    return iterations_left > price;
+  }
+
+
+
+  template <int dim>
+  StepSolution<dim>
+  ImplicitStep<dim>::advance(const StepProblem<dim> &problem)
+  {
+    if (auto solution = rest(problem))
+      return std::move(*solution);
+    StepSolution<dim> solution = Newton(*this, problem).solve();
+    solution.is_implicit       = true;
+    return solution;
+  }
+
+
+
+  template StepSolution<2>
+  ImplicitStep<2>::advance(const StepProblem<2> &);
+  template StepSolution<3>
+  ImplicitStep<3>::advance(const StepProblem<3> &);
+} // namespace Viscoplastic

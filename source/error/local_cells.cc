@@ -66,18 +66,11 @@ namespace Viscoplastic
             shape.mean_gradients[v] +=
               values.shape_grad(v * dim, q) * values.JxW(q);
             shape.gradients[q][v] = values.shape_grad(v * dim, q);
-            shape.hessians[q][v]  = values.shape_hessian(v * dim, q);
           }
       }
     for (auto &gradient : shape.mean_gradients)
       gradient /= volume;
-    shape.volume            = volume;
-    shape.constant_hessians = true;
-    for (unsigned int q = 1; q < n_points; ++q)
-      for (unsigned int v = 0; v < n_vertices; ++v)
-        shape.constant_hessians &=
-          (shape.hessians[q][v] - shape.hessians[0][v]).norm() <=
-          1e-12 * shape.hessians[0][v].norm();
+    shape.volume = volume;
     for (unsigned int f = 0; f < n_faces; ++f)
       {
         on_face.reinit(cell, f);
@@ -96,8 +89,8 @@ namespace Viscoplastic
     const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
     FEValues<dim>               values(fe,
                          QGauss<dim>(2),
-                         update_gradients | update_hessians |
-                           update_quadrature_points | update_JxW_values);
+                         update_gradients | update_quadrature_points |
+                           update_JxW_values);
     FEFaceValues<dim>           on_face(fe,
                               QGauss<dim - 1>(2),
                               update_gradients | update_normal_vectors |

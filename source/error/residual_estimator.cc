@@ -180,52 +180,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  typename ResidualEstimator<dim>::Residuals
-  ResidualEstimator<dim>::divergence(const Shape       &shape,
-                                     const StressTerms &terms,
-                                     const bool         one_point) const
-  {
-    // From the second derivatives of u_h; z_h has none, and under mean
-    // dilatation the volumetric part is constant on the cell.
-    const Stiffness &stiffness       = *terms.stiffness;
-    const bool       mean_dilatation = stress_space.mean_dilatation;
-    const double     mu              = stiffness.shear_modulus(),
-                 lambda = (mean_dilatation ? 0. : stiffness.bulk_modulus()) -
-                          2. / 3. * mu;
-    Residuals result;
-    for (unsigned int q = 0; q < (one_point ? 1 : n_points); ++q)
-      {
-        std::array<Tensor<2, dim>, dim> hessian; // of u_i
-        for (unsigned int v = 0; v < n_vertices; ++v)
-          for (unsigned int i = 0; i < dim; ++i)
-            hessian[i] += terms.u[v][i] * shape.hessians[q][v];
-        if (stiffness.is_isotropic())
-          for (unsigned int i = 0; i < dim; ++i)
-            {
-              double gradient = 0.; // of div u_h
-              for (unsigned int k = 0; k < dim; ++k)
-                gradient += hessian[k][k][i];
-              result[q][i] += mu * trace(hessian[i]) + (mu + lambda) * gradient;
-            }
-        else
-          for (unsigned int j = 0; j < dim; ++j)
-            {
-              Tensor<2, dim> gradient; // of u_,j
-              for (unsigned int i = 0; i < dim; ++i)
-                for (unsigned int k = 0; k < dim; ++k)
-                  gradient[i][k] = hessian[i][k][j];
-              const SymmetricTensor<2, 3> stress =
-                stiffness.stress(reduced_strain(gradient, mean_dilatation, 0.));
-              for (unsigned int i = 0; i < dim; ++i)
-                result[q][i] += stress[i][j];
-            }
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
   double
   ResidualEstimator<dim>::off_the_law(const BoundaryFace &face,
                                       const unsigned int  q,
@@ -332,72 +286,33 @@ namespace Viscoplastic
   ResidualEstimator<dim>::visit_residuals(const Fields  &fields,
                                           const Visitor &visit) const
   {
-    const AdmissibleSpace<dim>  &space   = stress_space.space;
-    const std::size_t            n_owned = stress_space.n_cells();
     IrreversibleStress           means;
     const SymmetricTensor<2, 3> *mean_z =
       local.mean_irreversible_stress(fields.z, means);
 
-    // Tractions on all faces, and what is amiss within the cells.
     std::vector<Tensor<1, dim>> &tractions = traction_buffer;
     tractions.resize((cells.size() * n_faces + subface_sides.size()) *
                      n_face_points);
-    const bool     has_initial = fields.t && !initial_tractions.empty();
-    const auto    &b           = space.scene.body_force;
-    const bool     is_kept     = !body_force.empty();
-    Tensor<1, dim> uniform_force;
-    if (b && uniform_body_force && fields.t)
-      uniform_force = b->vector(Point<dim>(), *fields.t);
     for (std::size_t c = 0; c < cells.size(); ++c)
       {
         const StressTerms terms = stress_terms(c, fields, mean_z);
-        const Shape      &shape = shapes[cells[c].shape];
         for (unsigned int f = 0; f < n_faces; ++f)
-          add_tractions(shape.faces[f],
+          add_tractions(shapes[cells[c].shape].faces[f],
                         terms,
                         &tractions[(c * n_faces + f) * n_face_points]);
-        if (c >= n_owned || !cells[c].is_present)
-          continue;
-        // Without a force that varies, one point speaks for all where the
-        // second derivatives are constant.
-        const bool one_point =
-          shape.constant_hessians && (!b || uniform_body_force) && !has_initial;
-        const unsigned int n         = one_point ? 1 : n_points;
-        Residuals          residuals = divergence(shape, terms, one_point);
-        if (b && fields.t)
-          for (unsigned int q = 0; q < n; ++q)
-            residuals[q] +=
-              is_kept ?
-                body_force[c * n_points + q] :
-              uniform_body_force ?
-                uniform_force :
-                b->vector(cells[c].origin + shape.positions[q], *fields.t);
-        if (has_initial)
-          for (unsigned int q = 0; q < n; ++q)
-            residuals[q] += initial_divergence[c * n_points + q];
-        visit({Part::cell,
-               c,
-               Utilities::fixed_power<2>(shape.diameter),
-               n,
-               one_point ? &shape.volume : shape.weights.data(),
-               residuals,
-               nullptr,
-               0.});
       }
     for (std::size_t s = 0; s < subface_sides.size(); ++s)
       add_tractions(subface_shapes[subface_sides[s].table],
                     stress_terms(subface_sides[s].cell, fields, mean_z),
                     &tractions[(cells.size() * n_faces + s) * n_face_points]);
 
-    if (has_initial)
+    if (fields.t && !initial_tractions.empty())
       for (std::size_t i = 0; i < tractions.size(); ++i)
         tractions[i] += initial_tractions[i];
 
-    // Half of each jump goes to each side. Normals point out of both.
+    // Normals point out of both sides.
     for (const InteriorFace &face : interior_faces)
       {
-        const FaceShape &shape =
-          shapes[cells[face.cells[0]].shape].faces[face.face];
         const bool is_hanging =
           face.tractions[1] >= cells.size() * n_faces * n_face_points;
         Residuals jumps;
@@ -410,35 +325,34 @@ namespace Viscoplastic
         for (const unsigned int cell : face.cells)
           if (cells[cell].is_present)
             visit(
-              {is_free ? Part::boundary_face : Part::interior_face,
-               cell,
-               (is_free ? 1. : 0.5) * face.diameter,
-               n_face_points,
-               shape.weights.data(),
-               jumps,
-               &shape,
-               is_hanging && cell == face.cells[1] ? 1. / n_face_points : 1.});
+              {cell,
+               shapes[cells[face.cells[0]].shape].faces[face.face],
+               is_hanging && cell == face.cells[1] ? 1. / n_face_points : 1.,
+               is_free,
+               jumps});
       }
     for (const BoundaryFace &face : boundary_faces)
-      {
-        const Residuals residuals = boundary_residuals(
-          face,
-          fields,
-          &tractions[(face.cell * n_faces + face.face) * n_face_points]);
-        const FaceShape &shape =
-          shapes[cells[face.cell].shape].faces[face.face];
-        std::array<double, 2 * n_face_points> weights;
-        for (unsigned int q = 0; q < weights.size(); ++q)
-          weights[q] = shape.weights[q % n_face_points];
-        visit({Part::boundary_face,
-               face.cell,
-               face.diameter,
-               2 * n_face_points,
-               weights.data(),
-               residuals,
-               &shape,
-               1.});
-      }
+      visit({face.cell,
+             shapes[cells[face.cell].shape].faces[face.face],
+             1.,
+             true,
+             boundary_residuals(
+               face,
+               fields,
+               &tractions[(face.cell * n_faces + face.face) * n_face_points])});
+  }
+
+
+
+  template <int dim>
+  double
+  ResidualEstimator<dim>::factor(const LocalResiduals &r) const
+  {
+    double area = 0.;
+    for (const double weight : r.face.weights)
+      area += weight;
+    const double width = shapes[cells[r.cell].shape].volume * r.share / area;
+    return (r.is_at_boundary ? 1. / 6. : 1. / 24.) * width;
   }
 
 
@@ -448,14 +362,17 @@ namespace Viscoplastic
   ResidualEstimator<dim>::estimate(const Fields &fields) const
   {
     std::vector<double> eta(cells.size()); // squared
-    visit_residuals(fields, [&eta](const LocalResiduals &r) {
-      double square = 0.;
-      for (unsigned int q = 0; q < r.n_points; ++q)
-        square += r.values[q].norm_square() * r.weights[q];
-      eta[r.cell] += r.factor * square;
+    visit_residuals(fields, [&](const LocalResiduals &r) {
+      const Stiffness &stiffness = cells[r.cell].stiffness;
+      double           square    = 0.;
+      for (unsigned int q = 0; q < n_face_points; ++q)
+        square += r.face.weights[q] *
+                  (compliance_product(
+                     stiffness, r.face.normals[q], r.values[q], r.values[q]) +
+                   2. * r.values[n_face_points + q].norm_square() /
+                     stiffness.smallest_deviatoric_eigenvalue());
+      eta[r.cell] += factor(r) * square;
     });
-    for (std::size_t c = 0; c < eta.size(); ++c)
-      eta[c] /= cells[c].stiffness.smallest_deviatoric_eigenvalue();
     return local.by_active_index(eta);
   }
 
@@ -496,37 +413,29 @@ namespace Viscoplastic
   ResidualEstimator<dim>::multiply(const Fields &state,
                                    const Fields &dual) const
   {
-    std::vector<Tensor<1, dim>> of_state;
+    std::vector<Residuals> of_state;
     visit_residuals(state, [&of_state](const LocalResiduals &r) {
-      if (r.part != Part::cell)
-        of_state.insert(of_state.end(),
-                        r.values.begin(),
-                        r.values.begin() + n_face_points);
+      of_state.push_back(r.values);
     });
     std::vector<double> of_both(cells.size()), of_dual(cells.size());
     auto                next = of_state.cbegin();
     visit_residuals(dual, [&](const LocalResiduals &r) {
-      if (r.part == Part::cell)
-        return;
-      const LocalCell &cell = cells[r.cell];
-      double           both = 0., squares = 0., area = 0.;
-      for (unsigned int q = 0; q < n_face_points; ++q, ++next)
+      const Stiffness &stiffness = cells[r.cell].stiffness;
+      double           both = 0., squares = 0.;
+      for (unsigned int q = 0; q < n_face_points; ++q)
         {
-          const Tensor<1, dim> &normal = r.face->normals[q];
-          area += r.weights[q];
+          const double          weight = r.face.weights[q];
+          const Tensor<1, dim> &normal = r.face.normals[q];
           both +=
-            r.weights[q] *
-            compliance_product(cell.stiffness, normal, r.values[q], *next);
-          squares += r.weights[q] * compliance_product(cell.stiffness,
-                                                       normal,
-                                                       r.values[q],
-                                                       r.values[q]);
+            weight *
+            compliance_product(stiffness, normal, r.values[q], (*next)[q]);
+          squares +=
+            weight *
+            compliance_product(stiffness, normal, r.values[q], r.values[q]);
         }
-      const double width = shapes[cell.shape].volume * r.share / area;
-      const double factor =
-        (r.part == Part::interior_face ? 1. / 24. : 1. / 6.) * width;
-      of_both[r.cell] += factor * both;
-      of_dual[r.cell] += factor * squares;
+      ++next;
+      of_both[r.cell] += factor(r) * both;
+      of_dual[r.cell] += factor(r) * squares;
     });
     return {local.by_active_index(of_both), local.by_active_index(of_dual)};
   }

@@ -15,42 +15,17 @@
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    template <int dim>
-    bool
-    depends_on_position(const VectorExpression<dim> &expression)
-    {
-      for (unsigned int d = 0; d < dim; ++d)
-        if (expression[d].depends_on_position())
-          return true;
-      return false;
-    }
-  } // namespace
-
-
-
   template <int dim>
   ResidualEstimator<dim>::ResidualEstimator(const LocalCells<dim> &local_cells)
     : local(local_cells)
     , stress_space(local_cells.stress_space)
     , shapes(local_cells.shapes)
     , cells(local_cells.cells)
-    , uniform_body_force(false)
   {
     make_faces();
     make_face_values();
     make_initial_stress();
     subface_shape_of.clear();
-
-    const auto &b = stress_space.space.scene.body_force;
-    if (!b)
-      return;
-    uniform_body_force = !depends_on_position(*b);
-    if (!b->depends_on_time() && !uniform_body_force)
-      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-        for (const auto &x : shapes[cells[c].shape].positions)
-          body_force.push_back(b->vector(cells[c].origin + x, 0.));
   }
 
 
@@ -88,8 +63,7 @@ namespace Viscoplastic
       InteriorFace       face{{{c, number_of(other)}},
                         f,
                         {{traction_of(c, f), other_traction}},
-                        {},
-                        fine->face(f)->diameter()};
+                        {}};
       const FaceShape   &here  = shapes[cells[c].shape].faces[f];
       const auto         shift = other->vertex(0) - fine->vertex(0);
       for (unsigned int q = 0; q < n_face_points; ++q)
@@ -290,26 +264,6 @@ namespace Viscoplastic
         add_face(c, face);
     for (const SubfaceSide &side : subface_sides)
       add_face(side.cell, subface_shapes[side.table]);
-
-    // By central differences, within the cell.
-    for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-      {
-        const Shape &shape = shapes[cells[c].shape];
-        const double h     = 1e-4 * shape.diameter;
-        for (const Tensor<1, dim> &x : shape.positions)
-          {
-            Tensor<1, dim> divergence;
-            for (unsigned int j = 0; j < dim; ++j)
-              {
-                const Tensor<1, dim> step = h * Point<dim>::unit_vector(j);
-                const SymmetricTensor<2, 3> change =
-                  (at(c, x + step) - at(c, x - step)) / (2. * h);
-                for (unsigned int i = 0; i < dim; ++i)
-                  divergence[i] += change[i][j];
-              }
-            initial_divergence.push_back(divergence);
-          }
-      }
   }
 
 

@@ -52,7 +52,6 @@ namespace Viscoplastic
       density = d.face->density(state.contact);
     Vector<double> squared = residual_estimator->estimate(
       {state.u, state.z, state.t, d.face ? &density : nullptr});
-    squared *= residual_calibration * residual_calibration;
     const Vector<double> recovery = recovery_estimator->estimate(state.u);
     for (unsigned int i = 0; i < squared.size(); ++i)
       squared[i] = std::max(squared[i], recovery[i]);

@@ -49,7 +49,7 @@ class Kept(TestCase):
             self.check("coulomb_2d", 0.1, **{"Time/Scheme": scheme})
 
     def test_space(self):
-        result = self.check("coulomb_3d", 0.4)
+        result = self.check("coulomb_3d", 0.3)
         # The data ask for a finer mesh than the scene's of 64 cells, not
         # everywhere.
         self.assertGreater(result["cells"][1], 100)

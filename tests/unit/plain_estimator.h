@@ -64,10 +64,6 @@ namespace Viscoplastic::Testing
       return data[cell->active_cell_index()].stiffness;
     }
 
-    /// div E eps(u_h) from the second derivatives of u_h; z_h has none.
-    Tensor<1, dim>
-    divergence(const Cell<dim> &cell, const Tensor<3, dim> &hessian) const;
-
     /// sigma_h nu at the points of @p fe_face, a face of @p cell.
     void
     tractions(const Cell<dim>                   &cell,
@@ -155,29 +151,6 @@ namespace Viscoplastic::Testing
 
 
   template <int dim>
-  Tensor<1, dim>
-  StressField<dim>::divergence(const Cell<dim>      &cell,
-                               const Tensor<3, dim> &hessian) const
-  {
-    // With mean dilatation the volumetric part is constant on the cell.
-    Tensor<1, dim> result;
-    for (unsigned int j = 0; j < dim; ++j)
-      {
-        Tensor<2, dim> gradient; // of u_,j
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int k = 0; k < dim; ++k)
-            gradient[i][k] = hessian[i][k][j];
-        const SymmetricTensor<2, 3> stress =
-          stiffness(cell).stress(strain(gradient, mean_dilatation, 0.));
-        for (unsigned int i = 0; i < dim; ++i)
-          result[i] += stress[i][j];
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
   void
   StressField<dim>::tractions(const Cell<dim>                   &cell,
                               const FEFaceValuesBase<dim>       &fe_face,
@@ -200,6 +173,30 @@ namespace Viscoplastic::Testing
               result[q][i] += stress[i][j] * normals[q][j];
           }
       }
+  }
+
+
+
+  /// r . M^-1 r with the acoustic tensor M = nu . E . nu, whose k-th column is
+  /// the traction of the strain that e_k and nu make.
+  template <int dim>
+  double
+  compliance_square(const Stiffness      &stiffness,
+                    const Tensor<1, dim> &normal,
+                    const Tensor<1, dim> &r)
+  {
+    Tensor<2, dim> acoustic;
+    for (unsigned int k = 0; k < dim; ++k)
+      {
+        Tensor<2, dim> gradient;
+        gradient[k] = normal;
+        const SymmetricTensor<2, 3> stress =
+          stiffness.stress(strain(gradient, /* mean_dilatation = */ false, 0.));
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            acoustic[i][k] += stress[i][j] * normal[j];
+      }
+    return r * (invert(acoustic) * r);
   }
 
 
@@ -266,10 +263,7 @@ namespace Viscoplastic::Testing
     Vector<double>              estimate(
       space.dof_handler.get_triangulation().n_active_cells());
 
-    FEValues<dim>          fe_values(fe,
-                            QGauss<dim>(2),
-                            update_hessians | update_JxW_values |
-                              update_quadrature_points);
+    FEValues<dim>          fe_values(fe, QGauss<dim>(2), update_JxW_values);
     FEInterfaceValues<dim> interface_values(fe,
                                             QGauss<dim - 1>(2),
                                             update_gradients |
@@ -281,25 +275,16 @@ namespace Viscoplastic::Testing
                                     update_JxW_values | update_normal_vectors |
                                     update_quadrature_points);
 
-    std::vector<Tensor<3, dim>> hessians(fe_values.n_quadrature_points);
     std::vector<Tensor<1, dim>> traction(face_values.n_quadrature_points),
       neighbor_traction(face_values.n_quadrature_points),
       density(face_values.n_quadrature_points);
 
-    const auto add_cell = [&](const Cell<dim> &cell) {
+    const auto volume = [&](const Cell<dim> &cell) {
       fe_values.reinit(cell);
-      fe_values[displacement].get_function_hessians(ghosted_u, hessians);
-      double square = 0.;
-      for (const unsigned int q : fe_values.quadrature_point_indices())
-        {
-          Tensor<1, dim> residual = stress.divergence(cell, hessians[q]);
-          if (scene.body_force)
-            residual +=
-              scene.body_force->vector(fe_values.quadrature_point(q), t);
-          square += residual.norm_square() * fe_values.JxW(q);
-        }
-      estimate[cell->active_cell_index()] +=
-        Utilities::fixed_power<2>(cell->diameter()) * square;
+      double result = 0.;
+      for (const double weight : fe_values.get_JxW_values())
+        result += weight;
+      return result;
     };
 
     const auto add_boundary_face = [&](const Cell<dim>   &cell,
@@ -322,7 +307,7 @@ namespace Viscoplastic::Testing
         }
       else
         density.assign(density.size(), Tensor<1, dim>());
-      double square = 0.;
+      double square = 0., area = 0.;
       for (const unsigned int q : face_values.quadrature_point_indices())
         {
           // Nodal multipliers respect nodal bounds; between nodes the density
@@ -335,26 +320,29 @@ namespace Viscoplastic::Testing
                 tangential.norm() -
                 condition.bound(face_values.quadrature_point(q), t);
               if (excess > 0.)
-                square += excess * excess * face_values.JxW(q);
+                square +=
+                  2. * excess * excess * face_values.JxW(q) /
+                  stress.stiffness(cell).smallest_deviatoric_eigenvalue();
             }
-          square += boundary_residual(condition,
-                                      face_values.quadrature_point(q),
-                                      face_values.normal_vector(q),
-                                      t,
-                                      traction[q],
-                                      density[q])
-                      .norm_square() *
-                    face_values.JxW(q);
+          square +=
+            compliance_square(stress.stiffness(cell),
+                              face_values.normal_vector(q),
+                              boundary_residual(condition,
+                                                face_values.quadrature_point(q),
+                                                face_values.normal_vector(q),
+                                                t,
+                                                traction[q],
+                                                density[q])) *
+            face_values.JxW(q);
+          area += face_values.JxW(q);
         }
-      estimate[cell->active_cell_index()] += cell->face(f)->diameter() * square;
+      estimate[cell->active_cell_index()] += volume(cell) / area * square / 6.;
     };
 
-    // Half of the jump goes to each side. Face and subface numbers as in
-    // FEInterfaceValues::reinit().
+    // Face and subface numbers as in FEInterfaceValues::reinit().
     const auto add_jump = [&](const Cell<dim>   &cell,
                               const unsigned int f,
                               const unsigned int subface,
-                              const double       diameter,
                               const Cell<dim>   &neighbor,
                               const unsigned int neighbor_f,
                               const unsigned int neighbor_subface) {
@@ -369,13 +357,27 @@ namespace Viscoplastic::Testing
                        interface_values.get_fe_face_values(1),
                        normals,
                        neighbor_traction);
-      double square = 0.;
-      for (unsigned int q = 0; q < traction.size(); ++q)
-        square += (traction[q] - neighbor_traction[q]).norm_square() *
-                  interface_values.JxW(q);
-      for (const Cell<dim> &side : {cell, neighbor})
+      // The part of a face that hanging nodes bound is as far from the other
+      // side of the coarse cell as the whole of it.
+      double area = 0.;
+      for (const double weight : interface_values.get_JxW_values())
+        area += weight;
+      const std::array<std::pair<Cell<dim>, unsigned int>, 2> sides{
+        {{cell, subface}, {neighbor, neighbor_subface}}};
+      for (const auto &[side, part] : sides)
         if (side->is_locally_owned())
-          estimate[side->active_cell_index()] += 0.5 * diameter * square;
+          {
+            double square = 0.;
+            for (unsigned int q = 0; q < traction.size(); ++q)
+              square += compliance_square(stress.stiffness(side),
+                                          normals[q],
+                                          traction[q] - neighbor_traction[q]) *
+                        interface_values.JxW(q);
+            const bool is_whole = part == numbers::invalid_unsigned_int;
+            estimate[side->active_cell_index()] +=
+              volume(side) / (is_whole ? area : area * (1u << (dim - 1))) *
+              square / 24.;
+          }
     };
 
     // Faces between owned cells are visited once: from the finer side, or from
@@ -384,7 +386,6 @@ namespace Viscoplastic::Testing
     for (const auto &cell : space.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          add_cell(cell);
           for (const unsigned int f : cell->face_indices())
             if (cell->at_boundary(f))
               add_boundary_face(cell, f);
@@ -398,7 +399,6 @@ namespace Viscoplastic::Testing
                       add_jump(cell,
                                f,
                                s,
-                               cell->face(f)->child(s)->diameter(),
                                child,
                                cell->neighbor_of_neighbor(f),
                                whole);
@@ -408,13 +408,8 @@ namespace Viscoplastic::Testing
               {
                 const auto [neighbor_f, subface] =
                   cell->neighbor_of_coarser_neighbor(f);
-                add_jump(cell,
-                         f,
-                         whole,
-                         cell->face(f)->diameter(),
-                         cell->neighbor(f),
-                         neighbor_f,
-                         subface);
+                add_jump(
+                  cell, f, whole, cell->neighbor(f), neighbor_f, subface);
               }
             else
               {
@@ -424,17 +419,12 @@ namespace Viscoplastic::Testing
                   add_jump(cell,
                            f,
                            whole,
-                           cell->face(f)->diameter(),
                            neighbor,
                            cell->neighbor_of_neighbor(f),
                            whole);
               }
         }
 
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        estimate[cell->active_cell_index()] /=
-          stress.stiffness(cell).smallest_deviatoric_eigenvalue();
     return estimate;
   }
 } // namespace Viscoplastic::Testing

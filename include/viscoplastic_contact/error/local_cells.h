@@ -53,15 +53,12 @@ namespace Viscoplastic
 
     struct Shape
     {
-      double diameter, volume;
-      /// Whether they are the same at all points.
-      bool                                 constant_hessians;
+      double                               diameter, volume;
       NodalValues                          mean_gradients;
       std::array<NodalValues, n_points>    gradients;
       std::array<double, n_points>         weights;
       std::array<FaceShape, n_faces>       faces;
       std::array<Tensor<1, dim>, n_points> positions; // from vertex 0
-      std::array<std::array<Tensor<2, dim>, n_vertices>, n_points> hessians;
     };
 
     struct LocalCell

@@ -13,20 +13,26 @@
 namespace Viscoplastic
 {
   /**
-   * The residual estimator (Verfuerth, A Review of A Posteriori Error
-   * Estimation, 1996) for the inequality of one step,
+   * The residual estimator for the inequality of one step,
    *
-   *     eta_K^2 = ( h_K^2 |b + div E eps(u_h)|^2
-   *                 + sum_e 1/2 h_e |[sigma_h nu]|^2     interior faces
-   *                 + h_e |F - sigma_h nu|^2             Gamma_2
-   *                 + h_e |lambda_h + (sigma_h nu)_tau|^2
-   *                 + h_e |S - sigma_nu|^2 ) / (2 mu),   Gamma_3
+   *     eta_K^2 = sum_e 1/24 h (r, M^-1 r)_e   interior faces, r = [sigma_h nu]
+   *               + 1/6 h (r, M^-1 r)_e        boundary,
+   *               r = F - sigma_h nu on Gamma_2,
+   *               r = lambda_h + (sigma_h nu)_tau, S - sigma_nu on Gamma_3,
    *
-   * with L2 norms on cell and faces, sigma_h = E eps(u_h) + z_h and z_h the
-   * cell means of z. The scaling makes the sum comparable to the squared error
-   * in the energy norm. On Gamma_3 the normal part appears where the normal
-   * stress is given. Where only some components of u are prescribed, the
-   * residual of the others counts with F = 0 (symmetry: the tangential ones).
+   * with the width h of the cell across the face, the acoustic tensor
+   * M = nu . E . nu, sigma_h = E eps(u_h) + z_h and z_h the cell means of z.
+   * For smooth solutions on meshes of equal boxes that is the squared error to
+   * leading order: the error is -x (h - x)/2 times the second derivative in
+   * each direction then, whose stress jumps by h between cells and misses the
+   * data by h/2. What is amiss within the cells, b + div sigma_h, says the same
+   * once more (Carstensen and Verfuerth, Edge Residuals Dominate A Posteriori
+   * Error Estimates for Low Order Finite Element Methods, 1999), but for what b
+   * varies by within a cell, which is of second order, and does not count.
+   *
+   * On Gamma_3 the normal part appears where the normal stress is given. Where
+   * only some components of u are prescribed, the residual of the others counts
+   * with F = 0 (symmetry: the tangential ones).
    *
    * The terms of complementarity and of violated bounds are zero at the nodes:
    * the contact solver's multipliers satisfy the laws of contact to rounding.
@@ -34,7 +40,8 @@ namespace Viscoplastic
    *
    * Where contact opens, the whole traction is compared with the density, and
    * off_the_law() counts besides, like a traction: u_nu - g and the density
-   * between the nodes are not those of one state of the foundation.
+   * between the nodes are not those of one state of the foundation. Such
+   * tractions have no direction of their own, and 1/mu for M^-1.
    *
    * The estimate bounds the error of one step for given z; the error that has
    * accumulated in z is not part of it. An initial stress, which may vary in
@@ -82,18 +89,12 @@ namespace Viscoplastic
     };
 
     /**
-     * The products of the errors of two solutions, with their signs, from the
-     * jumps r = [sigma_h nu] of both:
+     * The products of the errors of two solutions, with their signs,
      *
-     *     a(e_u, e_w)_K = sum_e 1/24 h (r_u, M^-1 r_w)_e   interior faces
-     *                   + 1/6 h (r_u, M^-1 r_w)_e          Gamma_2, Gamma_3
+     *     a(e_u, e_w)_K = sum_e 1/24 h (r_u, M^-1 r_w)_e + 1/6 h (r_u, M^-1
+     * r_w)_e,
      *
-     * with the width h of the cell across the face, the acoustic tensor
-     * M = nu . E . nu, and the contradictions to the data for r on the
-     * boundary. For smooth solutions on meshes of equal boxes this is exact to
-     * leading order: the error is -x (h - x)/2 times the second derivative in
-     * each direction then, whose stress jumps by h between cells and misses
-     * the data by h/2. No calibration, but no bound either: for products of
+     * from the residuals r of both as above. No bound: for products of
      * errors, which have signs. Collective.
      */
     Products
@@ -127,7 +128,6 @@ namespace Viscoplastic
       std::array<unsigned int, 2> tractions;
       /// The point of the second side at each point of the first.
       std::array<unsigned char, n_face_points> partner;
-      double                                   diameter;
     };
 
     struct BoundaryFace
@@ -189,15 +189,8 @@ namespace Viscoplastic
                   const StressTerms &terms,
                   Tensor<1, dim>    *tractions) const;
 
-    /// The most points of a cell, and twice the most of a face.
-    using Residuals = std::array<Tensor<1, dim>, n_points>;
-
-    /// div E eps(u_h) at the points of a cell; only at the first if
-    /// @p one_point.
-    Residuals
-    divergence(const Shape       &shape,
-               const StressTerms &terms,
-               const bool         one_point) const;
+    /// At the points of a face, and once more for what else is amiss there.
+    using Residuals = std::array<Tensor<1, dim>, 2 * n_face_points>;
 
     /// The contradictions of tractions to the data at the points of a face, and
     /// behind them what is amiss with friction, by how much the density exceeds
@@ -224,28 +217,20 @@ namespace Viscoplastic
                 const double        w,
                 const double        p) const;
 
-    /// Where residuals are.
-    enum class Part
-    {
-      cell,
-      interior_face,
-      boundary_face
-    };
-
-    /// A part of the residuals of a cell of this rank, or of a ghost.
+    /// The residuals on a face, or a part of one, for a cell beside it, of this
+    /// rank or a ghost.
     struct LocalResiduals
     {
-      Part        part;
-      std::size_t cell;
-      /// eta_K^2 has the part factor sum_q weights[q] |values[q]|^2.
-      double        factor;
-      unsigned int  n_points;
-      const double *weights;
-      Residuals     values;
-      /// Of a face: what is at its points, and its part of the cell's face.
-      const FaceShape *face;
-      double           share;
+      std::size_t      cell;
+      const FaceShape &face;
+      double           share; // of the cell's face
+      bool             is_at_boundary;
+      Residuals        values;
     };
+
+    /// 1/24 or 1/6 h, see above.
+    double
+    factor(const LocalResiduals &r) const;
 
     /// Evaluate the residuals and visit(LocalResiduals), in an order that
     /// depends on the mesh alone. Collective.
@@ -264,8 +249,6 @@ namespace Viscoplastic
     const StressSpace<dim>       &stress_space;
     const std::vector<Shape>     &shapes;
     const std::vector<LocalCell> &cells;
-    /// Whether b is the same in the whole body.
-    bool uniform_body_force;
 
     std::vector<FaceShape>    subface_shapes;
     std::vector<SubfaceSide>  subface_sides;
@@ -275,13 +258,9 @@ namespace Viscoplastic
     std::array<std::array<std::array<double, n_vertices>, n_face_points>,
                n_faces>
       face_values;
-    /// b at the points of owned cells if it does not depend on time.
-    std::vector<Tensor<1, dim>> body_force;
-
     /// What sigma0 nu at all faces has beyond that of its cell means, which z_h
-    /// holds, and div sigma0 at the points of owned cells; empty without an
-    /// initial stress.
-    std::vector<Tensor<1, dim>> initial_tractions, initial_divergence;
+    /// holds; empty without an initial stress.
+    std::vector<Tensor<1, dim>> initial_tractions;
 
     /// sigma nu at all faces: kept, since a new array for each step costs as
     /// much as to fill it.

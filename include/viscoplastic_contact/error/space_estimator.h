@@ -32,8 +32,8 @@ namespace Viscoplastic
    * Makes the estimates that a scene asks for on one mesh: that of the error,
    * also for refinement, and Kelly's for refinement.
    *
-   * The squared error of a cell is the larger of residual_calibration^2 times
-   * the residual estimate, which knows loads and contact, and of the recovery
+   * The squared error of a cell is the larger of the residual estimate, which
+   * knows loads and contact, and of the recovery
    * estimate, which knows what creep has made of earlier errors. That of a
    * residual is one of a single step for given z: in long creep it is a
    * fraction of the error, since displacements grow and residuals do not.
@@ -42,12 +42,6 @@ namespace Viscoplastic
   class SpaceEstimator
   {
   public:
-    /**
-     * From residual estimator to error in the energy norm: one number for all
-     * scenes. How it was found: doc/notes.md.
-     */
-    static constexpr double residual_calibration = 0.3;
-
     explicit SpaceEstimator(const Discretization<dim> &discretization);
 
     /// Whether a scene asks for any estimate.

@@ -185,7 +185,9 @@ namespace Viscoplastic
      * flexibility, its response to forces: by duality, block by block over the
      * points from @p begin to @p end, which may be obstacles. Exact at once for
      * a single point; returns whether the sweeps have ended. They hardly move
-     * where points pull against each other along one direction.
+     * where points pull against each other along one direction: what they leave
+     * then is a start for minimize_at_node(), or for the next sweep over the
+     * face, and counts as an error of its certificate.
      */
     bool
     relax_points(const ContactLayout &face,

@@ -155,6 +155,7 @@ namespace Viscoplastic
           }
         return {};
       }
+    // Bounds that have not settled yet are measured (CoulombBounds::measure()).
     // With the bounds of its pressures, the minimum at the node is what
     // Coulomb's law asks for.
     const Tensor<1, 3> x =

@@ -56,7 +56,7 @@ namespace Viscoplastic
     FaceTruncation last = std::move(truncation);
     truncation          = make_truncation(face, state, inverse_diagonal);
     if (follow)
-      law->tilt(face, state, truncation);
+      law->tilt(face, state, inverse_diagonal, truncation);
     // A face that sticks or slips altogether, and whose slip does not turn,
     // makes a linear problem: unless the first sweep has found otherwise, it
     // takes no more than a plain solve.

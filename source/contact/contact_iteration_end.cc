@@ -56,7 +56,7 @@ namespace Viscoplastic
     FaceTruncation last = std::move(truncation);
     truncation          = make_truncation(face, state, inverse_diagonal);
     if (follow)
-      law->tilt(face, state, truncation);
+      law->tilt(face, state, inverse_diagonal, truncation);
     // A face that sticks or slips altogether, and whose slip does not turn,
     // makes a linear problem: unless the first sweep has found otherwise, it
     // takes no more than a plain solve.
@@ -101,6 +101,9 @@ namespace Viscoplastic
     best_error = std::min(best_error, report.relative_error);
     if (report.iterations == 0 && size > 0.)
       first_ratio = error / (tolerance * size);
+    // Not that of the solution where it comes to rest: in flat cells that would
+    // take the forces of a whole edge for rounding.
+    const double blur = bulk.scale.rounding_error;
     if (error > tolerance * size && !is_rounding(certificate))
       return false;
     report.error = error;
@@ -121,8 +124,7 @@ namespace Viscoplastic
                        point.compliance.slope(state.penetration(p)) /
                          stiffness) :
               1.;
-          if (state.multiplier[p][0] <=
-              share * bulk.scale.rounding_error * std::sqrt(stiffness))
+          if (state.multiplier[p][0] <= share * blur * std::sqrt(stiffness))
             {
               state.multiplier[p][0] = 0.;
               state.sticks[p]        = false;

@@ -185,7 +185,9 @@ namespace Viscoplastic
      * flexibility, its response to forces: by duality, block by block over the
      * points from @p begin to @p end, which may be obstacles. Exact at once for
      * a single point; returns whether the sweeps have ended. They hardly move
-     * where points pull against each other along one direction.
+     * where points pull against each other along one direction: what they leave
+     * then is a start for minimize_at_node(), or for the next sweep over the
+     * face, and counts as an error of its certificate.
      */
     bool
     relax_points(const ContactLayout &face,
@@ -458,6 +460,53 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// A spring along a row that resists as the node itself or more.
+    Tensor<2, 3>
+    spring_along(const Tensor<1, 3>              &row,
+                 const double                     stiffness,
+                 const unsigned int               node,
+                 const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                 const double                     stiffest)
+    {
+      const double limit = inverse_diagonal.empty() ?
+                             std::numeric_limits<double>::max() :
+                             stiffest / (row * (inverse_diagonal[node] * row));
+      return std::min(stiffness, limit) * outer_product(row, row);
+    }
+  } // namespace
+
+
+
+  Tensor<2, 3>
+  turning_spring(const ContactLayout             &face,
+                 const unsigned int               node,
+                 const ContactState              &state,
+                 const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                 const double                     stiffest)
+  {
+    Tensor<2, 3> result;
+    for (unsigned int p = face.first_point[node]; p < face.first_obstacle(node);
+         ++p)
+      if (const ContactLayout::Point &point = face.points[p];
+          !state.sticks[p] && point.n_tangents == 2 && state.bound[p] > 0.)
+        {
+          // kappa P_e with kappa = rho/|s|, which tends to infinity as a
+          // point comes to rest.
+          const double       size = state.slip[p].norm();
+          const Tensor<1, 2> e    = state.slip[p] / size;
+          result += spring_along(-e[1] * point.map[0] + e[0] * point.map[1],
+                                 state.bound[p] / size,
+                                 node,
+                                 inverse_diagonal,
+                                 stiffest);
+        }
+    return result;
+  }
+
+
+
   FaceTruncation
   make_truncation(const ContactLayout             &face,
                   const ContactState              &state,
@@ -472,24 +521,20 @@ namespace Viscoplastic
         Tensor<2, 3> &projector = truncation.projector[node];
         for (unsigned int d = 0; d < 3; ++d)
           projector[d][d] = 1.;
+        truncation.spring[node] =
+          turning_spring(face, node, state, inverse_diagonal, stiffest);
         for (unsigned int p = face.first_point[node];
              p < face.first_point[node + 1];
              ++p)
           {
             const ContactLayout::Point &point = face.points[p];
-            // A spring along a row that resists as the node itself or more.
-            const auto add_spring = [&](const double        stiffness,
-                                        const Tensor<1, 3> &row) {
-              const double limit =
-                inverse_diagonal.empty() ?
-                  std::numeric_limits<double>::max() :
-                  stiffest / (row * (inverse_diagonal[node] * row));
-              truncation.spring[node] +=
-                std::min(stiffness, limit) * outer_product(row, row);
-            };
             if (point.gives_way())
-              add_spring(point.compliance.slope(state.penetration(p)),
-                         point.map[0]);
+              truncation.spring[node] +=
+                spring_along(point.map[0],
+                             point.compliance.slope(state.penetration(p)),
+                             node,
+                             inverse_diagonal,
+                             stiffest);
             else if (state.sticks[p])
               for (unsigned int i = 0; i < point.n_tangents; ++i)
                 {
@@ -501,14 +546,6 @@ namespace Viscoplastic
                       projector -= outer_product(q, q);
                     }
                 }
-            else if (point.n_tangents == 2 && state.bound[p] > 0.)
-              {
-                // kappa P_e with kappa = rho/|s|, which tends to infinity as
-                // a point comes to rest.
-                const Tensor<1, 2> e = state.slip[p] / state.slip[p].norm();
-                add_spring(state.bound[p] / state.slip[p].norm(),
-                           -e[1] * point.map[0] + e[0] * point.map[1]);
-              }
           }
         // Remove rounding, so that equal sets compare equal.
         for (unsigned int i = 0; i < 3; ++i)

@@ -64,14 +64,14 @@ namespace Viscoplastic
     face.add(-1., response, after);
     // Where pieces meet, a slip that turns takes part in what presses the
     // other piece.
-    const FaceTruncation turning =
-      make_truncation(face, state, inverse_diagonal);
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       if (!face.has_plain_friction(node))
-        face.set_node_values(face.node_values(after, node) -
-                               turning.spring[node] * face.node_values(w, node),
-                             node,
-                             after);
+        face.set_node_values(
+          face.node_values(after, node) -
+            turning_spring(face, node, state, inverse_diagonal) *
+              face.node_values(w, node),
+          node,
+          after);
     law.predict_bounds(face, after, state);
 
     double springs = 0.;

@@ -155,6 +155,7 @@ namespace Viscoplastic
           }
         return {};
       }
+    // Bounds that have not settled yet are measured (CoulombBounds::measure()).
     // With the bounds of its pressures, the minimum at the node is what
     // Coulomb's law asks for.
     const Tensor<1, 3> x =
@@ -175,17 +176,16 @@ namespace Viscoplastic
 
 
   void
-  CoulombLaw::tilt(const ContactLayout &face,
-                   const ContactState  &state,
-                   FaceTruncation      &truncation) const
+  CoulombLaw::tilt(const ContactLayout             &face,
+                   const ContactState              &state,
+                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                   FaceTruncation                  &truncation,
+                   const double                     stiffest) const
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
         const unsigned int        obstacle = face.first_obstacle(node);
         std::optional<NodeForces> forces;
-        bool                      any_gives_way = false;
-        for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
-          any_gives_way = any_gives_way || face.points[o].gives_way();
         for (unsigned int p = face.first_point[node]; p < obstacle; ++p)
           for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
             {
@@ -208,14 +208,17 @@ namespace Viscoplastic
                                          state.slip[p] / state.slip[p].norm()),
                               forces->pressure_of_force(o));
             }
-        // Slips that turn press the pieces that they do not move along.
-        if (forces && !face.has_plain_friction(node) && !any_gives_way)
+        // Slips that turn press the pieces that they do not move along; what
+        // these give way by is a pressure already.
+        if (forces && !face.has_plain_friction(node))
           {
+            const Tensor<2, 3> turning =
+              turning_spring(face, node, state, inverse_diagonal, stiffest);
             const Tensor<2, 3> &projector = truncation.projector[node];
-            const Tensor<2, 3>  spring    = projector * truncation.tilt[node] *
-                                        truncation.spring[node] * projector;
+            const Tensor<2, 3>  spring =
+              projector * truncation.tilt[node] * turning * projector;
             if (trace(spring) >= 0.)
-              truncation.spring[node] = 0.5 * (spring + transpose(spring));
+              truncation.spring[node] += spring - turning;
           }
       }
   }

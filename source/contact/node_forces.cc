@@ -13,6 +13,9 @@ namespace Viscoplastic
   {
     /// Directions that are held by less than this part of others are not.
     constexpr double least_hold = 1e-12;
+    /// Springs press by how deep the node is, whatever others hold: of forces
+    /// that leave a choice theirs has next to no weight.
+    constexpr double weight_of_springs = 1e-8;
 
 
 
@@ -78,7 +81,8 @@ namespace Viscoplastic
                                  state.slip[p] / state.slip[p].norm());
         push.push_back(held * unit);
         if (takes_part(o))
-          sum += symmetrize(outer_product(push.back(), push.back()));
+          sum +=
+            symmetrize(outer_product(push.back(), push.back())) / weight_of(o);
       }
     for (unsigned int p = begin; p < obstacle; ++p)
       if (takes_part(p))
@@ -86,6 +90,14 @@ namespace Viscoplastic
           sum += symmetrize(
             outer_product(face.points[p].map[i], face.points[p].map[i]));
     gram = eigenvectors(sum);
+  }
+
+
+
+  double
+  NodeForces::weight_of(const unsigned int o) const
+  {
+    return face.points[o].gives_way() ? weight_of_springs : 1.;
   }
 
 
@@ -277,8 +289,9 @@ namespace Viscoplastic
   Tensor<1, 3>
   NodeForces::pressure_of_force(const unsigned int o) const
   {
-    return takes_part(o) ? held * invert_gram(push[o - obstacle]) :
-                           Tensor<1, 3>();
+    return takes_part(o) ?
+             held * invert_gram(push[o - obstacle]) / weight_of(o) :
+             Tensor<1, 3>();
   }
 
 

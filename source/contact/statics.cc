@@ -308,6 +308,7 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < target.size(); ++i)
             missing[i] -= coefficients[j] * forces[j].value[i];
       }
+    // Without a proof of the contrary: the solve of the step decides then.
     result.is_balanced = !is_proof;
     if (is_proof)
       {

@@ -228,7 +228,10 @@ namespace Viscoplastic
         FaceTruncation truncation =
           make_truncation(face, linear, inverse_diagonal, stiffest_spring);
         if (law != nullptr)
-          law->tilt(face, linear, truncation);
+          law->tilt(
+            face, linear, inverse_diagonal, truncation, stiffest_spring);
+        for (Tensor<2, 3> &spring : truncation.spring)
+          spring = transpose(spring);
         truncation.transposed = true;
         // The tolerance is relative to where it begins, which may have much
         // more energy than w. What a few corrections leave is beyond the digits

@@ -274,8 +274,9 @@ namespace Viscoplastic
         AssertThrow(failure.last_residual < 0.5 * size,
                     ExcMessage(
                       "The conjugate gradient method does not "
-                      "converge; for nearly incompressible bodies use the "
-                      "direct linear solver, on one rank."));
+                      "converge; for nearly incompressible bodies and flat "
+                      "cells use the direct linear solver, on one rank."));
+        // What there is reduces the error: the next correction goes on from it.
       }
     solver.restriction.tilt_motions(truncation, w);
     face_part = solver.restriction.gather(w);

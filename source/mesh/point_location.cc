@@ -164,6 +164,7 @@ namespace Viscoplastic
           if (change < 1e-12)
             break;
         }
+      // Each sweep comes nearer, and callers measure how near.
       return unit;
     }
 

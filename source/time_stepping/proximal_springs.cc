@@ -345,7 +345,12 @@ namespace Viscoplastic
             0.01 * std::max(right.l1_norm(), right_side.l1_norm()) ||
           in_springs <= rounding * norm(whole);
         report.error += in_springs;
-        report.relative_error = size > 0. ? report.error / size : 0.;
+        // A body under no loads that moves without strain has no other size.
+        const double reference =
+          right_side.l1_norm() > 0. ?
+            size :
+            std::max(size, report.rounding_error / tolerance);
+        report.relative_error = reference > 0. ? report.error / reference : 0.;
         report.tolerance      = tolerance;
         // What rounding leaves of a solve may be left in the springs, too.
         if (in_balance && report.error <= std::max(tolerance * size,

@@ -359,6 +359,8 @@ namespace Viscoplastic
     // incompressible a new mesh may bring much more energy than there is.
     // Errors in the energy norm may be so many times larger than in the
     // residual.
+    // What is left all the same is an error of the state that the next step
+    // begins from, and its equilibrium is solved for afresh.
     constexpr double margin    = 10.;
     const double     reduction = std::clamp(100. * tolerance, 1e-10, 1e-4);
     solve_truncated(*bulk_solver->begin(right, u, scale),

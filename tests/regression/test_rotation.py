@@ -132,6 +132,63 @@ class Rotated(TestCase):
         )
         self.compare(straight, turned, matrix)
 
+    def test_coulomb_in_an_edge(self):
+        """Two foundations, of which one gives way, press by what comes out and hold
+        the edge by the friction of both; their faces have hanging nodes. On 2 and 3
+        ranks as on one, in few corrections."""
+        matrix = rotation(65, (2, -1, 1))
+
+        def edge(path, ranks=1, **more):
+            foot = {
+                "Role": "contact",
+                "Friction law": "coulomb",
+                "Friction coefficient": 0.4,
+            }
+            soft = {"Contact law": "normal compliance", "Compliance": 20}
+            sides = {
+                0: {**foot, "Contact law": "unilateral"},
+                1: {"Role": "traction", "Pressure": "0.01*min(t, 1)"},
+                2: {**foot, **soft, "Friction coefficient": 0.7},
+                3: {"Role": "traction", "Pressure": "0.02*min(t, 1)"},
+                4: {"Role": "free"},
+                5: {"Role": "displacement", "Displacement": path},
+            }
+            scene = {
+                "Dimension": 3,
+                "Geometry/Generator": "subdivided_hyper_rectangle",
+                "Geometry/Arguments": "3, 3, 2 : 0, 0, 0 : 1, 1, 1 : true",
+                "Geometry/Boundary refinements": "0: 1",
+                "Time/Phases": "1: 2, 1.5: 4",
+                "Solver/Contact tolerance": 1e-10,
+                "Output/Fields every": 0,
+                **more,
+            }
+            for side, entries in sides.items():
+                for name, value in entries.items():
+                    scene[f"Boundary {side}/{name}"] = value
+            return run("edge", scene, ranks, text="")
+
+        path = "-0.01*min(t, 1)", "-0.015*min(t, 1)", "0.03*max(t - 1, 0)"
+        straight = edge("; ".join(path))
+        self.assertGreater(straight["stick_area"][-1], 0.5)
+        self.assertGreater(straight["slip_area"][-1], 0.5)
+        # 10, 10, 5, 6, 7, 7; with the pressures of springs shared as if they
+        # held the node, 10 to 11 each
+        self.assertLess(straight["contact_iterations"].sum(), 55)
+        for ranks in 2, 3:
+            turned = edge(
+                expressions(matrix, path),
+                ranks,
+                **{
+                    "Geometry/Rotation angle": 65,
+                    "Geometry/Rotation axis": "2, -1, 1",
+                    "Geometry/Translation": "1, 2, 3",
+                },
+            )
+            for result in straight, turned:
+                result.statistics.pop("max_gap", None)  # rounding: all touches
+            self.compare(straight, turned, matrix)
+
 
 def friction_scene(
     dimension, stress=1.0, length=1.0, time=1.0, load=1.0, law="maxwell", ramp="t"

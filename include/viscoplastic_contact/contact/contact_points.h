@@ -111,4 +111,12 @@ namespace Viscoplastic
                   const ContactState              &state,
                   const std::vector<Tensor<2, 3>> &inverse_diagonal,
                   const double                     stiffest = 1e10);
+
+  /// The part of its spring at a node by which slipping points resist turning.
+  Tensor<2, 3>
+  turning_spring(const ContactLayout             &face,
+                 const unsigned int               node,
+                 const ContactState              &state,
+                 const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                 const double                     stiffest = 1e10);
 } // namespace Viscoplastic

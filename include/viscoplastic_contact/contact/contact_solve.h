@@ -159,7 +159,9 @@ namespace Viscoplastic
    * where @p solve is, and finish it. Corrections are solved to the relative
    * accuracy @p reduction, which is one of the start: where that is larger in
    * the energy norm than @p enough solutions, a correction is corrected in its
-   * turn, a few times at most. A truncation that is not to be kept leaves
+   * turn, a few times at most, and nobody has measured what is left then: for
+   * preconditioners, and for what is solved for again or whose residual counts
+   * as an error. A truncation that is not to be kept leaves
    * preconditioners as they are (see ContactSolve::set_truncation()). Returns
    * the linear iterations of the corrections.
    */

@@ -39,12 +39,15 @@ namespace Viscoplastic
      * p = c . r of the same equation: of the residual r of its node, what
      * r - mu (c . r) d leaves is zero in the directions that are free (c is the
      * unit normal; where pieces meet, NodeForces has it). Adds the matrices
-     * I - mu d c^T of such nodes to @p truncation.
+     * I - mu d c^T of such nodes to @p truncation, which make_truncation() has
+     * made of the other arguments.
      */
     void
-    tilt(const ContactLayout &face,
-         const ContactState  &state,
-         FaceTruncation      &truncation) const;
+    tilt(const ContactLayout             &face,
+         const ContactState              &state,
+         const std::vector<Tensor<2, 3>> &inverse_diagonal,
+         FaceTruncation                  &truncation,
+         double                           stiffest = 1e10) const;
 
     /// Let bounds be those of the pressures in the nodes' forces @p residual,
     /// wherever nodes can move.

@@ -65,6 +65,10 @@ namespace Viscoplastic
       return state.sticks[p] && (with_springs || !face.points[p].gives_way());
     }
 
+    /// Of the square of an obstacle's pressure in what is least.
+    double
+    weight_of(unsigned int o) const;
+
     /// What a slipping point has of its bound, and any point of its bound,
     /// whatever the obstacles that take part press.
     double

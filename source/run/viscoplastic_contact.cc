@@ -318,7 +318,11 @@ namespace Viscoplastic
         mesh_controller.accept_step();
         return false;
       }
-    change_mesh();
+    // What the first mesh has made of the initial data would stay.
+    if (accepted.state.n == 0)
+      begin_on_finer_mesh();
+    else
+      change_mesh();
     control.repeat();
     std::ostringstream text;
     text << "  mesh " << std::setprecision(3) << mesh_controller.excess()
@@ -360,6 +364,20 @@ namespace Viscoplastic
     set_up();
     change.carry(*discretization, *time_stepper, accepted);
     recorder.record_mesh_change(change.energies,
+                                energies_on_mesh(*discretization, accepted));
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::begin_on_finer_mesh()
+  {
+    const EnergiesOnMesh energies = energies_on_mesh(*discretization, accepted);
+    triangulation.execute_coarsening_and_refinement();
+    set_up();
+    set_initial_state();
+    recorder.record_mesh_change(energies,
                                 energies_on_mesh(*discretization, accepted));
   }
 

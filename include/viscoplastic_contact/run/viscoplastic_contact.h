@@ -116,6 +116,10 @@ namespace Viscoplastic
     /// Change the mesh as its cells are marked.
     void
     change_mesh();
+    /// The same before the first step: initial data are those of the scene
+    /// again, not what the coarser mesh has made of them.
+    void
+    begin_on_finer_mesh();
     /// Begin the next stage of construction.
     void
     enter_next_stage();

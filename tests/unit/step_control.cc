@@ -72,7 +72,8 @@ namespace
 
   /// A run whose steps may use @p tolerance of a solution of size 2, and whose
   /// contributions to the error are k^2 times @p rate: the largest sum that
-  /// they come to, and the number of steps.
+  /// they come to, and the number of steps. Rates are those at the beginning of
+  /// steps.
   std::pair<double, unsigned int>
   run_to_tolerance(const double                                 tolerance,
                    const std::function<double(const double t)> &rate)
@@ -88,7 +89,7 @@ namespace
     for (unsigned int tries = 0; t < 10. && tries < 100000; ++tries)
       {
         const TimeStep   step = control.propose(n, t, infinity);
-        const double     d    = rate(step.t) * step.k * step.k;
+        const double     d    = rate(step.t_old) * step.k * step.k;
         const StepErrors errors{std::abs(d), 0., 2., std::abs(sum)};
         if (!control.accepts(step, errors, false))
           continue;

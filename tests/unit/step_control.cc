@@ -71,11 +71,12 @@ namespace
 
 
   /// A run whose steps may use @p tolerance of a solution of size 2, and whose
-  /// contributions d = k^2 to the error have the sign of @p sign: the largest
-  /// sum that they come to, and the number of steps.
+  /// contributions to the error are k^2 times @p rate: the largest sum that
+  /// they come to, and the number of steps. Rates are those at the beginning of
+  /// steps.
   std::pair<double, unsigned int>
   run_to_tolerance(const double                                 tolerance,
-                   const std::function<double(const double t)> &sign)
+                   const std::function<double(const double t)> &rate)
   {
     const TimeSchedule          schedule("10: 10");
     const StepControlParameters entries;
@@ -88,11 +89,11 @@ namespace
     for (unsigned int tries = 0; t < 10. && tries < 100000; ++tries)
       {
         const TimeStep   step = control.propose(n, t, infinity);
-        const double     d    = step.k * step.k;
-        const StepErrors errors{d, 0., 2., std::abs(sum)};
+        const double     d    = rate(step.t_old) * step.k * step.k;
+        const StepErrors errors{std::abs(d), 0., 2., std::abs(sum)};
         if (!control.accepts(step, errors, false))
           continue;
-        sum += sign(step.t) * d;
+        sum += d;
         largest = std::max(largest, std::abs(sum));
         t       = step.t;
         ++n;
@@ -120,6 +121,19 @@ namespace
     });
     EXPECT_LT(often.first, 0.2);
     EXPECT_LT(often.second, 0.5 * same.second);
+  }
+
+
+
+  TEST(StepControl, WhatIsFastButSmallHasFewSteps)
+  {
+    // In proportion to what steps cover of the time: 0.1 / 2e-4 = 500 of them
+    // before t = 0.1, whose errors are a hundredth of what is allowed.
+    const auto [sum, n] = run_to_tolerance(0.1, [](const double t) {
+      return t < 0.1 ? 100. : 0.01;
+    });
+    EXPECT_LT(sum, 0.2);
+    EXPECT_LT(n, 150u);
   }
 
 

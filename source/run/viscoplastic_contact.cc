@@ -246,6 +246,7 @@ namespace Viscoplastic
       {
         const Discretization<dim> &d = *discretization;
         accepted.state = make_initial_state(d.stress_space, equilibrate);
+        accepted.rate.reset();
         if (error_estimator)
           {
             const Vector<double> squared_by_cell =

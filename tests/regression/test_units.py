@@ -416,11 +416,15 @@ class Scaled:
         if name == "Phases":
             return re.sub(rf"({NUMBER})( *:)", lambda m: number(m[1]) + m[2], value)
         if name == "Arguments":
-            # Numbers of cells come first.
-            counts, colon, lengths = (
-                value.partition(":") if self.has_counts else ("", "", value)
-            )
-            return counts + colon + re.sub(NUMBER, lambda m: number(m[0]), lengths)
+            # Numbers of cells come first, of each body.
+            bodies = []
+            for body in value.split("|"):
+                counts, colon, lengths = (
+                    body.partition(":") if self.has_counts else ("", "", body)
+                )
+                lengths = re.sub(NUMBER, lambda m: number(m[0]), lengths)
+                bodies.append(counts + colon + lengths)
+            return "|".join(bodies)
         if name in ("Points", "Lines", "Translation", "Landing times", "Voigt matrix"):
             return re.sub(NUMBER, lambda m: number(m[0]), value)
         return "; ".join(self.expression(part, factor) for part in value.split(";"))

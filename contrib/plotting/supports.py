@@ -68,8 +68,10 @@ class Supports:
 
     def role(self, number):
         """That of the scene; loaded pieces are not free, and contact may be
-        unilateral."""
+        unilateral; another body is no support."""
         role = self.parameters.get((f"Boundary {number}", "Role"), "free")
+        if self.parameters.get((f"Boundary {number}", "Against"), "").strip():
+            return "free"
         opens = "unilateral", "normal compliance"
         if role == "contact" and self.entry(number, "Contact law") in opens:
             return "unilateral"

@@ -166,18 +166,17 @@ namespace Viscoplastic
     const unsigned int                    level,
     const std::function<Row(const Node)> &displacement)
   {
-    // Rows of nodes that may belong to other ranks.
-    const auto from_owners = [&](const std::set<Node> &nodes, const auto &row) {
+    const auto is_owned = [this](const Node node) {
+      return node >= hierarchy.begin && node < hierarchy.end;
+    };
+    // Rows of nodes of other ranks.
+    const auto from_owners = [&](const std::set<Node> &foreign,
+                                 const auto           &row) {
+      const std::vector<Node> asked(foreign.begin(), foreign.end());
+      const auto answers = ask_owners(asked, begins, communicator, row);
       std::map<Node, Row> result;
-      std::vector<Node>   foreign;
-      for (const Node node : nodes)
-        if (node >= hierarchy.begin && node < hierarchy.end)
-          result[node] = row(node);
-        else
-          foreign.push_back(node);
-      const auto answers = ask_owners(foreign, begins, communicator, row);
-      for (std::size_t i = 0; i < foreign.size(); ++i)
-        result[foreign[i]] = answers[i];
+      for (std::size_t i = 0; i < asked.size(); ++i)
+        result[asked[i]] = answers[i];
       return result;
     };
     const auto add =
@@ -192,19 +191,28 @@ namespace Viscoplastic
           row.push_back({node, weight});
       return row;
     };
+    static const Row nothing;
+    const auto       row_of = [](const std::map<Node, Row> &rows,
+                           const Node                 node) -> const Row       &{
+      const auto found = rows.find(node);
+      return found == rows.end() ? nothing : found->second;
+    };
 
     // What lies opposite, by nodes of the coarser mesh.
     std::set<Node> others;
     for (const auto &of_node : opposite)
       for (const auto &other : of_node.second)
-        others.insert(other.node);
+        if (!is_owned(other.node))
+          others.insert(other.node);
     const auto          of_others = from_owners(others, displacement);
     std::map<Node, Row> by_coarse_nodes, coarse_opposite;
     for (const auto &[node, row] : opposite)
       {
         std::map<Node, double> sums;
         for (const auto &[other, weight] : row)
-          add(sums, weight, of_others.at(other));
+          add(sums,
+              weight,
+              is_owned(other) ? displacement(other) : of_others.at(other));
         by_coarse_nodes[node] = to_row(sums);
         if (hierarchy.first_level[node - hierarchy.begin] < first_mesh + level)
           coarse_opposite[node] = by_coarse_nodes[node];
@@ -212,32 +220,35 @@ namespace Viscoplastic
 
     // A displacement is that of its parents, and of what lies opposite to them;
     // the unknown at an interface is what it differs by from the other side.
-    std::set<Node> parents;
+    std::set<Node> foreign_parents;
     for (const Node node : levels[level]->nodes)
       for (const auto &parent : displacement(node))
-        parents.insert(parent.node);
-    const auto opposite_of_parents = from_owners(parents, [&](const Node node) {
-      const auto found = coarse_opposite.find(node);
-      return found == coarse_opposite.end() ? Row() : found->second;
-    });
+        if (!is_owned(parent.node))
+          foreign_parents.insert(parent.node);
+    const auto of_foreign_parents =
+      from_owners(foreign_parents, [&](const Node node) {
+        return row_of(coarse_opposite, node);
+      });
     std::map<Node, Row> result;
     for (const Node node : levels[level]->nodes)
       {
         const Row              row     = displacement(node);
-        const auto             here    = by_coarse_nodes.find(node);
-        bool                   is_near = here != by_coarse_nodes.end();
+        const Row             &here    = row_of(by_coarse_nodes, node);
+        bool                   is_near = !here.empty();
         std::map<Node, double> sums;
-        add(sums, 1., row);
         for (const auto &[parent, weight] : row)
           {
-            const Row &across = opposite_of_parents.at(parent);
+            const Row &across =
+              row_of(is_owned(parent) ? coarse_opposite : of_foreign_parents,
+                     parent);
             is_near |= !across.empty();
             add(sums, weight, across);
           }
-        if (here != by_coarse_nodes.end())
-          add(sums, -1., here->second);
-        if (is_near)
-          result[node] = to_row(sums);
+        if (!is_near)
+          continue;
+        add(sums, 1., row);
+        add(sums, -1., here);
+        result[node] = to_row(sums);
       }
     opposite = coarse_opposite;
     return result;

@@ -253,8 +253,7 @@ namespace Viscoplastic
                            (bounds_vary ?
                               condition.bound(face.positions[q], *fields.t) :
                               face.bounds[q]));
-            // Between two bodies, what nodes leave open is not known here.
-            if (opens && !condition.against)
+            if (opens)
               {
                 const double gap =
                   bounds_vary ? condition.gap(face.positions[q], *fields.t) :
@@ -262,7 +261,10 @@ namespace Viscoplastic
                 result[n_face_points + q][1] =
                   off_the_law(face,
                               q,
-                              at_point(fields.u.begin()) * condition.normal -
+                              at_point(condition.against ?
+                                         fields.approach->begin() :
+                                         fields.u.begin()) *
+                                  condition.normal -
                                 gap,
                               std::max(0., density * condition.normal));
               }

@@ -50,8 +50,11 @@ namespace Viscoplastic
     DistributedVector density;
     if (d.face)
       density = d.face->density(state.contact);
+    DistributedVector approach;
+    if (d.face && d.scene().has_contact_pairs())
+      approach = d.face->approach(state.u);
     Vector<double> squared = residual_estimator->estimate(
-      {state.u, state.z, state.t, d.face ? &density : nullptr});
+      {state.u, state.z, state.t, d.face ? &density : nullptr, 0., &approach});
     const Vector<double> recovery = recovery_estimator->estimate(state.u);
     for (unsigned int i = 0; i < squared.size(); ++i)
       squared[i] = std::max(squared[i], recovery[i]);
@@ -77,9 +80,17 @@ namespace Viscoplastic
     DistributedVector       density;
     if (face != nullptr)
       density = face->density(state.contact);
+    DistributedVector approach;
+    if (face != nullptr && discretization.scene().has_contact_pairs())
+      approach = face->approach(state.u);
     const IrreversibleStress none;
     return residual_estimator->multiply(
-      {state.u, state.z, state.t, face != nullptr ? &density : nullptr, memory},
+      {state.u,
+       state.z,
+       state.t,
+       face != nullptr ? &density : nullptr,
+       memory,
+       &approach},
       {dual.cartesian, none, {}, face != nullptr ? &dual.density : nullptr});
   }
 

@@ -75,6 +75,8 @@ namespace Viscoplastic
       /// of the deviatoric means counts of what it varies by within a cell, if
       /// that is less than 1; 0: all of it.
       double memory = 0.;
+      /// ContactFace::approach(); null without contact between bodies.
+      const DistributedVector *approach = nullptr;
     };
 
     /// eta_K^2 for each active cell, zero on cells of other ranks. Collective.

@@ -223,6 +223,7 @@ class Held(TestCase):
         changes = {
             "Every n steps": 1,
             "Smallest share": 0,
+            "Refinement fraction": 0.4,
             "Coarsening fraction": 0.4,
             "Maximal level": 4,
             "Cell budget": 4000,

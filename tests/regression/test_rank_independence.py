@@ -69,6 +69,7 @@ SCENES = {
         "verification/springs_block_2d": Scene(refined(1)),
         # loads that do not cancel
         "verification/springs_strip_2d": Scene({"Boundary 3/Pressure": "t*x"}),
+        "verification/two_blocks_2d": Scene({"Boundary 23/Pressure": "0.01*t*x"}),
     },
     "corners": {
         "verification/corner_coulomb_90_2d": Scene(),
@@ -86,6 +87,7 @@ SCENES = {
         "verification/coulomb_block_3d": Scene(phases("1: 2, 3: 10")),
         "verification/coulomb_pad_3d": Scene(),
         "verification/springs_block_3d": Scene(),
+        "verification/two_blocks_3d": Scene({"Boundary 25/Pressure": "0.01*t*x"}),
     },
     "adaptive": {
         "verification/slab_adaptive": Scene(phases("1: 10, 2: 10")),

@@ -355,6 +355,10 @@ namespace Viscoplastic
             couplings_of_node[relevant.index_within_set(line.index)]
               .emplace_back(coupling->second, weight);
 
+    coupled_nodes.assign(relevant.n_elements() / dim, false);
+    for (const auto &of_node : couplings_of_node)
+      coupled_nodes[of_node.first / dim] = true;
+
     DistributedVector positions = owned_vector(), ghosted = ghosted_vector();
     for (std::size_t n = 0; n < node_position.size(); ++n)
       for (unsigned int d = 0; d < dim; ++d)
@@ -577,15 +581,28 @@ namespace Viscoplastic
           {
             dofs.resize(dof_handler.get_fe().n_dofs_per_cell());
             cell->get_dof_indices(dofs);
-            const std::size_t n = dofs.size();
+            if (!is_coupled(dofs))
+              continue;
             couple(dofs, none);
-            if (dofs.size() > n)
-              hanging_in_frames.add_entries_local_to_global(dofs,
-                                                            pattern,
-                                                            false);
+            hanging_in_frames.add_entries_local_to_global(dofs, pattern, false);
           }
       }
     pattern.compress();
+  }
+
+
+
+  template <int dim>
+  bool
+  AdmissibleSpace<dim>::is_coupled(
+    const std::vector<types::global_dof_index> &dofs) const
+  {
+    if (couplings.empty())
+      return false;
+    for (std::size_t a = 0; a < dofs.size(); a += dim)
+      if (coupled_nodes[relevant.index_within_set(dofs[a]) / dim])
+        return true;
+    return false;
   }
 
 
@@ -597,7 +614,7 @@ namespace Viscoplastic
     FullMatrix<double>                         &cell_matrix,
     DistributedMatrix                          &matrix) const
   {
-    if (couplings.empty())
+    if (!is_coupled(dofs))
       {
         rotate(dofs, cell_matrix);
         hanging_in_frames.distribute_local_to_global(cell_matrix, dofs, matrix);
@@ -640,8 +657,6 @@ namespace Viscoplastic
             entries.push_back(
               {a, other, share * weight * couplings[number].projector});
       }
-    if (entries.empty())
-      return;
     for (const Entry &entry : entries)
       if (column_of.emplace(entry.other, dofs.size()).second)
         for (unsigned int d = 0; d < dim; ++d)

@@ -221,10 +221,11 @@ namespace Viscoplastic
     // A displacement is that of its parents, and of what lies opposite to them;
     // the unknown at an interface is what it differs by from the other side.
     std::set<Node> foreign_parents;
-    for (const Node node : levels[level]->nodes)
-      for (const auto &parent : displacement(node))
-        if (!is_owned(parent.node))
-          foreign_parents.insert(parent.node);
+    if (begins.size() > 2)
+      for (const Node node : levels[level]->nodes)
+        for (const auto &parent : displacement(node))
+          if (!is_owned(parent.node))
+            foreign_parents.insert(parent.node);
     const auto of_foreign_parents =
       from_owners(foreign_parents, [&](const Node node) {
         return row_of(coarse_opposite, node);

@@ -252,6 +252,9 @@ namespace Viscoplastic
     add_opposite(const double             factor,
                  const DistributedVector &ghosted_u,
                  DistributedVector       &v) const;
+    /// Whether a node of a cell has something opposite.
+    bool
+    is_coupled(const std::vector<types::global_dof_index> &dofs) const;
     /// Replace a cell matrix by that of the jumps, in the degrees of freedom of
     /// the cell and opposite.
     void
@@ -302,5 +305,7 @@ namespace Viscoplastic
     /// weights.
     std::map<std::size_t, std::vector<std::pair<std::size_t, double>>>
       couplings_of_node;
+    /// Which nodes these are, by position / dim.
+    std::vector<bool> coupled_nodes;
   };
 } // namespace Viscoplastic

@@ -135,14 +135,18 @@ namespace Viscoplastic
          is_contact_force) &&
         face != nullptr)
       {
-        DistributedVector everywhere = space.owned_vector(),
-                          ghosted    = space.ghosted_vector();
-        for (std::size_t i = quantity.component; i < space.owned.n_elements();
-             i += dim)
-          everywhere.begin()[i] = 1.;
-        ghosted = everywhere;
-        space.to_frames(ghosted, everywhere);
-        Vector<double> on_face = face->restriction().gather(everywhere);
+        // Against another body, of the jump: not what a translation has there.
+        DistributedVector at_boundary = space.owned_vector();
+        for (const auto &node : space.boundary_nodes())
+          {
+            const Tensor<1, dim> in_frame =
+              transpose(space.frame(node.frame).directions) * direction;
+            const std::size_t first =
+              space.owned.index_within_set(node.first_dof);
+            for (unsigned int d = 0; d < dim; ++d)
+              at_boundary.begin()[first + d] = in_frame[d];
+          }
+        Vector<double> on_face = face->restriction().gather(at_boundary);
         // Along obstacles there is no friction, and contact only there.
         const ContactLayout &layout = face->layout();
         for (unsigned int n = 0; n < layout.n_nodes(); ++n)

@@ -53,6 +53,10 @@ namespace Viscoplastic
       warnings.push_back(warning);
     make_materials(material_ids(triangulation));
     find_stages(triangulation);
+    AssertThrow(!has_contact_pairs() || !has_stages(),
+                ExcMessage("Contact between two bodies ('Against') cannot be "
+                           "combined with materials that are added or "
+                           "removed."));
     for (const std::string &warning : check_output_places(*this, triangulation))
       warnings.push_back(warning);
     if (exact_solution)

@@ -307,6 +307,25 @@ class Slip(TestCase):
         # measured: 2.1e-3, 8.8e-4, 3.6e-4
         self.assertLess(changes[2], 0.6 * changes[1])
 
+    def test_estimate_of_the_force_between_the_bodies(self):
+        """It has a dual, whose value is the jump: the error against a finer mesh."""
+        errors, estimates = [], []
+        finest = self.slide(**{"Geometry/Global refinements": 4})["contact_force_y"][-1]
+        for n in 1, 2:
+            result = self.slide(
+                **{
+                    "Geometry/Global refinements": n,
+                    "Error control/Error bar": "true",
+                    "Error control/Quantity": "contact_force_y",
+                }
+            )
+            errors.append(abs(result["contact_force_y"][-1] - finest))
+            estimates.append(result["quantity_total"][-1])
+        # measured: 1.2 and 1.4
+        for error, estimate in zip(errors, estimates):
+            self.assertGreater(estimate, error)
+            self.assertLess(estimate, 2 * error)
+
     def test_hertz(self):
         """Two parabolic bodies that do not match: the width of contact and the
         pressure of two cylinders of radii 2 and 4, by the force."""
@@ -353,6 +372,10 @@ class Refused(TestCase):
                 "another body is there",
             ),
             ({"Boundary 3/Role": "free"}, "are not connected"),
+            (
+                {"Material 1/Removed at": 0.5, "Time/Phases": "0.5: 1, 1: 1"},
+                "cannot be combined with materials",
+            ),
             ({"Boundary 20/Role": "free"}, "of one of the 2 bodies"),
         ):
             with self.subTest(sentence):

@@ -13,12 +13,14 @@
 #include <viscoplastic_contact/results/output.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <regex>
 #include <sstream>
+#include <system_error>
 
 namespace Viscoplastic
 {
@@ -85,6 +87,21 @@ namespace Viscoplastic
     record_name(const std::string &series, const unsigned int n)
     {
       return series + '_' + Utilities::int_to_string(n, 5);
+    }
+
+
+
+    /// A series and its times, for ParaView.
+    std::string
+    pvd_record(const std::string &series, const std::vector<double> &times)
+    {
+      std::vector<std::pair<double, std::string>> records;
+      for (unsigned int i = 0; i < times.size(); ++i)
+        records.emplace_back(times[i], record_name(series, i) + ".pvtu");
+      std::ostringstream text;
+      text << std::setprecision(15);
+      DataOutBase::write_pvd_record(text, records);
+      return text.str();
     }
   } // namespace
 
@@ -198,16 +215,14 @@ namespace Viscoplastic
                             const ContactFace<dim> *face,
                             const Vector<double>   *squared_estimate)
   {
+    finish();
     times.push_back(state.t);
     if (times.size() == 1)
       write_boundary(laws.stress_space.space);
     std::vector<std::string> remarks{write_body(laws, state, squared_estimate)};
-    write_pvd("solution");
     if (scene.has_contact())
-      {
-        remarks.push_back(write_contact(laws.stress_space, state, face));
-        write_pvd("contact");
-      }
+      remarks.push_back(write_contact(laws.stress_space, state, face));
+    write_in_background();
     remarks.erase(std::remove(remarks.begin(), remarks.end(), ""),
                   remarks.end());
     return remarks;
@@ -217,30 +232,72 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  Output<dim>::write_in_background()
+  {
+    const std::function<void()> write_all = [files = std::move(files)]() {
+      for (const auto &write : files)
+        write();
+    };
+    files.clear();
+    if (Utilities::MPI::n_mpi_processes(communicator) == 1)
+      try
+        {
+          writing = std::async(std::launch::async, write_all);
+          return;
+        }
+      catch (const std::system_error &)
+        {
+          // No further thread is allowed here.
+        }
+    fail_together(communicator, write_all);
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::finish()
+  {
+    if (writing.valid())
+      writing.get();
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::report_failure()
+  {
+    if (writing.valid() &&
+        writing.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+      writing.get();
+  }
+
+
+
+  template <int dim>
+  void
   Output<dim>::write_pvd(const std::string &name) const
   {
-    std::vector<std::pair<double, std::string>> records;
-    for (unsigned int i = 0; i < times.size(); ++i)
-      records.emplace_back(times[i], record_name(name, i) + ".pvtu");
-    std::ostringstream text;
-    text << std::setprecision(15);
-    DataOutBase::write_pvd_record(text, records);
     fail_together(communicator, [&]() {
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        replace_file(path + name + ".pvd", text.str());
+        replace_file(path + name + ".pvd", pvd_record(name, times));
     });
   }
 
 
 
   template <int dim>
-  template <typename Data>
+  template <int patch_dim>
   std::string
-  Output<dim>::write_vtu(const std::string              &name,
-                         const Data                     &data,
-                         const std::set<unsigned int>   &cut_off,
-                         const std::vector<std::string> &data_sets)
+  Output<dim>::write_vtu(const std::string          &name,
+                         PatchOutput<patch_dim, dim> data,
+                         const bool                  is_series)
   {
+    const std::set<unsigned int> cut_off =
+      cut_off_infinite(data.patches, data.names.size());
+    const std::vector<std::string> data_sets = data.names;
+
     // What DataOutInterface::write_vtu_with_pvtu_record() writes; its errors
     // would name no file.
     const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator);
@@ -252,16 +309,27 @@ namespace Viscoplastic
         record + '.' +
         Utilities::int_to_string(r, Utilities::needed_digits(n_ranks - 1)) +
         ".vtu");
-    fail_together(communicator, [&]() {
-      std::ostringstream text;
-      data.write_vtu(text);
-      replace_file(path + pieces[rank], text.str());
-      if (rank != 0)
-        return;
-      std::ostringstream list;
-      data.write_pvtu_record(list, pieces);
-      replace_file(path + record + ".pvtu", list.str());
-    });
+    const std::string pvd = is_series ? pvd_record(name, times) : "";
+    data.set_flags(vtk_flags());
+    files.push_back(
+      [data = std::make_shared<PatchOutput<patch_dim, dim>>(std::move(data)),
+       path = path,
+       name,
+       record,
+       pieces,
+       pvd,
+       rank]() {
+        std::ostringstream text;
+        data->write_vtu(text);
+        replace_file(path + pieces[rank], text.str());
+        if (rank != 0)
+          return;
+        std::ostringstream list;
+        data->write_pvtu_record(list, pieces);
+        replace_file(path + record + ".pvtu", list.str());
+        if (!pvd.empty())
+          replace_file(path + name + ".pvd", pvd);
+      });
 
     // Vectors have a data set for each component.
     std::vector<int> is_cut(data_sets.size() + 1, 0);
@@ -291,8 +359,7 @@ namespace Viscoplastic
   void
   Output<dim>::write_boundary(const AdmissibleSpace<dim> &space)
   {
-    FaceOutput<dim> output;
-    output.set_flags(vtk_flags());
+    PatchOutput<dim - 1, dim> output;
     output.names = {"boundary_id"};
     for (const auto &cell : space.cells)
       for (const auto &face : cell->face_iterators())
@@ -309,9 +376,7 @@ namespace Viscoplastic
               }
             output.patches.push_back(patch);
           }
-    const std::set<unsigned int> cut =
-      cut_off_infinite(output.patches, output.names.size());
-    write_vtu("boundary", output, cut, output.names);
+    write_vtu("boundary", std::move(output), /* is_series = */ false);
   }
 
 
@@ -325,7 +390,7 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space = laws.stress_space;
     const DoFHandler<dim>  &dof_handler  = stress_space.space.dof_handler;
     const auto             &tria         = dof_handler.get_triangulation();
-    BodyOutput<dim>         data_out(scene);
+    BodyOutput<dim>         data_out;
     data_out.attach_dof_handler(dof_handler);
     const std::vector<DataComponentInterpretation::DataComponentInterpretation>
       is_vector(dim, DataComponentInterpretation::component_is_part_of_vector);
@@ -377,7 +442,6 @@ namespace Viscoplastic
         data_out.add_data_vector(error, "error_energy");
         data_out.add_data_vector(recovery, "recovery");
       }
-    data_out.set_flags(vtk_flags());
     // Those of the present stage.
     std::vector<typename DoFHandler<dim>::active_cell_iterator> cells;
     const auto is_present = [this](const auto &cell) {
@@ -393,9 +457,7 @@ namespace Viscoplastic
                is_present(cell);
       });
     data_out.build_patches();
-    data_out.sort_by(cells);
-    const std::set<unsigned int> cut = data_out.cut_off();
-    return write_vtu("solution", data_out, cut, data_out.names());
+    return write_vtu("solution", data_out.take_patches(scene, cells));
   }
 
 
@@ -409,9 +471,8 @@ namespace Viscoplastic
     const AdmissibleSpace<dim>   &space  = stress_space.space;
     const std::set<RecordedField> fields = fields_of_contact(scene, face);
     const BoundaryFields<dim>     boundary(stress_space, state, face, fields);
-    FaceOutput<dim>               output;
-    output.set_flags(vtk_flags());
-    const auto add_scalar = [&](const std::string &name) {
+    PatchOutput<dim - 1, dim>     output;
+    const auto                    add_scalar = [&](const std::string &name) {
       output.names.push_back(name + label_of_field(scene, name));
     };
     const auto add_vector = [&](const std::string &field) {
@@ -465,9 +526,7 @@ namespace Viscoplastic
             }
           output.patches.push_back(patch);
         }
-    const std::set<unsigned int> cut =
-      cut_off_infinite(output.patches, output.names.size());
-    return write_vtu("contact", output, cut, output.names);
+    return write_vtu("contact", std::move(output));
   }
 
 

@@ -62,90 +62,21 @@ namespace Viscoplastic
 
 
 
-  /// The body with its fields.
-  template <int dim>
-  class BodyOutput : public DataOut<dim>
+  /**
+   * Patches with nodal data, in the form that DataOutInterface writes. They
+   * refer to nothing else, so that a thread can write them while the run goes
+   * on.
+   */
+  template <int patch_dim, int dim>
+  class PatchOutput : public DataOutInterface<patch_dim, dim>
   {
   public:
-    explicit BodyOutput(const Scene<dim> &scene)
-      : scene(scene)
-    {}
-
-    /// Bring the patches, one for each owned cell in the order of active
-    /// cells, into that of @p cells, which a restart does not change.
-    template <class Cell>
-    void
-    sort_by(const std::vector<Cell> &cells)
-    {
-      std::vector<std::pair<unsigned int, std::size_t>> order;
-      for (const Cell &cell : cells)
-        order.emplace_back(cell->active_cell_index(), order.size());
-      AssertDimension(this->patches.size(), order.size());
-      std::sort(order.begin(), order.end());
-      auto sorted = this->patches;
-      for (std::size_t p = 0; p < order.size(); ++p)
-        {
-          auto &patch       = sorted[order[p].second];
-          patch             = std::move(this->patches[p]);
-          patch.patch_index = order[p].second;
-          // Their numbers are no longer right, and nothing here asks for
-          // them.
-          std::fill(std::begin(patch.neighbors),
-                    std::end(patch.neighbors),
-                    numbers::invalid_unsigned_int);
-        }
-      this->patches = std::move(sorted);
-    }
-
-    std::set<unsigned int>
-    cut_off()
-    {
-      return cut_off_infinite(this->patches, names().size());
-    }
-
-    std::vector<std::string>
-    names() const
-    {
-      return get_dataset_names();
-    }
+    std::vector<DataOutBase::Patch<patch_dim, dim>> patches;
+    std::vector<std::string>                        names;
+    std::vector<VectorRange>                        vectors;
 
   protected:
-    // The names of the files: deal.II allows no units in those of data.
-    std::vector<std::string>
-    get_dataset_names() const override
-    {
-      std::vector<std::string> names = DataOut<dim>::get_dataset_names();
-      for (std::string &name : names)
-        name += label_of_field(scene, name);
-      return names;
-    }
-
-    std::vector<VectorRange>
-    get_nonscalar_data_ranges() const override
-    {
-      auto ranges = DataOut<dim>::get_nonscalar_data_ranges();
-      for (VectorRange &range : ranges)
-        std::get<2>(range) += label_of_field(scene, std::get<2>(range));
-      return ranges;
-    }
-
-  private:
-    const Scene<dim> &scene;
-  };
-
-
-
-  /// Faces of the boundary with nodal data, in the form that DataOut writes.
-  template <int dim>
-  class FaceOutput : public DataOutInterface<dim - 1, dim>
-  {
-  public:
-    std::vector<DataOutBase::Patch<dim - 1, dim>> patches;
-    std::vector<std::string>                      names;
-    std::vector<VectorRange>                      vectors;
-
-  protected:
-    const std::vector<DataOutBase::Patch<dim - 1, dim>> &
+    const std::vector<DataOutBase::Patch<patch_dim, dim>> &
     get_patches() const override
     {
       return patches;
@@ -161,6 +92,51 @@ namespace Viscoplastic
     get_nonscalar_data_ranges() const override
     {
       return vectors;
+    }
+  };
+
+
+
+  /// The body with its fields.
+  template <int dim>
+  class BodyOutput : public DataOut<dim>
+  {
+  public:
+    /// The patches, one for each owned cell in the order of active cells,
+    /// brought into that of @p cells, which a restart does not change; with
+    /// the units of @p scene in the names, where deal.II allows none in those
+    /// of data.
+    template <class Cell>
+    PatchOutput<dim, dim>
+    take_patches(const Scene<dim> &scene, const std::vector<Cell> &cells)
+    {
+      PatchOutput<dim, dim> result;
+      result.names   = this->get_dataset_names();
+      result.vectors = this->get_nonscalar_data_ranges();
+      for (std::string &name : result.names)
+        name += label_of_field(scene, name);
+      for (VectorRange &range : result.vectors)
+        std::get<2>(range) += label_of_field(scene, std::get<2>(range));
+
+      std::vector<std::pair<unsigned int, std::size_t>> order;
+      for (const Cell &cell : cells)
+        order.emplace_back(cell->active_cell_index(), order.size());
+      AssertDimension(this->patches.size(), order.size());
+      std::sort(order.begin(), order.end());
+      result.patches.resize(order.size());
+      for (std::size_t p = 0; p < order.size(); ++p)
+        {
+          auto &patch       = result.patches[order[p].second];
+          patch             = std::move(this->patches[p]);
+          patch.patch_index = order[p].second;
+          // Their numbers are no longer right, and nothing here asks for
+          // them.
+          std::fill(std::begin(patch.neighbors),
+                    std::end(patch.neighbors),
+                    numbers::invalid_unsigned_int);
+        }
+      this->patches.clear();
+      return result;
     }
   };
 

@@ -452,7 +452,8 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::write_checkpoint()
   {
     TimerOutput::Scope phase(timer, "checkpoint");
-    const PackedRun    packed = pack_run(run_state,
+    output->finish(); // it names the outputs
+    const PackedRun packed = pack_run(run_state,
                                       triangulation,
                                       *discretization,
                                       *time_stepper,
@@ -539,6 +540,8 @@ namespace Viscoplastic
              discretization->face.get(),
              squared_indicators.size() > 0 ? &squared_indicators : nullptr))
         console.remark(remark);
+    else
+      output->report_failure();
     lines.write(accepted.state, fields_are_due);
   }
 
@@ -548,6 +551,10 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::close(const RunSummary<dim> *coarser)
   {
+    {
+      TimerOutput::Scope phase(timer, "output");
+      output->finish();
+    }
     recorder.check_sizes(/* at_end = */ true);
     std::vector<std::string> remarks = console.remarks();
     for (const std::string &remark : recorder.remarks(accepted.state))

@@ -6,6 +6,8 @@
 #include <viscoplastic_contact/discretization/state.h>
 #include <viscoplastic_contact/results/run_record.h>
 
+#include <functional>
+#include <future>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +16,9 @@
 
 namespace Viscoplastic
 {
+  template <int patch_dim, int dim>
+  class PatchOutput;
+
   /**
    * Results in one directory: fields of the body (solution.pvd) and of Gamma_3
    * (contact.pvd) as VTU series, and what is needed to reproduce the run
@@ -62,13 +67,25 @@ namespace Viscoplastic
      * Write the fields of a state, those of `Output/Additional fields' among
      * them. @p face is null without contact points,
      * @p squared_estimate without an estimator. Returns sentences about fields
-     * that are beyond the range of the files for the first time. Collective.
+     * that are beyond the range of the files for the first time. On one rank
+     * files are written by a thread of its own while the run goes on, one
+     * output at a time. Collective.
      */
     std::vector<std::string>
     write_fields(const FlowLaws<dim>    &laws,
                  const State<dim>       &state,
                  const ContactFace<dim> *face,
                  const Vector<double>   *squared_estimate);
+
+    /// Wait for the files of the last output. Throws ExcMessage if they could
+    /// not be written. On all ranks.
+    void
+    finish();
+
+    /// Throw ExcMessage if it is known by now that the files of the last output
+    /// cannot be written.
+    void
+    report_failure();
 
   private:
     /// Write the faces of the boundary with their ids, once, as they are at
@@ -84,14 +101,17 @@ namespace Viscoplastic
     write_contact(const StressSpace<dim> &stress_space,
                   const State<dim>       &state,
                   const ContactFace<dim> *face);
-    /// Write the last output of a series: the piece of each rank and the record
-    /// of them all. @p cut_off is of this rank.
-    template <typename Data>
+    /// Have the piece of this rank and, on rank 0, the record of all of them
+    /// and that of the series written by the next write_in_background().
+    template <int patch_dim>
     std::string
-    write_vtu(const std::string              &name,
-              const Data                     &data,
-              const std::set<unsigned int>   &cut_off,
-              const std::vector<std::string> &data_sets);
+    write_vtu(const std::string          &name,
+              PatchOutput<patch_dim, dim> data,
+              const bool                  is_series = true);
+    /// Begin to write what is in `files`; with several ranks, which leave no
+    /// processor idle, write it.
+    void
+    write_in_background();
     void
     write_pvd(const std::string &name) const;
     /// Remove pieces of outputs that do not count, on rank 0.
@@ -102,6 +122,10 @@ namespace Viscoplastic
     const MPI_Comm      communicator;
     std::string         path; // ends with a slash
     std::vector<double> times;
+    /// What writes the files of the output at the last of these times.
+    std::vector<std::function<void()>> files;
+    /// Done when they are written; its destructor waits for that.
+    std::future<void> writing;
     /// Fields that the user has been told of.
     std::set<std::string> cut_fields;
   };

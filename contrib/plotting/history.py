@@ -128,7 +128,7 @@ NAMES = {
     "error_energy": "true error",
     "estimate_space": "mesh",
     "estimate_time": "time steps",
-    "estimate_friction": "slip that turns",
+    "estimate_friction": "slip that turns or rests",
     "estimate_transfer": "new meshes",
     "estimate_initial": "initial data",
     "estimate_total": "all",

@@ -165,7 +165,7 @@ def draw_force_curve(axes, statistics, body):
             )
         )
         other.set_ylim(0.0, 1.05)
-        show(other.yaxis, "slipping share\nof the face", Unit(0.01, "%"))
+        show(other.yaxis, "slipping share of\nwhat touches", Unit(0.01, "%"))
         axes.set_zorder(other.get_zorder() + 1)
         axes.patch.set_visible(False)
     axes.legend(

@@ -212,12 +212,13 @@ class Supports:
 class Piece:
     """A part of one boundary in two dimensions, a polyline on the deformed body.
 
-    places, normals   of points along it
-    undeformed        where they come from
+    corners, outwards          its places, and the normals between them
+    before, outwards_before    where they come from: of the mesh, which loads go by
     """
 
-    def __init__(self, corners, undeformed, normals):
-        self.corners, self.before, self.outwards = corners, undeformed, normals
+    def __init__(self, corners, before, outwards, outwards_before):
+        self.corners, self.before = corners, before
+        self.outwards, self.outwards_before = outwards, outwards_before
         steps = np.linalg.norm(np.diff(corners, axis=0), axis=1)
         self.s = np.append(0.0, np.cumsum(steps))
 
@@ -230,15 +231,23 @@ class Piece:
         """Values of its corners at the points of sample()."""
         return np.interp(self.places(spacing), self.s, values)
 
+    def segments(self, spacing):
+        """Between which corners the points of sample() are."""
+        at = self.places(spacing)
+        return np.clip(np.searchsorted(self.s, at) - 1, 0, len(self.outwards) - 1)
+
+    def normals_before(self, spacing):
+        """The normals of the mesh at the points of sample()."""
+        return self.outwards_before[self.segments(spacing)]
+
     def sample(self, spacing):
         """Points along it about so far apart, their normals, whence they come."""
         at = self.places(spacing)
-        segment = np.clip(np.searchsorted(self.s, at) - 1, 0, len(self.outwards) - 1)
         place, before = (
             np.column_stack([np.interp(at, self.s, values) for values in points.T])
             for points in (self.corners, self.before)
         )
-        return place, self.outwards[segment], before
+        return place, self.outwards[self.segments(spacing)], before
 
 
 def pieces(body, ids, number):
@@ -253,13 +262,19 @@ def pieces(body, ids, number):
     inside = dict(zip(map(frozenset, body.vertex[faces]), centers))
     for chain in chains(body.vertex[faces]):
         corners = place[chain]
-        along = np.diff(corners, axis=0)
-        normals = np.column_stack([along[:, 1], -along[:, 0]])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+        normals, normals_before = right_of(corners), right_of(before[chain])
         for i, edge in enumerate(zip(chain, chain[1:])):
             if (corners[i] - inside[frozenset(edge)]) @ normals[i] < 0.0:
                 normals[i] *= -1.0
-        yield Piece(corners, before[chain], normals)
+                normals_before[i] *= -1.0
+        yield Piece(corners, before[chain], normals, normals_before)
+
+
+def right_of(corners):
+    """The unit normals to the right of a polyline."""
+    along = np.diff(corners, axis=0)
+    normals = np.column_stack([along[:, 1], -along[:, 0]])
+    return normals / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
 
 
 def reach(supports, scale):
@@ -393,8 +408,10 @@ def foundation(piece, supports, number, body):
 
 def load(piece, supports, number, size, time):
     """Places of arrows, their normals and their loads."""
-    place, normals, before = piece.sample(4 * SPACING * size)
-    return place, normals, supports.traction(number, before, normals, time)
+    spacing = 4 * SPACING * size
+    place, normals, before = piece.sample(spacing)
+    given = supports.traction(number, before, piece.normals_before(spacing), time)
+    return place, normals, given
 
 
 def draw_loads(axes, loads, scale):

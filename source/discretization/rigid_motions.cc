@@ -372,12 +372,18 @@ namespace Viscoplastic
                -(coupling.projector * direction));
       to.add(row);
     };
-    const auto sees_contact = [](const NodalFrame<dim> &frame,
-                                 const unsigned int     d) {
+    const auto sees_contact = [this](const NodalFrame<dim> &frame,
+                                     const unsigned int     d) {
       bool seen = false;
       for (const FrictionPlane<dim> &plane : frame.planes)
         for (const auto &row : plane.map)
-          seen |= row[d] != 0.;
+          seen |=
+            row[d] != 0. &&
+            std::any_of(plane.boundary_ids.begin(),
+                        plane.boundary_ids.end(),
+                        [this](const auto id) {
+                          return !scene.boundary.at(id).friction_vanishes();
+                        });
       for (const Obstacle<dim> &obstacle : frame.obstacles)
         seen |= obstacle.map[d] != 0.;
       return seen;
@@ -467,10 +473,12 @@ namespace Viscoplastic
                       what.str() + ": " + motions +
                       ". Prescribe displacements that prevent it "
                       "(clamped, displacement, symmetry, bilateral or "
-                      "glued contact; friction does not count" +
+                      "glued contact; " +
                       (may_be_held_by_contact ?
-                         ", nor does unilateral contact along its face)." :
-                         ").")));
+                         "unilateral contact holds a body along its "
+                         "normal, and along its face by friction that is "
+                         "not zero)." :
+                         "friction does not count).")));
       }
   }
 

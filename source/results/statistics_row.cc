@@ -10,6 +10,12 @@ namespace Viscoplastic
 {
   namespace
   {
+    /// Of so many points of `Output/Points' the closing words tell where they
+    /// have gone.
+    constexpr std::size_t most_printed = 4;
+
+
+
     void
     add_errors(const SolutionErrors &errors, StatisticsRow &row)
     {
@@ -40,8 +46,7 @@ namespace Viscoplastic
       if (scene.has_viscosity() &&
           (scene.is_adaptive() || !scene.keeps_history_at_points()))
         row.add("estimate_history", estimate.history, Quantity::energy_norm);
-      if (scene.has_friction() &&
-          (dim == 3 || scene.has_bounds_of_step_before()))
+      if (scene.has_friction())
         row.add("estimate_friction", estimate.friction, Quantity::energy_norm);
       if (scene.is_adaptive() && scene.has_irreversible_stress())
         row.add("estimate_transfer", estimate.transfer, Quantity::energy_norm);
@@ -238,7 +243,9 @@ namespace Viscoplastic
   Recorder<dim>::add_asked_for(const StepQuantities<dim> &quantities,
                                StatisticsRow             &row) const
   {
+    using AtEnd         = StatisticsRow::AtEnd;
     const double *value = quantities.point_fields.data();
+    const bool are_few  = quantities.point_displacements.size() <= most_printed;
     for (unsigned int i = 0; i < quantities.point_displacements.size(); ++i)
       {
         const std::string point = "point" + std::to_string(i);
@@ -246,7 +253,7 @@ namespace Viscoplastic
                        quantities.point_displacements[i],
                        dim,
                        Quantity::length,
-                       StatisticsRow::AtEnd::compared);
+                       are_few ? AtEnd::printed : AtEnd::compared);
         if (!point_fields)
           continue;
         const std::vector<std::string> &names = point_fields->names();

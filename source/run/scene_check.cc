@@ -33,12 +33,12 @@ namespace Viscoplastic
       Announcer<dim>                                  *announcer)
     {
       control.land_on(scene.stage_ends, {});
-      if (!control.is_on || !scene.parameters.step_control.land_on_kinks)
+      if (control.is_on && !scene.parameters.step_control.land_on_kinks)
         return;
       const KinksOfScene found = find_kinks(scene, triangulation);
       if (found.kinks.empty())
         return;
-      if (announcer != nullptr)
+      if (announcer != nullptr && control.is_on)
         announcer->announce(found);
       std::vector<double> kinks, jumps;
       for (const Kink &kink : found.kinks)

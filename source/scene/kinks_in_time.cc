@@ -46,6 +46,7 @@ namespace Viscoplastic
              const TimeSchedule            &schedule)
         : datum(datum)
         , places(places)
+        , schedule(schedule)
         , end_time(schedule.end_time())
       {
         std::vector<double> times{0.};
@@ -197,10 +198,14 @@ namespace Viscoplastic
           kinks.push_back({without_rounding(t), is_jump});
       }
 
-      /// Users write short numbers.
+      /// Kinks are where phases end, and at short numbers.
       double
       without_rounding(const double t) const
       {
+        const TimeSchedule::Phase &phase = schedule.phase_at(t);
+        for (const double end : {phase.start, phase.end})
+          if (std::fabs(end - t) < 2. * accuracy * end_time)
+            return end;
         for (double scale = 1.; scale * accuracy * end_time < 0.01;
              scale *= 10.)
           {
@@ -213,6 +218,7 @@ namespace Viscoplastic
 
       const Expression<dim>         &datum;
       const std::vector<Point<dim>> &places;
+      const TimeSchedule            &schedule;
       const double                   end_time;
       /// The sum of all changes, by place, and where it is not zero.
       std::vector<double> paths;

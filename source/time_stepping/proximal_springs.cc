@@ -404,16 +404,29 @@ namespace Viscoplastic
       }
     std::ostringstream message;
     message << "The body that only contact holds has not come to rest in "
-            << max_proximal_steps << " solves of a step, ";
+            << max_proximal_steps << " solves of a step";
     if (left_by_rounding > 0.)
-      message << "in which rounding leaves the error " << left_by_rounding
+      message << ", in which rounding leaves the error " << left_by_rounding
               << ": cells that are less flat, stiffness that differs less, "
                  "Poisson's ratio farther from 1/2 or prescribed displacements "
                  "mend that.";
     else
-      message << "although contact could balance its loads if it were closed "
-                 "everywhere, or nearly so. Prescribe displacements that hold "
-                 "it.";
+      {
+        // The last motion by which the body has gone on; each basis vector sees
+        // those before it only.
+        std::vector<double> way(motions.size());
+        for (std::size_t i = motions.size(); i-- > 0;)
+          {
+            way[i] = change * orthonormal_motions[i] /
+                     (motions[i] * orthonormal_motions[i]);
+            change.add(-way[i], motions[i]);
+          }
+        message << ": it goes on by a "
+                << discretization.space.name_of_motion(way)
+                << ". Even closed everywhere, contact and friction can hardly "
+                   "balance the loads against that. Prescribe displacements "
+                   "that hold the body, or end the run before.";
+      }
     AssertThrow(false, ExcMessage(message.str()));
     return report;
   }

@@ -200,12 +200,12 @@ namespace Viscoplastic
 
 
   bool
-  StepControl::has_kink_at(const double t) const
+  StepControl::has_kink_within(const double from, const double to) const
   {
     const double near = 1e-9 * schedule.end_time();
     const auto   later =
-      std::lower_bound(data_kinks.begin(), data_kinks.end(), t - near);
-    return later != data_kinks.end() && *later <= t + near;
+      std::upper_bound(data_kinks.begin(), data_kinks.end(), from + near);
+    return later != data_kinks.end() && *later <= to + near;
   }
 
 
@@ -259,7 +259,9 @@ namespace Viscoplastic
   bool
   StepControl::is_kink(const double t) const
   {
-    return t == 0. || schedule.phase_ending_at(t) > 0 || has_kink_at(t) ||
+    const double near = 1e-9 * schedule.end_time();
+    return t == 0. || schedule.phase_ending_at(t) > 0 ||
+           has_kink_within(t - 2. * near, t) ||
            std::binary_search(landing_times.begin(), landing_times.end(), t);
   }
 

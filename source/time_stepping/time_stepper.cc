@@ -352,9 +352,11 @@ namespace Viscoplastic
     // What slip turns by on a new mesh, it does in any step, and what it has
     // been in the first one says nothing of the second.
     end.has_slip_rate = accepted.is_solution || accepted.state.k == 0.;
+    const bool is_after_kink =
+      control.has_kink_within(step.time_step.t_old - accepted.state.k,
+                              step.time_step.t_old);
     if (discretization.slipping_face() != nullptr && accepted.state.k > 0. &&
-        accepted.is_solution && accepted.has_slip_rate &&
-        !control.has_kink_at(step.time_step.t_old))
+        accepted.is_solution && accepted.has_slip_rate && !is_after_kink)
       {
         DistributedVector change = end.forces.u;
         change -= accepted.forces.u;
@@ -374,7 +376,7 @@ namespace Viscoplastic
                             slip_defects ? slip_defects->work : 0.,
                             missed_work,
                             swing,
-                            control.has_kink_at(step.time_step.t_old),
+                            is_after_kink,
                             accepted,
                             old_rate,
                             end);

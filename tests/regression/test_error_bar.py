@@ -11,7 +11,7 @@ from runs import EVERY_STEP, Job, entries, manufactured, without_wall_times
 from shear_layer import MU, THETA, tau
 
 # of a plane scene on one mesh, with cell means
-PARTS = ("space", "history", "time", "algebraic", "initial")
+PARTS = ("space", "history", "time", "friction", "algebraic", "initial")
 ESTIMATE = {
     "energy_norm",
     "estimate_total",
@@ -418,8 +418,14 @@ class FrictionPart(TestCase):
             0.5 * to_tolerance["energy_norm"].max(),
         )
 
-    def test_plane_bodies_have_none(self):
-        self.assertNotIn("estimate_friction", run("slab", SLAB).statistics)
+    def test_rest_within_a_step_of_a_plane_body(self):
+        """It counts where a smooth load turns within a step, and not where one has a
+        kink between two, across which no rate goes on."""
+        for load, is_there in ("t*(1.68 - t)", True), ("min(t, 0.9 + 0.1*t)", False):
+            data = {"Material/Law": "elastic", "Boundary 0/Traction": f"0.3*{load}; 0"}
+            result = run("slab", {**SLAB, **data})
+            self.assertGreater(result["slip_area"][:9].max(), 0.5)
+            self.assertEqual(result["estimate_friction"].max() > 0.0, is_there, load)
 
 
 class SpacePart(TestCase):

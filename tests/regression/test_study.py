@@ -675,7 +675,8 @@ class Price(TestCase):
             Material__Stress_history="quadrature points",
             Time__Phases="1: 4, 2: 4",
             Error_control__Tolerance=0.05,
-            Error_control__Quantity="friction_force_x",
+            Output__Points="near = 0, 0; held = 2, 1",
+            Error_control__Quantity="displacement_x of near",
         ) as folder:
             process = folder.run("price", "0.01")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -683,11 +684,15 @@ class Price(TestCase):
             table = read_statistics(folder.results / "statistics.csv")
             self.assertLess(
                 table["quantity_total"].max(),
-                0.01 * np.abs(table["friction_force_x"]).max(),
+                0.01 * np.abs(table["point0_x"]).max(),
             )
             self.assertGreater(
                 table["estimate_total"].max(), 0.05 * table["energy_norm"].max()
             )
+            folder.set(Error_control__Quantity="displacement_x of held")
+            process = folder.run("price", "0.01")
+            self.assertEqual(process.returncode, 1)
+            self.assertIn("of held is zero in the pilot run", process.stderr)
 
     def test_beyond_the_budget(self):
         with Folder(

@@ -9,6 +9,7 @@ import unittest
 from dataclasses import replace
 from math import hypot, nan, sqrt
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from viscoplastic_contact.study.effects import (
     NEVER_ACTED,
     ONLY_WATCHES,
     EffectResult,
+    EffectsStudy,
     judge,
 )
 from viscoplastic_contact.study.fit import (
@@ -708,6 +710,23 @@ class Effects(TestCase):
         ):
             judged = self.judged(("force", change, error), kind=kind)
             self.assertEqual(judged.verdict, verdict, (change, error))
+
+    def test_two_tolerances_with_one_mesh_have_no_difference_of_errors(self):
+        table = self.table(t=[0, 1], friction_force_x=[0, 3], friction_force_y=[0, 4])
+        finer = self.table(t=[0, 1], friction_force_x=[0, 3.3], friction_force_y=[0, 4.4])
+
+        def of(cells, table):
+            number = {"cells": cells, "estimate_total": 0.2}.get
+            return SimpleNamespace(record=SimpleNamespace(number=number), table=table)
+
+        for coarser_cells, expected in (100, 0.1), (144, 0.2):
+            study = SimpleNamespace(
+                of_scene={0: of(coarser_cells, table), 1: of(144, finer)},
+                with_longer_steps={},
+            )
+            changes = [QuantityChange("friction_force", 0.01)]
+            EffectsStudy.add_errors(study, changes, 1)
+            self.assertAlmostEqual(changes[0].error, expected)
 
     def table(self, **columns):
         return {name: np.array(values, dtype=float) for name, values in columns.items()}

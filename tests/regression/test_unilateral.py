@@ -543,6 +543,10 @@ class Held(TestCase):
                 {"Boundary 2/Friction law": "none"},
                 "leave a rigid motion free: translation along x",
             ),
+            (
+                {"Boundary 2/Friction coefficient": 0},
+                "leave a rigid motion free: translation along x",
+            ),
         ):
             with self.subTest(message=message):
                 stderr = self.run_block(changes, check=False).stderr

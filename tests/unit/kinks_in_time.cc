@@ -69,6 +69,10 @@ namespace
     // Times that a user writes are these times.
     EXPECT_EQ(kinks_of("abs(t - 0.375)").at(0).t, 0.375);
     EXPECT_EQ(kinks_of("abs(t - 1.1)").at(0).t, 1.1);
+    // So are ends of phases, which need not be short numbers.
+    EXPECT_EQ(
+      kinks_of("min(t*6, 1)", "0.16666666666666666: 3, 1000: 40").at(0).t,
+      1. / 6.);
   }
 
 

@@ -445,7 +445,7 @@ namespace
     ASSERT_EQ(around.size(), 1u);
     EXPECT_NEAR(around[0].k, 1e-6, 1e-12);
     // Where fields are written there a step ends in between, too.
-    EXPECT_TRUE(control.has_kink_at(0.4));
+    EXPECT_TRUE(control.has_kink_within(0.39, 0.4));
     EXPECT_TRUE(control.is_kink(0.4));
     const auto has = [&](const double t) {
       return std::any_of(done.begin(), done.end(), [&](const TimeStep &step) {
@@ -459,6 +459,9 @@ namespace
     StepControl fixed({}, StiffnessPolicy::refuse, schedule, 1, 0.);
     fixed.land_on({0.777}, {0.4});
     EXPECT_EQ(steps(fixed, 2., no_error).size(), 20u);
+    EXPECT_TRUE(fixed.has_kink_within(0.7, 0.8));
+    EXPECT_TRUE(fixed.has_kink_within(0.7, 0.777));
+    EXPECT_FALSE(fixed.has_kink_within(0.777, 0.8));
   }
 
 

@@ -134,6 +134,15 @@ namespace Viscoplastic
              friction_law == FrictionLaw::coulomb;
     }
 
+    /// Whether the friction bound is zero by its formula, everywhere and
+    /// always.
+    bool
+    friction_vanishes() const
+    {
+      return (friction_bound && friction_bound->is_zero()) ||
+             (friction_coefficient && friction_coefficient->is_zero());
+    }
+
     /// Whether all of u is prescribed here: glued_displacement().
     bool
     is_glued() const

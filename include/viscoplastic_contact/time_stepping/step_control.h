@@ -181,10 +181,11 @@ namespace Viscoplastic
     bool
     is_kink(const double t) const;
 
-    /// Whether data have a kink or jump at a time that land_on() has been told:
-    /// differences of what steps before and after it have seen say nothing.
+    /// Whether data have a kink or jump in (from, to], up to rounding, of which
+    /// land_on() has been told: differences of what steps before and after it
+    /// have seen say nothing.
     bool
-    has_kink_at(const double t) const;
+    has_kink_within(const double from, const double to) const;
 
     const StepCounts &
     counts() const

@@ -4,7 +4,11 @@
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
+
+# So long without a line in what is no terminal may look like an end.
+LONGEST_SILENCE = 15.0
 
 
 class Console:
@@ -18,6 +22,7 @@ class Console:
             self.log.write_text("", encoding="utf-8")
         self.has_status = not quiet and sys.stdout.isatty()
         self.shown = ""
+        self.last = time.monotonic()
         self.said = []
 
     def say(self, text, end="\n"):
@@ -25,6 +30,7 @@ class Console:
         self.said.append(text + end)
         if not self.quiet:
             print(text, end=end, flush=True)
+            self.last = time.monotonic()
         if self.log:
             with open(self.log, "a", encoding="utf-8") as file:
                 file.write(text + end)
@@ -35,6 +41,9 @@ class Console:
         if self.has_status:
             self.shown = text
             print(text, end="\r", flush=True)
+        elif not self.quiet and time.monotonic() > self.last + LONGEST_SILENCE:
+            print(text, flush=True)
+            self.last = time.monotonic()
 
     def clear(self):
         if self.shown:

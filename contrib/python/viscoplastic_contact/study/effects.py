@@ -43,6 +43,8 @@ CANNOT_BE_LEFT_OUT = "cannot be left out"
 CLEAR = 2.0
 # Runs shorter than this are timed twice.
 SHORT_RUN = 1.0
+# A run on more than this part of the cells is no coarser one.
+LARGEST_COARSER = 0.75
 
 
 @dataclass
@@ -305,9 +307,12 @@ class EffectsStudy:
         """Put the errors of the quantities of the scene on a level beside changes of
         the same quantities: what halving the mesh and halving the steps have changed,
         at times of both runs (in a single difference they may cancel); or the error
-        bar in energy."""
+        bar in energy, also where two tolerances had the same mesh."""
         here = self.of_scene[level]
         coarser, longer = self.of_scene.get(level - 1), self.with_longer_steps.get(level)
+        cells = here.record.number("cells")
+        if coarser and coarser.record.number("cells") > LARGEST_COARSER * cells:
+            coarser = None
         errors = []
         if coarser and longer:
             of_mesh = changes_between(coarser.table, longer)

@@ -255,6 +255,12 @@ def price_to_tolerance(runs, eps, console):
             ):
                 break
         pilots.append(pilot_run(runs, key, console))
+        quantity = scene["Error control/Quantity"]
+        if quantity and not isfinite(pilots[-1].number("estimate_quantity")):
+            raise UserError(
+                f"'Error control/Quantity' = {quantity} is zero in the pilot run "
+                f"{pilots[-1].name}: it has no relative error to go by."
+            )
         level += 1
     console.say(
         f"Pilot runs to larger tolerances:\n{runs_in_words(pilots, measure)}"

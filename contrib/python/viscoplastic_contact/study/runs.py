@@ -307,7 +307,8 @@ class StudyRuns:
         """The numbers of a run in a directory of results; None if what it has cost is
         not there."""
         scene = self.scene
-        costs = json.loads((place / "run.json").read_text(encoding="utf-8")).get("costs")
+        about = json.loads((place / "run.json").read_text(encoding="utf-8"))
+        costs = about.get("costs")
         if costs is None:
             return None
         record = make_record(
@@ -315,7 +316,8 @@ class StudyRuns:
             read_table(place / "statistics.csv"),
             costs,
             self.is_compared(key),
-            scene["Error control/Quantity"],
+            # its column, whatever names of places the scene has
+            about.get("estimated_error_of_quantity", {}).get("quantity", ""),
         )
         numbers, strategy = record.numbers, key.variant.strategy
         numbers["h"] = scene.mesh_width(numbers["cells"])

@@ -261,6 +261,38 @@ class Contact(TestCase):
         )
         self.assertLess(ball["force_balance_defect"].max(), 1e-9)
 
+    def test_ball_in_space(self):
+        """A ball that creeps, on a plane with Coulomb friction, is that in 3D up to
+        the error of its coarse mesh."""
+        creep = {
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 1,
+            "Boundary 4/Friction law": "coulomb",
+            "Boundary 4/Friction coefficient": 0.1,
+            "Time/Phases": "1: 4",
+            "Solver/Contact tolerance": 1e-8,
+            "Output/Fields every": 0,
+        }
+        ball = run(
+            "hertz_disc_2d",
+            {
+                "Geometry/Plane model": "axisymmetric",
+                "Geometry/Global refinements": 4,
+                "Boundary 1/Displacement": "free; 0.03*t",
+                **creep,
+            },
+        )
+        quarter = run("hertz_ball_3d", {"Geometry/Global refinements": 2, **creep})
+        for column, other, error in (
+            ("contact_force_y", "contact_force_z", 0.01),
+            ("stored_energy", "stored_energy", 0.015),
+            ("viscous_dissipation", "viscous_dissipation", 0.03),
+            ("friction_dissipation", "friction_dissipation", 0.15),
+        ):
+            self.assertClose(
+                4 * quarter[other][-1], ball[column][-1], relative=error, what=column
+            )
+
     def test_ring_that_slips(self):
         """A flat ring between plates, of which one has friction, is driven outwards:
         the mean of u_r over its thickness solves an ordinary equation,

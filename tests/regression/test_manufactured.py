@@ -156,7 +156,9 @@ class Meshes(Ladders):
     both stress histories."""
 
     def check(self, name, scene, overrides, expected=BOTH):
-        runs = [errors(scene, "perzyna", g, 14 * 2**g, overrides) for g in LEVELS]
+        runs = [
+            errors(scene, "perzyna", g, 14 * 2**g, overrides) for g in LEVELS
+        ]
         self.ladder(f"{scene} {name}", runs, expected)
 
     def test_distorted(self):
@@ -294,9 +296,7 @@ class Refused(TestCase):
             "tangential stress",
         )
         self.refused("tresca_2d", {"Boundary 2/Friction bound": "0.2"}, "oppose")
-        self.refused(
-            "tresca_2d", {"Boundary 0/Role": "clamped"}, "'Boundary 0'", "clamped"
-        )
+        self.refused("tresca_2d", {"Boundary 0/Role": "clamped"}, "'Boundary 0'", "clamped")
         self.refused("tresca_2d", {"Boundary 0/Role": "symmetry"}, "'Boundary 0'")
         self.refused("tresca_2d", {"Boundary 2/Friction law": "none"}, "no friction")
 

@@ -322,7 +322,10 @@ namespace Viscoplastic
         fe_values[displacement].get_function_gradients(state.u, gradients);
         const double dilatation = stress_space.mean_dilatation ?
                                     mean_dilatation(cell, state.u) :
-                                    trace(gradients[0]);
+                                    trace(strain(values[0],
+                                                 gradients[0],
+                                                 fe_values.quadrature_point(0),
+                                                 space.scene.plane_model()));
         for (const unsigned int q : fe_values.quadrature_point_indices())
           {
             typename Samples::CellPoint sample;

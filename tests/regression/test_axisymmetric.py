@@ -167,6 +167,31 @@ class Lame(TestCase):
             [self.sphere(**{"Geometry/Global refinements": g}) for g in (3, 4)]
         )
 
+    def test_finer_run(self):
+        """A finer run in the place of the solution."""
+        unknown = {"Exact solution/Displacement": ""}
+        fine = self.cylinder(
+            **{
+                "Geometry/Global refinements": 4,
+                "Output/Reference fields": "true",
+                **unknown,
+            }
+        )
+        coarse = {
+            "Geometry/Global refinements": 1,
+            "Material/Volumetric integration": "mean dilatation",
+        }
+        known = self.cylinder(**coarse)
+        compared = self.cylinder(
+            **coarse,
+            **unknown,
+            **{"Exact solution/Reference directory": fine.directory},
+        )
+        for norm in "energy", "h1", "stress":
+            self.assertClose(
+                error(compared, norm), error(known, norm), relative=0.05, what=norm
+            )
+
 
 class Creep(TestCase):
     """The steady states of power-law creep (Bailey)."""
@@ -260,6 +285,56 @@ class Contact(TestCase):
             ball["max_pressure"][-1], 1.5 * force / np.pi / radius**2, relative=0.02
         )
         self.assertLess(ball["force_balance_defect"].max(), 1e-9)
+
+    def test_beds(self):
+        """A solid cylinder pressed onto beds of all kinds: a uniform state, on the
+        axis, too."""
+        pressure, stiffness, nu = 0.1, 2, 0.3
+        for name, bed, depth in (
+            (
+                "contact_force_y",
+                {
+                    "Contact law": "normal compliance",
+                    "Compliance": stiffness,
+                    "Friction law": "none",
+                },
+                pressure / stiffness,
+            ),
+            (
+                "contact_force_y",
+                {
+                    "Contact law": "unilateral",
+                    "Friction law": "coulomb",
+                    "Friction coefficient": 0,
+                },
+                0,
+            ),
+            (
+                "reaction_2_y",
+                {"Role": "traction", "Normal stiffness": stiffness},
+                pressure / stiffness,
+            ),
+        ):
+            with self.subTest(name, bed=bed):
+                block = compute(
+                    box(
+                        "4, 4",
+                        "0, 0 : 1, 1",
+                        "symmetry",
+                        "free",
+                        {"Role": "contact", **bed},
+                        pressed(pressure),
+                        **{
+                            "Output/Points": "0, 1; 1, 0",
+                            "Geometry/Boundary refinements": "2: 1, 0: 1",
+                        },
+                    )
+                )
+                self.assertClose(abs(block[name][-1]), pressure * np.pi, relative=1e-9)
+                self.assertClose(
+                    block["point0_y"][-1], -depth - pressure, relative=1e-9
+                )
+                self.assertClose(block["point1_x"][-1], nu * pressure, relative=1e-9)
 
     def test_ball_in_space(self):
         """A ball that creeps, on a plane with Coulomb friction, is that in 3D up to

@@ -441,6 +441,28 @@ class Scenes(TestCase):
                 process = run("ring", {**scene, **changes}, text="", check=False)
                 self.assertRefused(process, *sentences)
 
+    def test_units(self):
+        """Of whole bodies, not on a unit of depth."""
+        units = {"Length": "m", "Time": "s", "Stress": "Pa"}
+        result = compute(
+            box(
+                "2, 2",
+                "0, 0 : 1, 1",
+                "symmetry",
+                "free",
+                "symmetry",
+                pressed(1),
+                **{f"Units/{name}": value for name, value in units.items()},
+                **{"Output/Integrals": "boundary 3: stress vector"},
+            )
+        )
+        header = (result.directory / "statistics.csv").read_text().splitlines()[0]
+        for label in (
+            *("load_y [N]", "stored_energy [J]", "area_boundary_3 [m^2]"),
+            "integral_boundary_3_stress_vector_y [N]",
+        ):
+            self.assertIn(label, header)
+
     def test_far_from_the_axis(self):
         """A thin ring is a body in plane strain, all around: under the given normal
         stress of Coulomb's law, with a material that is excavated, and on meshes

@@ -175,7 +175,8 @@ def draw(results, options):
         statistics["t"],
         possible_displacements[displacement],
         possible_forces[force],
-        plane=not any(name.endswith("_z") for name in possible_forces),
+        plane=not any(name.endswith("_z") for name in possible_forces)
+        and not results.is_of_revolution(),
     )
 
 
@@ -192,7 +193,7 @@ def drives(force, names):
 
 
 def draw_loop(results, t, displacement, force, plane):
-    """plane: in two dimensions forces are those on a unit of thickness."""
+    """plane: in plane strain forces are those on a unit of thickness."""
     (u, u_label), (f, f_label) = displacement, force
     units = Units.of(results)
     time = units.unit("time", results.statistics["t"])

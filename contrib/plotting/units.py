@@ -108,6 +108,8 @@ class Units:
         if dimension is None:
             in_space = any(name.endswith("_z") for name in results.statistics)
             dimension = 3 if in_space else 2
+        if results.is_of_revolution():
+            dimension = 3
         return Units(results.units, dimension, max(times, default=0.0))
 
     def parts(self, kind):

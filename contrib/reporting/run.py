@@ -47,6 +47,8 @@ def summary(results, about, units):
     statistics = results.statistics
     dimension = about.get("dimension")
     space = {2: "a body in plane strain", 3: "a body in three dimensions"}
+    if results.is_of_revolution():
+        space[2] = "a body of revolution"
     text = f"The quasi-static deformation of {space.get(dimension, 'a body')}"
     if len(statistics.get("t", ())):
         first, last = statistics["t"][[0, -1]]

@@ -440,11 +440,12 @@ namespace Viscoplastic
 
 
   std::string
-  Units::name(const Quantity quantity, const unsigned int dim) const
+  Units::name(const Quantity quantity, const unsigned int dim_of_mesh) const
   {
     if (!are_declared())
       return "";
-    const auto power_of_length = [this](const double n) {
+    const unsigned int dim             = are_of_whole_bodies ? 3 : dim_of_mesh;
+    const auto         power_of_length = [this](const double n) {
       std::ostringstream text;
       text << length.name;
       if (n != 1.)

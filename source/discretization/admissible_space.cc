@@ -95,6 +95,7 @@ namespace Viscoplastic
     : dof_handler(dof_handler)
     , scene(scene)
     , communicator(dof_handler.get_communicator())
+    , mapping(mapping_of<dim>(scene.plane_model()))
     , mortar_rows(make_mortar_rows(dof_handler, scene))
     , owned(dof_handler.locally_owned_dofs())
     , relevant(relevant_dofs(dof_handler, mortar_rows))

@@ -151,7 +151,8 @@ namespace Viscoplastic
         ghosted.begin()[space.relevant.index_within_set(first_dof)]);
     };
 
-    FEFaceValues<dim> face_values(space.dof_handler.get_fe(),
+    FEFaceValues<dim> face_values(space.mapping,
+                                  space.dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values |
                                     update_quadrature_points);
@@ -245,7 +246,8 @@ namespace Viscoplastic
     for (const auto &of_boundary : space.mortar_rows)
       other_sides.insert(*space.scene.boundary.at(of_boundary.first).against);
     other_side_weights.reinit(space.owned, space.relevant, space.communicator);
-    FEFaceValues<dim> face_values(space.dof_handler.get_fe(),
+    FEFaceValues<dim> face_values(space.mapping,
+                                  space.dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values);
     const auto       &hanging = space.cartesian_hanging_nodes();

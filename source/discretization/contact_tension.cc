@@ -26,7 +26,10 @@ namespace Viscoplastic
                   !condition.is_bilateral() || condition.is_glued())
                 continue;
               faces.push_back(
-                {index, condition.normal, cell->face(f)->measure()});
+                {index,
+                 condition.normal,
+                 cell->face(f)->measure() *
+                   extent(space.scene.plane_model(), cell->face(f)->center())});
               total_area += faces.back().area;
             }
         ++index;

@@ -48,10 +48,12 @@ namespace Viscoplastic
   elastic_cell_matrix(const FEValues<dim> &fe_values,
                       const Stiffness     &stiffness,
                       const bool           mean_dilatation,
-                      FullMatrix<double>  &cell_matrix)
+                      FullMatrix<double>  &cell_matrix,
+                      const PlaneModel     plane_model)
   {
-    const unsigned int n      = fe_values.dofs_per_cell;
-    double             volume = 0.;
+    const bool         is_ring = plane_model == PlaneModel::axisymmetric;
+    const unsigned int n       = fe_values.dofs_per_cell;
+    double             volume  = 0.;
     for (const unsigned int q : fe_values.quadrature_point_indices())
       volume += fe_values.JxW(q);
 
@@ -60,8 +62,9 @@ namespace Viscoplastic
     if (mean_dilatation)
       for (const unsigned int q : fe_values.quadrature_point_indices())
         for (unsigned int i = 0; i < n; ++i)
-          mean[i] +=
-            fe_values.shape_grad(i, q)[i % dim] * fe_values.JxW(q) / volume;
+          mean[i] += (fe_values.shape_grad(i, q)[i % dim] +
+                      (is_ring ? hoop_strain(fe_values, i, q) : 0.)) *
+                     fe_values.JxW(q) / volume;
 
     std::vector<SymmetricTensor<2, 3>> strain(n), stress(n);
     cell_matrix = 0.;
@@ -74,9 +77,10 @@ namespace Viscoplastic
             strain[i]              = 0.;
             for (unsigned int d = 0; d < dim; ++d)
               strain[i][c][d] = (c == d ? 1. : 0.5) * g[d];
+            if (is_ring)
+              strain[i][2][2] = hoop_strain(fe_values, i, q);
             if (mean_dilatation)
-              for (unsigned int d = 0; d < 3; ++d)
-                strain[i][d][d] += (mean[i] - g[c]) / 3.;
+              strain[i] = with_dilatation(strain[i], mean[i]);
             stress[i] = stiffness.stress(strain[i]) * fe_values.JxW(q);
           }
         for (unsigned int i = 0; i < n; ++i)
@@ -102,9 +106,11 @@ namespace Viscoplastic
     matrix.reinit(pattern);
 
     const FiniteElement<dim>            &fe = space.dof_handler.get_fe();
-    FEValues<dim>                        fe_values(fe,
+    FEValues<dim>                        fe_values(space.mapping,
+                            fe,
                             QGauss<dim>(2),
-                            update_gradients | update_JxW_values);
+                            update_values | update_gradients |
+                              update_JxW_values | update_quadrature_points);
     const unsigned int                   n = fe.n_dofs_per_cell();
     FullMatrix<double>                   cartesian(n, n), cell_matrix(n, n);
     const Stiffness                     *last = nullptr;
@@ -117,7 +123,11 @@ namespace Viscoplastic
         const Stiffness &stiffness = moduli(c);
         if (&stiffness != last ||
             fe_values.get_cell_similarity() != CellSimilarity::translation)
-          elastic_cell_matrix(fe_values, stiffness, mean_dilatation, cartesian);
+          elastic_cell_matrix(fe_values,
+                              stiffness,
+                              mean_dilatation,
+                              cartesian,
+                              space.scene.plane_model());
         last        = &stiffness;
         cell_matrix = cartesian;
         cell->get_dof_indices(dofs);
@@ -134,12 +144,14 @@ namespace Viscoplastic
   elastic_cell_matrix<2>(const FEValues<2> &,
                          const Stiffness &,
                          const bool,
-                         FullMatrix<double> &);
+                         FullMatrix<double> &,
+                         const PlaneModel);
   template void
   elastic_cell_matrix<3>(const FEValues<3> &,
                          const Stiffness &,
                          const bool,
-                         FullMatrix<double> &);
+                         FullMatrix<double> &,
+                         const PlaneModel);
   template void
   assemble_elastic_matrix<2>(const AdmissibleSpace<2> &,
                              const ElasticModuli<2> &,

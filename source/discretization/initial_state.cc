@@ -43,10 +43,11 @@ namespace Viscoplastic
                   const unsigned int          n_points,
                   const Visitor              &visit)
     {
-      FEValues<dim> fe_values(space.dof_handler.get_fe(),
+      FEValues<dim> fe_values(space.mapping,
+                              space.dof_handler.get_fe(),
                               QGauss<dim>(n_points),
-                              update_gradients | update_JxW_values |
-                                update_quadrature_points);
+                              update_values | update_gradients |
+                                update_JxW_values | update_quadrature_points);
       for (const auto &cell : space.cells)
         {
           fe_values.reinit(cell);
@@ -78,6 +79,9 @@ namespace Viscoplastic
                 for (unsigned int i = 0; i < dim; ++i)
                   for (unsigned int j = 0; j < dim; ++j)
                     cartesian[node + i] += tau[i][j] * gradient[j];
+                if (space.scene.is_axisymmetric())
+                  cartesian[node] +=
+                    tau[2][2] * hoop_strain(values, v * dim, q);
               }
           }
       });
@@ -92,15 +96,13 @@ namespace Viscoplastic
     SymmetricTensor<2, 3>
     initial_strain(const Scene<dim> &scene, const Point<dim> &x)
     {
-      SymmetricTensor<2, 3> strain;
+      Tensor<2, dim> gradient;
       for (unsigned int i = 0; i < dim; ++i)
-        {
-          const Tensor<1, dim> gradient =
-            (*scene.initial_displacement)[i].gradient(x, 0.);
-          for (unsigned int j = 0; j < dim; ++j)
-            strain[i][j] += (i == j ? 1. : 0.5) * gradient[j];
-        }
-      return strain;
+        gradient[i] = (*scene.initial_displacement)[i].gradient(x, 0.);
+      return strain(scene.initial_displacement->vector(x, 0.),
+                    gradient,
+                    x,
+                    scene.plane_model());
     }
 
 
@@ -304,13 +306,17 @@ namespace Viscoplastic
         {
           SymmetricTensor<2, 3> error;
           for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int i = 0; i < dim; ++i)
-              for (unsigned int j = 0; j < dim; ++j)
-                error[i][j] -= (i == j ? 1. : 0.5) *
-                               state.u.begin()[space.relevant.index_within_set(
-                                                 cell->vertex_dof_index(v, 0)) +
-                                               i] *
-                               values.shape_grad(v * dim, q)[j];
+            {
+              const double *u =
+                &state.u.begin()[space.relevant.index_within_set(
+                  cell->vertex_dof_index(v, 0))];
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int j = 0; j < dim; ++j)
+                  error[i][j] -= (i == j ? 1. : 0.5) * u[i] *
+                                 values.shape_grad(v * dim, q)[j];
+              if (scene.is_axisymmetric())
+                error[2][2] -= u[0] * hoop_strain(values, v * dim, q);
+            }
           if (scene.initial_displacement)
             error += initial_strain(scene, values.quadrature_point(q));
           sums[0] += (stiffness.stress(error) * error) * values.JxW(q);

@@ -67,7 +67,8 @@ namespace Viscoplastic
     if (b && b->depends_on_time() == time_dependent)
       {
         any = true;
-        FEValues<dim> fe_values(fe,
+        FEValues<dim> fe_values(space.mapping,
+                                fe,
                                 QGauss<dim>(2),
                                 update_values | update_JxW_values |
                                   update_quadrature_points);
@@ -86,7 +87,8 @@ namespace Viscoplastic
           }
       }
 
-    FEFaceValues<dim> face_values(fe,
+    FEFaceValues<dim> face_values(space.mapping,
+                                  fe,
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values |
                                     update_quadrature_points |

@@ -397,6 +397,16 @@ namespace Viscoplastic
                           column(frames[nodes[m].frame].directions,
                                  frames[nodes[m].frame].fixed[i]));
 
+    // A ring resists all but the translation along its axis.
+    if (scene.is_axisymmetric())
+      for (SeenMotions &of_part : seen)
+        for (const unsigned int motion : {0u, 2u})
+          {
+            RigidMotion row(n_motions, 0.);
+            row[motion] = 1.;
+            of_part.add(row);
+          }
+
     if (scene.has_springs())
       {
         for (SeenMotions of_part : seen) // a copy

@@ -11,7 +11,8 @@ namespace Viscoplastic
   Springs<dim>::Springs(const AdmissibleSpace<dim> &space)
     : space(space)
   {
-    FEFaceValues<dim> face_values(space.dof_handler.get_fe(),
+    FEFaceValues<dim> face_values(space.mapping,
+                                  space.dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values |
                                     update_quadrature_points |

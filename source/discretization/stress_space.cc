@@ -33,10 +33,12 @@ namespace Viscoplastic
     , n_samples(element->n_dofs_per_cell())
   {
     const QGauss<dim> quadrature(2);
-    FEValues<dim>     fe_values(space.dof_handler.get_fe(),
+    FEValues<dim>     fe_values(space.mapping,
+                            space.dof_handler.get_fe(),
                             quadrature,
-                            update_gradients | update_JxW_values |
-                              update_quadrature_points);
+                            update_values | update_gradients |
+                              update_JxW_values | update_quadrature_points);
+    const bool        has_hoops = space.scene.is_axisymmetric();
     for (const auto &cell : space.cells)
       {
         fe_values.reinit(cell);
@@ -53,19 +55,32 @@ namespace Viscoplastic
               weights.push_back(fe_values.JxW(q));
               positions.push_back(fe_values.quadrature_point(q));
               for (const unsigned int v : cell->vertex_indices())
-                gradients.push_back(fe_values.shape_grad(v * dim, q));
+                {
+                  gradients.push_back(fe_values.shape_grad(v * dim, q));
+                  if (has_hoops)
+                    hoops.push_back(hoop_strain(fe_values, v * dim, q));
+                }
             }
-        else // P_Qh of a strain, (3.1): its mean
+        else
           {
             weights.push_back(volume);
             positions.push_back(cell->center());
             for (const unsigned int v : cell->vertex_indices())
               {
                 Tensor<1, dim> mean;
+                double         mean_hoop = 0.;
                 for (const unsigned int q :
                      fe_values.quadrature_point_indices())
-                  mean += fe_values.shape_grad(v * dim, q) * fe_values.JxW(q);
+                  {
+                    mean += fe_values.shape_grad(v * dim, q) * fe_values.JxW(q);
+                    if (has_hoops)
+                      mean_hoop +=
+                        hoop_strain(fe_values, v * dim, q) * fe_values.JxW(q);
+                  }
+                // P_Qh of a strain, (3.1): its mean.
                 gradients.push_back(mean / volume);
+                if (has_hoops)
+                  hoops.push_back(mean_hoop / volume);
               }
           }
       }
@@ -97,17 +112,17 @@ namespace Viscoplastic
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = i; j < dim; ++j)
             strain[s][i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
+        if (!hoops.empty())
+          for (unsigned int v = 0; v < n_vertices; ++v)
+            strain[s][2][2] +=
+              values[v][0] * hoops[(cell * n_samples + s) * n_vertices + v];
         mean += trace(strain[s]) * weight(cell, s);
       }
     if (mean_dilatation && n_samples > 1)
       {
         mean /= volumes[cell];
         for (unsigned int s = 0; s < n_samples; ++s)
-          {
-            const double change = (mean - trace(strain[s])) / 3.;
-            for (unsigned int d = 0; d < 3; ++d)
-              strain[s][d][d] += change;
-          }
+          strain[s] = with_dilatation(strain[s], mean);
       }
   }
 
@@ -135,14 +150,18 @@ namespace Viscoplastic
         const Tensor<1, dim> *g =
           &gradients[(cell * n_samples + s) * n_vertices];
         const double weighted = factor * weight(cell, s);
-        // What acts in the plane, in 2D.
-        double acting[dim][dim];
+        // What acts in the plane, in 2D, and around an axis.
+        double acting[dim][dim], around = 0.;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
             acting[i][j] = stress[s][i][j];
         if (mean_pressure)
           for (unsigned int d = 0; d < dim; ++d)
             acting[d][d] += pressure - trace(stress[s]) / 3.;
+        if (!hoops.empty())
+          around = weighted *
+                   (stress[s][2][2] +
+                    (mean_pressure ? pressure - trace(stress[s]) / 3. : 0.));
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
             acting[i][j] *= weighted;
@@ -150,6 +169,10 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j)
               forces[v][i] += acting[i][j] * g[v][j];
+        if (!hoops.empty())
+          for (unsigned int v = 0; v < n_vertices; ++v)
+            forces[v][0] +=
+              around * hoops[(cell * n_samples + s) * n_vertices + v];
       }
     for (unsigned int v = 0; v < n_vertices; ++v)
       for (unsigned int i = 0; i < dim; ++i)
@@ -168,11 +191,17 @@ namespace Viscoplastic
     const bool             mean_pressure = mean_dilatation && n_samples > 1;
     std::array<double, n>  mean{}; // divergence of each shape function
     const Tensor<1, dim>  *g = &gradients[cell * n_samples * n_vertices];
+    const double          *h =
+      hoops.empty() ? nullptr : &hoops[cell * n_samples * n_vertices];
+    const auto hoop = [&h](const unsigned int v, const unsigned int component) {
+      return h != nullptr && component == 0 ? h[v] : 0.;
+    };
     if (mean_pressure)
       for (unsigned int s = 0; s < n_samples; ++s)
         for (unsigned int i = 0; i < n; ++i)
-          mean[i] += g[s * n_vertices + i / dim][i % dim] * weight(cell, s) /
-                     volumes[cell];
+          mean[i] += (g[s * n_vertices + i / dim][i % dim] +
+                      hoop(s * n_vertices + i / dim, i % dim)) *
+                     weight(cell, s) / volumes[cell];
 
     std::array<SymmetricTensor<2, 3>, n> strain;
     for (unsigned int s = 0; s < n_samples; ++s, g += n_vertices)
@@ -183,9 +212,10 @@ namespace Viscoplastic
             strain[i]            = 0.;
             for (unsigned int d = 0; d < dim; ++d)
               strain[i][c][d] = (c == d ? 1. : 0.5) * g[i / dim][d];
+            if (h != nullptr)
+              strain[i][2][2] = hoop(i / dim, c);
             if (mean_pressure)
-              for (unsigned int d = 0; d < 3; ++d)
-                strain[i][d][d] += (mean[i] - g[i / dim][c]) / 3.;
+              strain[i] = with_dilatation(strain[i], mean[i]);
           }
         for (unsigned int j = 0; j < n; ++j)
           {
@@ -199,6 +229,8 @@ namespace Viscoplastic
               }
             cell_matrix(j, j) += strain[j] * stress;
           }
+        if (h != nullptr)
+          h += n_vertices;
       }
   }
 

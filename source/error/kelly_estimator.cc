@@ -39,8 +39,12 @@ namespace Viscoplastic
                                        numbers::invalid_unsigned_int,
                                        triangulation.locally_owned_subdomain());
     Vector<double> result(estimate.size());
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = Utilities::fixed_power<2>(unit * estimate[i]);
+    for (const auto &cell : space.cells)
+      {
+        const unsigned int i = cell->active_cell_index();
+        result[i]            = Utilities::fixed_power<2>(unit * estimate[i]) *
+                    extent(space.scene.plane_model(), cell->center());
+      }
     return result;
   }
 
@@ -51,21 +55,27 @@ namespace Viscoplastic
   strain_norm(const AdmissibleSpace<dim> &space,
               const DistributedVector    &ghosted_u)
   {
-    const FEValuesExtractors::Vector     displacement(0);
-    const QMidpoint<dim>                 midpoint;
-    FEValues<dim>                        values(space.dof_handler.get_fe(),
+    const FEValuesExtractors::Vector displacement(0);
+    const QMidpoint<dim>             midpoint;
+    FEValues<dim>                    values(space.mapping,
+                         space.dof_handler.get_fe(),
                          midpoint,
-                         update_gradients | update_JxW_values);
-    std::vector<SymmetricTensor<2, dim>> strain(1);
-    double                               sum = 0.;
-    for (const auto &cell : space.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          values.reinit(cell);
-          values[displacement].get_function_symmetric_gradients(ghosted_u,
-                                                                strain);
-          sum += (strain[0] * strain[0]) * values.JxW(0);
-        }
+                         update_values | update_gradients | update_JxW_values |
+                           update_quadrature_points);
+    std::vector<Tensor<1, dim>>      u(1);
+    std::vector<Tensor<2, dim>>      gradient(1);
+    double                           sum = 0.;
+    for (const auto &cell : space.cells)
+      {
+        values.reinit(cell);
+        values[displacement].get_function_values(ghosted_u, u);
+        values[displacement].get_function_gradients(ghosted_u, gradient);
+        const SymmetricTensor<2, 3> e = strain(u[0],
+                                               gradient[0],
+                                               values.quadrature_point(0),
+                                               space.scene.plane_model());
+        sum += (e * e) * values.JxW(0);
+      }
     return std::sqrt(Utilities::MPI::sum(sum, space.communicator));
   }
 

@@ -14,12 +14,16 @@ namespace Viscoplastic
   template <int dim>
   void
   LocalCells<dim>::FaceShape::reinit(const Point<dim>            &vertex_0,
-                                     const FEFaceValuesBase<dim> &values)
+                                     const FEFaceValuesBase<dim> &values,
+                                     const bool                   is_of_ring)
   {
     for (const unsigned int q : values.quadrature_point_indices())
       {
         for (unsigned int v = 0; v < n_vertices; ++v)
-          gradients[q][v] = values.shape_grad(v * dim, q);
+          {
+            gradients[q][v] = values.shape_grad(v * dim, q);
+            hoops[q][v]     = is_of_ring ? hoop_strain(values, v * dim, q) : 0.;
+          }
         normals[q]   = values.normal_vector(q);
         positions[q] = values.quadrature_point(q) - vertex_0;
         weights[q]   = values.JxW(q);
@@ -38,7 +42,7 @@ namespace Viscoplastic
     // Vertices from the first, relative to the diameter and rounded: equal for
     // translated cells, whatever rounding did to their vertices.
     constexpr double resolution = 1ll << 36;
-    ShapeKey         key;
+    ShapeKey         key{};
     int              exponent;
     const double     diameter = cell->diameter();
     key[0] = std::llround(std::frexp(diameter, &exponent) * resolution);
@@ -47,6 +51,8 @@ namespace Viscoplastic
       for (unsigned int d = 0; d < dim; ++d, ++i)
         key[i] = std::llround((cell->vertex(v)[d] - cell->vertex(0)[d]) /
                               diameter * resolution);
+    if (has_hoops)
+      key.back() = std::llround(cell->vertex(0)[0] / diameter * resolution);
     const auto [entry, is_new] = number_of.emplace(key, shapes.size());
     if (!is_new)
       return entry->second;
@@ -66,15 +72,22 @@ namespace Viscoplastic
             shape.mean_gradients[v] +=
               values.shape_grad(v * dim, q) * values.JxW(q);
             shape.gradients[q][v] = values.shape_grad(v * dim, q);
+            if (has_hoops)
+              {
+                shape.hoops[q][v] = hoop_strain(values, v * dim, q);
+                shape.mean_hoops[v] += shape.hoops[q][v] * values.JxW(q);
+              }
           }
       }
     for (auto &gradient : shape.mean_gradients)
       gradient /= volume;
+    for (double &hoop : shape.mean_hoops)
+      hoop /= volume;
     shape.volume = volume;
     for (unsigned int f = 0; f < n_faces; ++f)
       {
         on_face.reinit(cell, f);
-        shape.faces[f].reinit(cell->vertex(0), on_face);
+        shape.faces[f].reinit(cell->vertex(0), on_face, has_hoops);
       }
     return entry->second;
   }
@@ -84,16 +97,20 @@ namespace Viscoplastic
   template <int dim>
   LocalCells<dim>::LocalCells(const StressSpace<dim> &stress_space)
     : stress_space(stress_space)
+    , has_hoops(stress_space.space.scene.is_axisymmetric())
   {
     const AdmissibleSpace<dim> &space = stress_space.space;
     const FiniteElement<dim>   &fe    = space.dof_handler.get_fe();
-    FEValues<dim>               values(fe,
+    FEValues<dim>               values(space.mapping,
+                         fe,
                          QGauss<dim>(2),
-                         update_gradients | update_quadrature_points |
-                           update_JxW_values);
-    FEFaceValues<dim>           on_face(fe,
+                         update_values | update_gradients |
+                           update_quadrature_points | update_JxW_values);
+    FEFaceValues<dim>           on_face(space.mapping,
+                              fe,
                               QGauss<dim - 1>(2),
-                              update_gradients | update_normal_vectors |
+                              update_values | update_gradients |
+                                update_normal_vectors |
                                 update_quadrature_points | update_JxW_values);
     ShapeNumbers                number_of;
     const auto add = [&](const CellIterator &cell, const Stiffness &E) {
@@ -133,6 +150,18 @@ namespace Viscoplastic
 
 
   template <int dim>
+  SymmetricTensor<2, 3>
+  LocalCells<dim>::mean_strain(const LocalCell   &cell,
+                               const NodalValues &displacements) const
+  {
+    const Shape &shape = shapes[cell.shape];
+    return strain(gradient(displacements, shape.mean_gradients),
+                  has_hoops ? hoop(displacements, shape.mean_hoops) : 0.);
+  }
+
+
+
+  template <int dim>
   std::array<SymmetricTensor<2, 3>, LocalCells<dim>::n_points>
   LocalCells<dim>::strains(const LocalCell   &cell,
                            const NodalValues &displacements) const
@@ -140,17 +169,13 @@ namespace Viscoplastic
     const Shape                                &shape = shapes[cell.shape];
     std::array<SymmetricTensor<2, 3>, n_points> result;
     for (unsigned int q = 0; q < n_points; ++q)
-      result[q] = strain(gradient(displacements, shape.gradients[q]));
+      result[q] = strain(gradient(displacements, shape.gradients[q]),
+                         has_hoops ? hoop(displacements, shape.hoops[q]) : 0.);
     if (stress_space.mean_dilatation)
       {
-        const double dilatation =
-          trace(gradient(displacements, shape.mean_gradients));
+        const double dilatation = trace(mean_strain(cell, displacements));
         for (SymmetricTensor<2, 3> &strain : result)
-          {
-            const double excess = (dilatation - trace(strain)) / 3.;
-            for (unsigned int d = 0; d < 3; ++d)
-              strain[d][d] += excess;
-          }
+          strain = with_dilatation(strain, dilatation);
       }
     return result;
   }

@@ -23,10 +23,32 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    template <int dim>
+    std::vector<unsigned int>
+    components_of_strains(const bool has_hoops)
+    {
+      std::vector<unsigned int> result;
+      for (unsigned int i = 0; i < 6; ++i)
+        {
+          const TableIndices<2> index =
+            SymmetricTensor<2, 3>::unrolled_to_component_indices(i);
+          if ((index[0] < dim && index[1] < dim) ||
+              (has_hoops && index[0] == 2 && index[1] == 2))
+            result.push_back(i);
+        }
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
   RecoveryEstimator<dim>::RecoveryEstimator(const LocalCells<dim> &cells)
     : local(cells)
-    , fe(FE_Q<dim>(1), n_components)
+    , components(components_of_strains<dim>(cells.has_hoops))
+    , fe(FE_Q<dim>(1), components.size())
     , dof_handler(cells.stress_space.space.dof_handler.get_triangulation())
   {
     const AdmissibleSpace<dim> &space = cells.stress_space.space;
@@ -92,7 +114,7 @@ namespace Viscoplastic
           if (is_at_end[v] && !is_at_end[opposite(v)])
             {
               ends[c].push_back(v);
-              for (unsigned int i = 0; i < n_components; ++i)
+              for (unsigned int i = 0; i < components.size(); ++i)
                 parts[p].inverse_inner_volume.local_element(nodes[c][v] + i) +=
                   cells.stress_space.volume(c);
             }
@@ -100,7 +122,7 @@ namespace Viscoplastic
         for (unsigned int v = 0; v < n_vertices; ++v)
           {
             const types::global_dof_index dof = cell->vertex_dof_index(v, 0);
-            for (unsigned int i = 0; i < n_components; ++i)
+            for (unsigned int i = 0; i < components.size(); ++i)
               parts[p].inverse_volume.local_element(nodes[c][v] + i) +=
                 cells.stress_space.volume(c);
             if (constraints.is_constrained(dof))
@@ -152,8 +174,14 @@ namespace Viscoplastic
     for (unsigned int c = 0; c < local.cells.size(); ++c)
       for (const unsigned int node : local.cells[c].nodes)
         around[node].push_back(c);
-    const auto volume = [this](const unsigned int c) {
-      return local.shapes[local.cells[c].shape].volume;
+    // Of the section: rings of cells of one size differ in volume.
+    const auto size = [this](const unsigned int c) {
+      const auto    &shape  = local.shapes[local.cells[c].shape];
+      Tensor<1, dim> center = local.cells[c].origin;
+      for (const Tensor<1, dim> &position : shape.positions)
+        center += position / n_points;
+      return shape.volume / extent(local.stress_space.space.scene.plane_model(),
+                                   Point<dim>(center));
     };
     for (unsigned int c = 0; c < nodes.size(); ++c)
       {
@@ -168,8 +196,7 @@ namespace Viscoplastic
               is_regular &=
                 local.cells[other].is_present &&
                 local.cells[other].material_id == local.cells[c].material_id &&
-                volume(other) < 1.5 * volume(c) &&
-                volume(c) < 1.5 * volume(other);
+                size(other) < 1.5 * size(c) && size(c) < 1.5 * size(other);
             if (!is_regular)
               continue;
             for (const unsigned int other : cells)
@@ -197,11 +224,11 @@ namespace Viscoplastic
     double *const nodal = values.begin();
     for (const unsigned int c : part.cells)
       {
-        const SymmetricTensor<2, dim> integral =
+        const SymmetricTensor<2, 3> integral =
           local.stress_space.volume(c) * mean_strain(c, u);
         for (const unsigned int node : nodes[c])
-          for (unsigned int i = 0; i < n_components; ++i)
-            nodal[node + i] += integral.access_raw_entry(i);
+          for (unsigned int i = 0; i < components.size(); ++i)
+            nodal[node + i] += integral.access_raw_entry(components[i]);
       }
     values.compress(VectorOperation::add);
     values.scale(part.inverse_volume);
@@ -222,7 +249,7 @@ namespace Viscoplastic
   {
     double *const nodal = values.begin();
     for (const HangingNode &hanging : part.hanging_nodes)
-      for (unsigned int i = 0; i < n_components; ++i)
+      for (unsigned int i = 0; i < components.size(); ++i)
         {
           nodal[hanging.node + i] = 0.;
           for (const auto &[parent, factor] : hanging.parents)
@@ -245,14 +272,16 @@ namespace Viscoplastic
         if (ends[c].empty())
           continue;
         // Half of the nodes make all of what the mean misses.
-        SymmetricTensor<2, dim> missed = mean_strain(c, u);
+        SymmetricTensor<2, 3> missed = mean_strain(c, u);
         for (const unsigned int node : nodes[c])
-          for (unsigned int i = 0; i < n_components; ++i)
-            missed.access_raw_entry(i) -= nodal[node + i] / n_vertices;
+          for (unsigned int i = 0; i < components.size(); ++i)
+            missed.access_raw_entry(components[i]) -=
+              nodal[node + i] / n_vertices;
         missed *= 2. * local.stress_space.volume(c);
         for (const unsigned int v : ends[c])
-          for (unsigned int i = 0; i < n_components; ++i)
-            change.local_element(nodes[c][v] + i) += missed.access_raw_entry(i);
+          for (unsigned int i = 0; i < components.size(); ++i)
+            change.local_element(nodes[c][v] + i) +=
+              missed.access_raw_entry(components[i]);
       }
     change.compress(VectorOperation::add);
     change.scale(part.inverse_inner_volume);
@@ -264,13 +293,12 @@ namespace Viscoplastic
 
 
   template <int dim>
-  SymmetricTensor<2, dim>
+  SymmetricTensor<2, 3>
   RecoveryEstimator<dim>::mean_strain(const unsigned int       c,
                                       const DistributedVector &u) const
   {
     const Cell &cell = local.cells[c];
-    return symmetrize(local.gradient(local.displacements(cell, u.begin()),
-                                     local.shapes[cell.shape].mean_gradients));
+    return local.mean_strain(cell, local.displacements(cell, u.begin()));
   }
 
 
@@ -283,13 +311,14 @@ namespace Viscoplastic
     std::array<SymmetricTensor<2, 3>, n_points> result;
     if (!local.stress_space.mean_dilatation)
       return result;
-    const Cell  &cell   = local.cells[c];
-    const auto   nodal  = local.displacements(cell, u.begin());
-    const double mean   = trace(mean_strain(c, u));
-    const auto  &shapes = local.shapes[cell.shape].gradients;
+    const Cell  &cell  = local.cells[c];
+    const auto   nodal = local.displacements(cell, u.begin());
+    const double mean  = trace(mean_strain(c, u));
+    const auto  &shape = local.shapes[cell.shape];
     for (unsigned int q = 0; q < n_points; ++q)
-      result[q] = (trace(local.gradient(nodal, shapes[q])) - mean) / 3. *
-                  unit_symmetric_tensor<3>();
+      result[q] = (trace(local.gradient(nodal, shape.gradients[q])) +
+                   local.hoop(nodal, shape.hoops[q]) - mean) /
+                  3. * unit_symmetric_tensor<3>();
     return result;
   }
 
@@ -305,15 +334,12 @@ namespace Viscoplastic
     const double *nodal = values.begin();
     for (unsigned int q = 0; q < n_points; ++q)
       {
-        SymmetricTensor<2, dim> recovered;
+        SymmetricTensor<2, 3> recovered;
         for (unsigned int v = 0; v < n_vertices; ++v)
-          for (unsigned int i = 0; i < n_components; ++i)
-            recovered.access_raw_entry(i) +=
+          for (unsigned int i = 0; i < components.size(); ++i)
+            recovered.access_raw_entry(components[i]) +=
               shape_values[q][v] * nodal[nodes[c][v] + i];
-        result[q] *= -1.;
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = i; j < dim; ++j)
-            result[q][i][j] += recovered[i][j];
+        result[q] = recovered - result[q];
       }
     return result;
   }
@@ -323,25 +349,21 @@ namespace Viscoplastic
   template <int dim>
   double
   RecoveryEstimator<dim>::energy_density(
-    const unsigned int             c,
-    const SymmetricTensor<2, dim> &strain) const
+    const unsigned int           c,
+    const SymmetricTensor<2, 3> &strain) const
   {
-    SymmetricTensor<2, 3> e;
-    for (unsigned int i = 0; i < dim; ++i)
-      for (unsigned int j = i; j < dim; ++j)
-        e[i][j] = strain[i][j];
-    return local.cells[c].stiffness.stress(e) * e;
+    return local.cells[c].stiffness.stress(strain) * strain;
   }
 
 
 
   template <int dim>
-  SymmetricTensor<2, dim>
+  SymmetricTensor<2, 3>
   RecoveryEstimator<dim>::recovered(const unsigned int node) const
   {
-    SymmetricTensor<2, dim> result;
-    for (unsigned int i = 0; i < n_components; ++i)
-      result.access_raw_entry(i) = values.local_element(node + i);
+    SymmetricTensor<2, 3> result;
+    for (unsigned int i = 0; i < components.size(); ++i)
+      result.access_raw_entry(components[i]) = values.local_element(node + i);
     return result;
   }
 
@@ -355,8 +377,8 @@ namespace Viscoplastic
   {
     if (across[c][opposite(vertex)] == numbers::invalid_unsigned_int)
       return {};
-    const unsigned int            node = nodes[c][opposite(vertex)];
-    const SymmetricTensor<2, dim> mean = recovered(node);
+    const unsigned int          node = nodes[c][opposite(vertex)];
+    const SymmetricTensor<2, 3> mean = recovered(node);
     const double volume  = 1. / part.inverse_volume.local_element(node);
     const double density = energy_density(c, mean);
     return Patch{mean,
@@ -405,9 +427,9 @@ namespace Viscoplastic
     // vary in one direction.
     const auto is_of_a_point =
       [&](const unsigned int c, const unsigned int v, const Patch &patch) {
-        const SymmetricTensor<2, dim> here = mean_strain(c, u),
-                                      there =
-                                        mean_strain(across[c][opposite(v)], u);
+        const SymmetricTensor<2, 3> here = mean_strain(c, u),
+                                    there =
+                                      mean_strain(across[c][opposite(v)], u);
         return energy_density(c, here + there - 2. * patch.mean) >
                least_curvature * energy_density(c, here - patch.mean);
       };

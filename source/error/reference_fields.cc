@@ -82,6 +82,46 @@ namespace Viscoplastic
 
 
 
+    /// The mean of div u over a cell.
+    template <int dim>
+    class MeanDilatation
+    {
+    public:
+      explicit MeanDilatation(const AdmissibleSpace<dim> &space)
+        : plane_model(space.scene.plane_model())
+        , values(space.mapping,
+                 space.dof_handler.get_fe(),
+                 QGauss<dim>(2),
+                 update_values | update_gradients | update_JxW_values |
+                   update_quadrature_points)
+        , u(values.n_quadrature_points)
+        , gradients(values.n_quadrature_points)
+        , strains(values.n_quadrature_points)
+      {}
+
+      template <typename Cell>
+      double
+      operator()(const Cell &cell, const DistributedVector &ghosted_u)
+      {
+        values.reinit(cell);
+        values[displacement].get_function_values(ghosted_u, u);
+        values[displacement].get_function_gradients(ghosted_u, gradients);
+        for (unsigned int q = 0; q < strains.size(); ++q)
+          strains[q] =
+            strain(u[q], gradients[q], values.quadrature_point(q), plane_model);
+        return mean_dilatation(values.get_JxW_values(), strains);
+      }
+
+    private:
+      const PlaneModel                   plane_model;
+      FEValues<dim>                      values;
+      std::vector<Tensor<1, dim>>        u;
+      std::vector<Tensor<2, dim>>        gradients;
+      std::vector<SymmetricTensor<2, 3>> strains;
+    };
+
+
+
     template <int dim>
     void
     add_cells(const FieldSamples<dim> &reference,
@@ -99,26 +139,18 @@ namespace Viscoplastic
       for (const auto &cell : stress_space.space.cells)
         owned_index[cell->active_cell_index()] = n_owned++;
 
-      FEValues<dim>               whole(dof_handler.get_fe(),
-                          QGauss<dim>(2),
-                          update_gradients | update_JxW_values);
-      std::vector<Tensor<2, dim>> gradients(whole.n_quadrature_points);
-      const MappingQ1<dim>        mapping;
+      const AdmissibleSpace<dim> &space = stress_space.space;
+      MeanDilatation<dim>         mean_dilatation(space);
+      std::vector<Tensor<2, dim>> gradients;
       visit_cells_of(
         reference.cells,
         dof_handler,
         [&](const auto &cell, const auto &samples, const auto &points) {
           const unsigned int i         = owned_index[cell->active_cell_index()];
           const Stiffness   &stiffness = stress_space.moduli(i);
-          double             dilatation = 0.;
-          if (stress_space.mean_dilatation)
-            {
-              whole.reinit(cell);
-              gradients.resize(whole.n_quadrature_points);
-              whole[displacement].get_function_gradients(state.u, gradients);
-              dilatation = mean_divergence(whole.get_JxW_values(), gradients);
-            }
-          FEValues<dim> here(mapping,
+          const double       dilatation =
+            stress_space.mean_dilatation ? mean_dilatation(cell, state.u) : 0.;
+          FEValues<dim> here(space.mapping,
                              dof_handler.get_fe(),
                              Quadrature<dim>(points),
                              update_values | update_gradients);
@@ -139,14 +171,17 @@ namespace Viscoplastic
                   for (unsigned int e = 0; e < dim; ++e)
                     g[d][e] = sample[Samples::gradient_index + d * dim + e];
                 }
-              const auto exact =
-                reduced_strain(g,
-                               stress_space.mean_dilatation,
-                               sample[Samples::dilatation_index]);
-              const auto defect =
-                exact - reduced_strain(gradients[q],
-                                       stress_space.mean_dilatation,
-                                       dilatation);
+              const Point<dim> x     = position<dim>(sample);
+              const PlaneModel model = space.scene.plane_model();
+              auto             exact = strain(u, g, x, model),
+                   ours = strain(values[q], gradients[q], x, model);
+              if (stress_space.mean_dilatation)
+                {
+                  exact =
+                    with_dilatation(exact, sample[Samples::dilatation_index]);
+                  ours = with_dilatation(ours, dilatation);
+                }
+              const auto defect = exact - ours;
               error.energy += w * (stiffness.stress(defect) * defect);
               norm.energy += w * (stiffness.stress(exact) * exact);
               error.h1 += w * ((u - values[q]).norm_square() +
@@ -262,15 +297,14 @@ namespace Viscoplastic
     const auto &dof_handler = space.dof_handler;
     Samples     result;
     result.t = state.t;
-    FEValues<dim>               fe_values(dof_handler.get_fe(),
+    FEValues<dim>               fe_values(space.mapping,
+                            dof_handler.get_fe(),
                             QMidpoint<dim>(),
                             update_values | update_gradients |
                               update_JxW_values | update_quadrature_points);
-    FEValues<dim>               whole(dof_handler.get_fe(),
-                        QGauss<dim>(2),
-                        update_gradients | update_JxW_values);
-    std::vector<Tensor<2, dim>> all_gradients(whole.n_quadrature_points);
-    FEFaceValues<dim>           face_values(dof_handler.get_fe(),
+    MeanDilatation<dim>         mean_dilatation(space);
+    FEFaceValues<dim>           face_values(space.mapping,
+                                  dof_handler.get_fe(),
                                   QGauss<dim - 1>(2),
                                   update_values | update_JxW_values |
                                     update_quadrature_points);
@@ -286,13 +320,12 @@ namespace Viscoplastic
         fe_values.reinit(cell);
         fe_values[displacement].get_function_values(state.u, values);
         fe_values[displacement].get_function_gradients(state.u, gradients);
-        double dilatation = trace(gradients[0]);
-        if (stress_space.mean_dilatation)
-          {
-            whole.reinit(cell);
-            whole[displacement].get_function_gradients(state.u, all_gradients);
-            dilatation = mean_divergence(whole.get_JxW_values(), all_gradients);
-          }
+        const double dilatation = stress_space.mean_dilatation ?
+                                    mean_dilatation(cell, state.u) :
+                                    trace(strain(values[0],
+                                                 gradients[0],
+                                                 fe_values.quadrature_point(0),
+                                                 space.scene.plane_model()));
         for (const unsigned int q : fe_values.quadrature_point_indices())
           {
             typename Samples::CellPoint sample;

@@ -101,17 +101,14 @@ namespace Viscoplastic
     terms.stiffness  = &cells[cell].stiffness;
     terms.dilatation = 0.;
     if (stress_space.mean_dilatation)
-      for (unsigned int v = 0; v < n_vertices; ++v)
-        terms.dilatation +=
-          terms.u[v] * shapes[cells[cell].shape].mean_gradients[v];
+      terms.dilatation = trace(local.mean_strain(cells[cell], terms.u));
     if (mean_z != nullptr)
       {
         SymmetricTensor<2, 3> z = mean_z[cell];
         if (fields.memory > 0.)
           {
-            const SymmetricTensor<2, 3> elastic = terms.stiffness->stress(
-              strain(local.gradient(terms.u,
-                                    shapes[cells[cell].shape].mean_gradients)));
+            const SymmetricTensor<2, 3> elastic =
+              terms.stiffness->stress(local.mean_strain(cells[cell], terms.u));
             const double of_strain = deviator(elastic).norm(),
                          of_stress =
                            fields.memory * deviator(elastic + z).norm();
@@ -151,9 +148,11 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j)
               gradient[i][j] += terms.u[v][i] * face.gradients[q][v][j];
+        const double hoop =
+          local.has_hoops ? local.hoop(terms.u, face.hoops[q]) : 0.;
         if (stiffness.is_isotropic())
           {
-            const double divergence = trace(gradient);
+            const double divergence = trace(gradient) + hoop;
             const double pressure =
               mean_dilatation ?
                 bulk * terms.dilatation - 2. / 3. * mu * divergence :
@@ -168,12 +167,16 @@ namespace Viscoplastic
             tractions[q] = stress * normal;
           }
         else
-          tractions[q] =
-            terms.z * normal +
-            in_plane(stiffness.stress(reduced_strain(gradient,
-                                                     mean_dilatation,
-                                                     terms.dilatation)),
-                     normal);
+          {
+            const SymmetricTensor<2, 3> here = strain(gradient, hoop);
+            tractions[q] =
+              terms.z * normal +
+              in_plane(stiffness.stress(
+                         mean_dilatation ?
+                           with_dilatation(here, terms.dilatation) :
+                           here),
+                       normal);
+          }
       }
   }
 

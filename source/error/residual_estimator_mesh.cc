@@ -47,9 +47,11 @@ namespace Viscoplastic
                                 const unsigned int face) {
       return (cell * n_faces + face) * n_face_points;
     };
-    FESubfaceValues<dim> on_subface(fe,
+    FESubfaceValues<dim> on_subface(space.mapping,
+                                    fe,
                                     QGauss<dim - 1>(2),
-                                    update_gradients | update_normal_vectors |
+                                    update_values | update_gradients |
+                                      update_normal_vectors |
                                       update_quadrature_points |
                                       update_JxW_values);
 
@@ -96,7 +98,9 @@ namespace Viscoplastic
         {
           on_subface.reinit(coarse, f, subface);
           subface_shapes.emplace_back();
-          subface_shapes.back().reinit(coarse->vertex(0), on_subface);
+          subface_shapes.back().reinit(coarse->vertex(0),
+                                       on_subface,
+                                       local.has_hoops);
         }
       add_face(fine,
                fine_f,
@@ -117,7 +121,8 @@ namespace Viscoplastic
               const auto &condition =
                 space.scene.boundary.at(cell->face(f)->boundary_id());
               if (condition.prescribes_all() ||
-                  !cells[number_of(cell)].is_present)
+                  !cells[number_of(cell)].is_present ||
+                  (local.has_hoops && is_on_axis(cell->face(f))))
                 continue;
               add_boundary_face(cell, f, number_of(cell), condition);
             }

@@ -30,7 +30,9 @@ namespace Viscoplastic
       const auto               &dof_handler = stress_space.space.dof_handler;
       const ExactSolution<dim> &solution =
         *stress_space.space.scene.exact_solution;
-      FEValues<dim>                      fe_values(dof_handler.get_fe(),
+      const AdmissibleSpace<dim>        &space = stress_space.space;
+      FEValues<dim>                      fe_values(space.mapping,
+                              dof_handler.get_fe(),
                               QGauss<dim>(3),
                               update_values | update_gradients |
                                 update_JxW_values | update_quadrature_points);
@@ -48,12 +50,18 @@ namespace Viscoplastic
           fe_values.reinit(cell);
           fe_values[displacement].get_function_values(state.u, values);
           fe_values[displacement].get_function_gradients(state.u, gradients);
-          const double dilatation =
-            mean_divergence(fe_values.get_JxW_values(), gradients);
           for (unsigned int q = 0; q < n; ++q)
-            strains[q] = reduced_strain(gradients[q],
-                                        stress_space.mean_dilatation,
-                                        dilatation);
+            strains[q] = strain(values[q],
+                                gradients[q],
+                                fe_values.quadrature_point(q),
+                                space.scene.plane_model());
+          if (stress_space.mean_dilatation)
+            {
+              const double mean =
+                mean_dilatation(fe_values.get_JxW_values(), strains);
+              for (SymmetricTensor<2, 3> &strain : strains)
+                strain = with_dilatation(strain, mean);
+            }
           const Stiffness &stiffness   = stress_space.moduli(index);
           const double     other_cells = error.energy;
           for (unsigned int q = 0; q < n; ++q)
@@ -62,7 +70,8 @@ namespace Viscoplastic
               const double         w = fe_values.JxW(q);
               const Tensor<1, dim> u = solution.displacement(x, state.t);
               const Tensor<2, dim> g = solution.gradient(x, state.t);
-              const auto           e = strain(g), defect = e - strains[q];
+              const auto           e = solution.strain(x, state.t),
+                         defect      = e - strains[q];
               error.energy += w * (stiffness.stress(defect) * defect);
               exact.energy += w * (stiffness.stress(e) * e);
               error.h1 += w * ((u - values[q]).norm_square() +
@@ -99,7 +108,8 @@ namespace Viscoplastic
                       Squares                    &exact)
     {
       const FEValuesExtractors::Vector displacement(0);
-      FEFaceValues<dim>                face_values(space.dof_handler.get_fe(),
+      FEFaceValues<dim>                face_values(space.mapping,
+                                    space.dof_handler.get_fe(),
                                     QGauss<dim - 1>(3),
                                     update_values | update_JxW_values |
                                       update_quadrature_points);

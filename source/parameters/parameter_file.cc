@@ -274,6 +274,8 @@ namespace Viscoplastic
     as_written = remove_units(lines, units, handler);
     read(lines);
     use_tables(read_tables(handler, tables, lines));
+    units.are_of_whole_bodies =
+      geometry.plane_model == PlaneModel::axisymmetric;
     handler.set(shared_libraries_entry, comma_separated(shared_libraries));
     if (!materials.empty())
       check_material(lines);

@@ -29,6 +29,16 @@ namespace Viscoplastic
   void
   GeometryParameters::declare(ParameterHandler &prm)
   {
+    add_choice(
+      prm,
+      "Plane model",
+      plane_model,
+      "What a mesh in 2D stands for. `strain': a slice of a long body, plane "
+      "strain. `axisymmetric': the section of a body of revolution about the "
+      "axis x = 0, with x = r >= 0 and y along the axis, u_theta = 0; a "
+      "boundary on the axis has the role symmetry. Stresses and strains zz "
+      "are those around the axis then, and forces, energies, areas and "
+      "volumes those of the whole ring.");
     prm.add_parameter(
       "Generator",
       generator,

@@ -50,7 +50,8 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim> &space = discretization.space;
     std::vector<Piece>          result;
-    FEValues<dim>               fe_values(space.dof_handler.get_fe(),
+    FEValues<dim>               fe_values(space.mapping,
+                            space.dof_handler.get_fe(),
                             QGauss<dim>(2),
                             update_values | update_JxW_values);
     for (std::size_t c = 0; c < space.cells.size(); ++c)
@@ -79,7 +80,8 @@ namespace Viscoplastic
   {
     const AdmissibleSpace<dim> &space = discretization.space;
     std::vector<Piece>          result;
-    FEFaceValues<dim>           fe_values(space.dof_handler.get_fe(),
+    FEFaceValues<dim>           fe_values(space.mapping,
+                                space.dof_handler.get_fe(),
                                 QGauss<dim - 1>(2),
                                 update_values | update_JxW_values |
                                   update_normal_vectors);
@@ -101,7 +103,9 @@ namespace Viscoplastic
               piece.normal += fe_values.normal_vector(q) * fe_values.JxW(q);
               area += fe_values.JxW(q);
             }
-          piece.normal /= area;
+          // On the axis of a ring there is none.
+          if (area > 0.)
+            piece.normal /= area;
           result.push_back(piece);
         }
     return result;

@@ -8,6 +8,7 @@
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/discretization/volumetric_integration.h>
 #include <viscoplastic_contact/mesh/mesh.h>
+#include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/parameters/time_schedule.h>
 #include <viscoplastic_contact/run/scene_data.h>
 #include <viscoplastic_contact/scene/scene.h>
@@ -65,6 +66,7 @@ namespace Viscoplastic
         , schedule(scene.time.phases)
         , communicator(communicator)
         , triangulation(communicator)
+        , mapping(mapping_of<dim>(scene.geometry.plane_model))
       {
         make_mesh(scene.geometry, triangulation);
         const bool chooses_steps =
@@ -95,7 +97,8 @@ namespace Viscoplastic
                 const std::optional<unsigned int> material) const override
       {
         return over_space(components, [&](Places &places) {
-          FEValues<dim> values(fe,
+          FEValues<dim> values(mapping,
+                               fe,
                                QGauss<dim>(3),
                                update_quadrature_points | update_JxW_values);
           for (const auto &cell : triangulation.active_cell_iterators())
@@ -177,7 +180,8 @@ namespace Viscoplastic
       void
       add_boundary(const unsigned int id, Places &places) const
       {
-        FEFaceValues<dim> values(fe,
+        FEFaceValues<dim> values(mapping,
+                                 fe,
                                  QGauss<dim - 1>(3),
                                  update_quadrature_points | update_JxW_values);
         for (const auto &cell : triangulation.active_cell_iterators())
@@ -262,6 +266,7 @@ namespace Viscoplastic
       const MPI_Comm                            communicator;
       parallel::distributed::Triangulation<dim> triangulation;
       const FE_Nothing<dim>                     fe;
+      const Mapping<dim>                       &mapping;
       /// The ends of steps, with 0.
       std::vector<double> times;
     };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <viscoplastic_contact/laws/strain.h>
+#include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/exact_solution.h>
 
 #include <sstream>
@@ -32,8 +32,10 @@ namespace Viscoplastic
 
   template <int dim>
   ExactSolution<dim>::ExactSolution(const ExactSolutionParameters &parameters,
-                                    const double                   end_time)
+                                    const double                   end_time,
+                                    const PlaneModel               plane_model)
     : makes_data(parameters.data == DataSource::solution)
+    , plane_model(plane_model)
     , space_step(relative_step)
     , time_step(relative_step * end_time)
   {
@@ -99,7 +101,10 @@ namespace Viscoplastic
   SymmetricTensor<2, 3>
   ExactSolution<dim>::strain(const Point<dim> &x, const double t) const
   {
-    return Viscoplastic::strain(gradient(x, t));
+    return Viscoplastic::strain(displacement(x, t),
+                                gradient(x, t),
+                                x,
+                                plane_model);
   }
 
 
@@ -179,6 +184,14 @@ namespace Viscoplastic
           stress_column(right, t, j) - stress_column(left, t, j);
         for (unsigned int i = 0; i < dim; ++i)
           result[i] -= change[i] / (right[j] - left[j]);
+      }
+    if (plane_model == PlaneModel::axisymmetric)
+      {
+        // The rest of the divergence, (sigma_rr - sigma_tt)/r and sigma_rz/r.
+        const double                r     = std::max(x[0], space_step);
+        const SymmetricTensor<2, 3> sigma = stress(x, t);
+        result[0] -= (sigma[0][0] - sigma[2][2]) / r;
+        result[1] -= sigma[0][1] / r;
       }
     return result;
   }

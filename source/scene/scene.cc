@@ -17,12 +17,15 @@ namespace Viscoplastic
     template <int dim>
     std::unique_ptr<ExactSolution<dim>>
     make_exact_solution(const ExactSolutionParameters &given,
-                        const double                   end_time)
+                        const double                   end_time,
+                        const PlaneModel               plane_model)
     {
       const bool is_given = !Utilities::trim(given.displacement).empty() ||
                             !Utilities::trim(given.stress).empty() ||
                             given.data == DataSource::solution;
-      return is_given ? std::make_unique<ExactSolution<dim>>(given, end_time) :
+      return is_given ? std::make_unique<ExactSolution<dim>>(given,
+                                                             end_time,
+                                                             plane_model) :
                         nullptr;
     }
   } // namespace
@@ -35,7 +38,8 @@ namespace Viscoplastic
     , names(parameters)
     , schedule(parameters.time.phases)
     , exact_solution(make_exact_solution<dim>(parameters.exact_solution,
-                                              schedule.end_time()))
+                                              schedule.end_time(),
+                                              plane_model()))
     , body_force(optional_vector<dim>(parameters.loads.body_force,
                                       dim,
                                       "Loads/Body force"))
@@ -47,6 +51,9 @@ namespace Viscoplastic
                                           stress_components<dim>().size(),
                                           "Initial state/Stress"))
   {
+    AssertThrow(dim == 2 || plane_model() == PlaneModel::strain,
+                ExcMessage("'Geometry/Plane model' = axisymmetric is that of "
+                           "meshes in 2D, but 'Dimension' = 3."));
     const ExactSolution<dim> *source_of_data =
       exact_solution && exact_solution->makes_data ? exact_solution.get() :
                                                      nullptr;
@@ -315,7 +322,9 @@ namespace Viscoplastic
   std::vector<std::string>
   Scene<dim>::effects() const
   {
-    std::vector<std::string> result{dim == 2 ? "elasticity (plane strain)" :
+    std::vector<std::string> result{is_axisymmetric() ?
+                                      "elasticity (axisymmetric)" :
+                                    dim == 2 ? "elasticity (plane strain)" :
                                                "elasticity (3D)"};
     // Of scenes that are older than a default and leave it to the program.
     const auto earlier = [&](const std::string &entry,

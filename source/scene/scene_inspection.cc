@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/mesh/mesh_check.h>
 #include <viscoplastic_contact/mesh/mesh_ids.h>
 #include <viscoplastic_contact/mesh/mesh_pieces.h>
+#include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/jump_in_time.h>
 #include <viscoplastic_contact/scene/output_check.h>
 
@@ -41,6 +42,8 @@ namespace Viscoplastic
       check_connection(triangulation);
     inspect_boundary_ids(boundary_ids(triangulation));
     inspect_unused_entries();
+    if (is_axisymmetric())
+      inspect_axis(triangulation);
     inspect_flatness(triangulation);
     inspect_junctions(triangulation);
     if (has_contact_pairs())
@@ -52,6 +55,13 @@ namespace Viscoplastic
          warnings_of_data_in_time(*this, triangulation))
       warnings.push_back(warning);
     make_materials(material_ids(triangulation));
+    // The residuals of an elastic one miss most where its surface is loaded.
+    AssertThrow(!is_axisymmetric() || has_viscosity() || !quantity ||
+                  quantity->kind != QuantityOfInterest::Kind::displacement,
+                ExcMessage("'Error control/Quantity': the error of a "
+                           "displacement of elastic bodies of revolution is "
+                           "not estimated; choose a force, or the energy norm "
+                           "(an empty entry)."));
     find_stages(triangulation);
     AssertThrow(!has_contact_pairs() || !has_stages(),
                 ExcMessage("Contact between two bodies ('Against') cannot be "
@@ -95,6 +105,62 @@ namespace Viscoplastic
                              "' has a role, but the mesh has no such boundary "
                              "id; it has the ids " +
                              list(ids) + "."));
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::inspect_axis(
+    const parallel::distributed::Triangulation<dim> &triangulation) const
+  {
+    const std::string model = "'Geometry/Plane model' = axisymmetric";
+    AssertThrow(!has_contact_pairs(),
+                ExcMessage(model + " does not go with contact between two "
+                                   "bodies ('Against')."));
+    double least = 0.; // beyond the axis, in units of a cell
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const unsigned int v : cell->vertex_indices())
+          least = std::min(least, cell->vertex(v)[0] / cell->diameter());
+    least = Utilities::MPI::min(least, triangulation.get_communicator());
+    AssertThrow(least > -1e-9,
+                ExcMessage("The mesh crosses the axis: some of it has x = r < "
+                           "0, but with " +
+                           model +
+                           " it is the section of a body of revolution on one "
+                           "side of x = 0."));
+
+    // On the coarse mesh, which all ranks know.
+    std::set<unsigned int> on_axis, held;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      {
+        for (const unsigned int v : cell->vertex_indices())
+          if (cell->vertex(v)[0] <= 1e-9 * cell->diameter())
+            on_axis.insert(cell->vertex_index(v));
+        for (const unsigned int f : cell->face_indices())
+          if (const auto face = cell->face(f);
+              face->at_boundary() && is_on_axis(face))
+            {
+              const auto &condition = boundary.at(face->boundary_id());
+              const auto &radial    = condition.displacement[0];
+              AssertThrow(condition.role == BoundaryRole::symmetry ||
+                            condition.role == BoundaryRole::clamped ||
+                            (radial && radial->is_zero()),
+                          ExcMessage(
+                            "Boundary " + std::to_string(condition.id) +
+                            " lies on the axis of a body of revolution, where "
+                            "u_r = 0; give it the role symmetry, or a "
+                            "displacement whose first component is 0."));
+              for (const unsigned int v : face->vertex_indices())
+                held.insert(face->vertex_index(v));
+            }
+      }
+    for (const unsigned int vertex : on_axis)
+      AssertThrow(held.count(vertex) == 1,
+                  ExcMessage("The mesh touches the axis of revolution in a "
+                             "single node, which nothing holds there; let a "
+                             "boundary lie on the axis, or none of it."));
   }
 
 

@@ -193,6 +193,7 @@ class Folding(TestCase):
             body=lambda index: body,
             boundary=lambda: None,
             dimension=lambda: 2,
+            is_of_revolution=lambda: False,
         )
         options = SimpleNamespace(magnification=None, window=None, label=[])
         self.assertEqual(Scale(results, [0], "von_mises", options).magnification, 20)

@@ -102,6 +102,7 @@ def block(*extent, cells=(4, 2, 3), displacement=0.0):
         face=lambda index: None,
         boundary=lambda: None,
         dimension=lambda: dim,
+        is_of_revolution=lambda: False,
     )
 
 
@@ -141,6 +142,7 @@ def sliding_block():
         face=lambda index: faces[index],
         boundary=lambda: None,
         dimension=lambda: 3,
+        is_of_revolution=lambda: False,
     )
 
 

@@ -152,6 +152,16 @@ class Identical(RestartCase):
         overrides = {"Time/Phases": "1.5: 8", "Mesh refinement/Cell budget": 500}
         self.check("pad_adaptive", overrides, (4,), ranks=2)
 
+    def test_adaptive_body_of_revolution(self):
+        overrides = {
+            "Geometry/Plane model": "axisymmetric",
+            "Geometry/Arguments": "16, 8 : 0, 0 : 6, 3 : true",
+            "Mesh refinement/Strategy": "residual",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "2.592e6: 8",
+        }
+        self.check("salt_pillar_2d", overrides, (4,))
+
     def test_moving_foundation(self):
         self.check("conveyor_2d", {"Time/Phases": "1: 5, 2: 5"}, (3, 7))
 

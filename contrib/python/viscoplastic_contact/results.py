@@ -338,6 +338,11 @@ class Results:
     def dimension(self):
         return 2 if self.body(0).cells.shape[1] == 4 else 3
 
+    def is_of_revolution(self):
+        """Whether the plane mesh is the section of a body of revolution, whose
+        forces and energies are those of the whole ring."""
+        return self.parameters.get(("Geometry", "Plane model")) == "axisymmetric"
+
     def column(self, name):
         if name not in self.statistics:
             raise UserError(

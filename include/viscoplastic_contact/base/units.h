@@ -136,6 +136,10 @@ namespace Viscoplastic
     std::string
     suffix(const Quantity quantity, const unsigned int dim = 3) const;
 
+    /// Whether results in two dimensions are those of whole bodies, as of
+    /// bodies of revolution, not by length.
+    bool are_of_whole_bodies = false;
+
     Unit length{"", {1., 0., 0.}, 0.}, time{"", {0., 1., 0.}, 0.},
       stress{"", {0., 0., 1.}, 0.};
   };

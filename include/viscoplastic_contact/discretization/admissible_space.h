@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/base/linear_algebra.h>
 #include <viscoplastic_contact/discretization/mortar_interpolation.h>
 #include <viscoplastic_contact/discretization/nodal_frame.h>
+#include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/scene.h>
 
 #include <array>
@@ -62,6 +63,8 @@ namespace Viscoplastic
     const DoFHandler<dim> &dof_handler;
     const Scene<dim>      &scene;
     const MPI_Comm         communicator;
+    /// With it, FEValues have the weights of integrals over the body.
+    const Mapping<dim> &mapping;
     /// Of each boundary in contact with another body; see
     /// mortar_interpolation().
     const std::map<types::boundary_id, MortarRows> mortar_rows;

@@ -63,13 +63,14 @@ namespace Viscoplastic
 
   /**
    * The same form for one cell: strains of the shape functions at the points
-   * of @p fe_values against each other. Declared here for the tests of its
-   * coercivity.
+   * of @p fe_values against each other, with hoop strains of rings. Declared
+   * here for the tests of its coercivity.
    */
   template <int dim>
   void
   elastic_cell_matrix(const FEValues<dim> &fe_values,
                       const Stiffness     &stiffness,
                       const bool           mean_dilatation,
-                      FullMatrix<double>  &cell_matrix);
+                      FullMatrix<double>  &cell_matrix,
+                      const PlaneModel     plane_model = PlaneModel::strain);
 } // namespace Viscoplastic

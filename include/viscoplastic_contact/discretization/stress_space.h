@@ -117,9 +117,12 @@ namespace Viscoplastic
 
     std::vector<unsigned int>   nodes;     // n_vertices a cell
     std::vector<Tensor<1, dim>> gradients; // n_vertices a sample
-    std::vector<double>         weights;   // 1 a sample
-    std::vector<Point<dim>>     positions; // 1 a sample
-    std::vector<double>         volumes;   // 1 a cell
+    /// The hoop strain of u_r = 1 at each vertex, likewise; empty unless the
+    /// body is one of revolution.
+    std::vector<double>     hoops;
+    std::vector<double>     weights;   // 1 a sample
+    std::vector<Point<dim>> positions; // 1 a sample
+    std::vector<double>     volumes;   // 1 a cell
   };
 
 

@@ -14,7 +14,8 @@ namespace Viscoplastic
   /**
    * What estimators of the error in space need of a mesh: the shape functions
    * of V_h in all cells of this rank and its ghosts. Cells that differ by a
-   * translation share them, so that a step evaluates no finite elements.
+   * translation share them, in bodies of revolution by one along the axis, so
+   * that a step evaluates no finite elements.
    */
   template <int dim>
   class LocalCells
@@ -38,6 +39,19 @@ namespace Viscoplastic
       return result;
     }
 
+    /// u_r/r of u_r = 1 at each vertex; zero but in bodies of revolution.
+    using Hoops = std::array<double, n_vertices>;
+
+    /// u_r/r of a field with these values at the vertices.
+    static double
+    hoop(const NodalValues &values, const Hoops &hoops)
+    {
+      double result = 0.;
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        result += values[v][0] * hoops[v];
+      return result;
+    }
+
     /// A face or subface at its quadrature points.
     struct FaceShape
     {
@@ -46,9 +60,12 @@ namespace Viscoplastic
       std::array<Tensor<1, dim>, n_face_points> normals;
       std::array<Tensor<1, dim>, n_face_points> positions; // from vertex 0
       std::array<double, n_face_points>         weights;
+      std::array<Hoops, n_face_points>          hoops;
 
       void
-      reinit(const Point<dim> &vertex_0, const FEFaceValuesBase<dim> &values);
+      reinit(const Point<dim>            &vertex_0,
+             const FEFaceValuesBase<dim> &values,
+             const bool                   is_of_ring);
     };
 
     struct Shape
@@ -57,6 +74,8 @@ namespace Viscoplastic
       NodalValues                          mean_gradients;
       std::array<NodalValues, n_points>    gradients;
       std::array<double, n_points>         weights;
+      Hoops                                mean_hoops{};
+      std::array<Hoops, n_points>          hoops{};
       std::array<FaceShape, n_faces>       faces;
       std::array<Tensor<1, dim>, n_points> positions; // from vertex 0
     };
@@ -79,13 +98,19 @@ namespace Viscoplastic
     explicit LocalCells(const StressSpace<dim> &stress_space);
 
     const StressSpace<dim> &stress_space;
-    std::vector<Shape>      shapes;
+    /// Whether cells are sections of rings.
+    const bool         has_hoops;
+    std::vector<Shape> shapes;
     /// The owned cells first, in the order of the stress space, then ghosts.
     std::vector<LocalCell> cells;
 
     /// u at the vertices of a cell; @p u: local array of a ghosted vector.
     NodalValues
     displacements(const LocalCell &cell, const double *u) const;
+
+    /// The mean strain of a field in a cell.
+    SymmetricTensor<2, 3>
+    mean_strain(const LocalCell &cell, const NodalValues &displacements) const;
 
     /// The strains that act in the elastic form, at the points of a cell: those
     /// of u_h, under mean dilatation with the volumetric part of their mean.
@@ -103,7 +128,7 @@ namespace Viscoplastic
     by_active_index(const std::vector<double> &by_cell) const;
 
   private:
-    static constexpr unsigned int key_size = dim * (n_vertices - 1) + 2;
+    static constexpr unsigned int key_size = dim * (n_vertices - 1) + 3;
     using ShapeKey                         = std::array<std::int64_t, key_size>;
     using ShapeNumbers                     = std::map<ShapeKey, unsigned int>;
 

@@ -93,10 +93,6 @@ namespace Viscoplastic
   private:
     static constexpr unsigned int n_vertices = LocalCells<dim>::n_vertices,
                                   n_points   = LocalCells<dim>::n_points;
-    /// Components of a strain in the plane or in space.
-    static constexpr unsigned int n_components =
-      SymmetricTensor<2, dim>::n_independent_components;
-
     using NodalVector = LinearAlgebra::distributed::Vector<double>;
     using Cell        = typename LocalCells<dim>::LocalCell;
 
@@ -126,8 +122,8 @@ namespace Viscoplastic
     /// it, and the sum of their eta_K^2.
     struct Patch
     {
-      SymmetricTensor<2, dim> mean;
-      double                  density, energy, variation, error;
+      SymmetricTensor<2, 3> mean;
+      double                density, energy, variation, error;
     };
 
     /// That around the vertex of cell @p c opposite to @p vertex, from what is
@@ -143,13 +139,13 @@ namespace Viscoplastic
                              const DistributedVector &u,
                              std::vector<double>     &squares) const;
 
-    /// Twice the energy of a strain in the plane or in space, by volume.
+    /// Twice the energy of a strain, by volume.
     double
-    energy_density(const unsigned int             cell,
-                   const SymmetricTensor<2, dim> &strain) const;
+    energy_density(const unsigned int           cell,
+                   const SymmetricTensor<2, 3> &strain) const;
 
     /// What is recovered at a node.
-    SymmetricTensor<2, dim>
+    SymmetricTensor<2, 3>
     recovered(const unsigned int node) const;
 
     /// Find the cells across vertices.
@@ -176,7 +172,7 @@ namespace Viscoplastic
     interpolate_hanging_nodes(const Part &part) const;
 
     /// The mean strain of a cell.
-    SymmetricTensor<2, dim>
+    SymmetricTensor<2, 3>
     mean_strain(const unsigned int cell, const DistributedVector &u) const;
 
     /// How much div u_h is larger than its mean, at the points of an owned cell
@@ -189,8 +185,11 @@ namespace Viscoplastic
     defects(const unsigned int cell, const DistributedVector &u) const;
 
     const LocalCells<dim> &local;
-    const FESystem<dim>    fe;
-    DoFHandler<dim>        dof_handler;
+    /// The components that strains have, as SymmetricTensor counts them: in the
+    /// plane, in the plane and around an axis, or all.
+    const std::vector<unsigned int> components;
+    const FESystem<dim>             fe;
+    DoFHandler<dim>                 dof_handler;
     /// Local places of the first component at the vertices of owned cells.
     std::vector<std::array<unsigned int, n_vertices>> nodes;
     /// The vertices of owned cells on faces where the part ends, as far as the

@@ -23,49 +23,44 @@ namespace Viscoplastic
       return {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
   }
 
-  /// The symmetric part of a displacement gradient as a 3D tensor; in plane
-  /// strain, what has z is zero.
+  /// The symmetric part of a displacement gradient as a 3D tensor; in a plane,
+  /// zz is @p hoop, u_r/r in bodies of revolution, and the rest of what has z
+  /// is zero.
   template <int dim>
   SymmetricTensor<2, 3>
-  strain(const Tensor<2, dim> &gradient)
+  strain(const Tensor<2, dim> &gradient, const double hoop = 0.)
   {
     SymmetricTensor<2, 3> result;
     for (unsigned int i = 0; i < dim; ++i)
       for (unsigned int j = i; j < dim; ++j)
         result[i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
+    if (dim == 2)
+      result[2][2] = hoop;
     return result;
   }
 
-  /// The mean of div u over a cell, from gradients at its quadrature points.
-  template <int dim>
-  double
-  mean_divergence(const std::vector<double>         &weights,
-                  const std::vector<Tensor<2, dim>> &gradients)
+  /// The mean of div u over a cell, from strains at its quadrature points.
+  inline double
+  mean_dilatation(const std::vector<double>                &weights,
+                  const std::vector<SymmetricTensor<2, 3>> &strains)
   {
     double sum = 0., volume = 0.;
     for (unsigned int q = 0; q < weights.size(); ++q)
       {
-        sum += trace(gradients[q]) * weights[q];
+        sum += trace(strains[q]) * weights[q];
         volume += weights[q];
       }
     return sum / volume;
   }
 
-  /// The strain that stresses act on: under mean dilatation its trace is
-  /// @p dilatation, the mean over the cell.
-  template <int dim>
-  SymmetricTensor<2, 3>
-  reduced_strain(const Tensor<2, dim> &gradient,
-                 const bool            mean_dilatation,
-                 const double          dilatation)
+  /// The strain whose trace is @p dilatation in the place of its own: under
+  /// mean dilatation, with the mean over the cell, what stresses act on.
+  inline SymmetricTensor<2, 3>
+  with_dilatation(SymmetricTensor<2, 3> strain, const double dilatation)
   {
-    SymmetricTensor<2, 3> result = strain(gradient);
-    if (mean_dilatation)
-      {
-        const double change = (dilatation - trace(result)) / 3.;
-        for (unsigned int d = 0; d < 3; ++d)
-          result[d][d] += change;
-      }
-    return result;
+    const double change = (dilatation - trace(strain)) / 3.;
+    for (unsigned int d = 0; d < 3; ++d)
+      strain[d][d] += change;
+    return strain;
   }
 } // namespace Viscoplastic

@@ -28,8 +28,9 @@ namespace Viscoplastic
 
   struct GeometryParameters
   {
-    std::string  generator = "subdivided_hyper_rectangle";
-    std::string  arguments = "8, 8 : 0, 0 : 1, 1 : true";
+    PlaneModel   plane_model = PlaneModel::strain;
+    std::string  generator   = "subdivided_hyper_rectangle";
+    std::string  arguments   = "8, 8 : 0, 0 : 1, 1 : true";
     std::string  file;
     std::string  boundary_ids, material_ids;
     std::string  coordinates;

@@ -30,7 +30,8 @@ namespace Viscoplastic
   public:
     /// Throws ExcMessage with a sentence for the user. @p end_time is T.
     ExactSolution(const ExactSolutionParameters &parameters,
-                  const double                   end_time);
+                  const double                   end_time,
+                  const PlaneModel plane_model = PlaneModel::strain);
 
     /// Whether the data of the problem follow from the solution.
     const bool makes_data;
@@ -107,6 +108,7 @@ namespace Viscoplastic
 
     std::optional<VectorExpression<dim>> given_displacement, given_stress;
     const Material<dim>                 *material = nullptr;
+    const PlaneModel                     plane_model;
     double                               space_step, time_step;
   };
 } // namespace Viscoplastic

@@ -157,6 +157,19 @@ namespace Viscoplastic
              has_stages();
     }
 
+    PlaneModel
+    plane_model() const
+    {
+      return parameters.geometry.plane_model;
+    }
+
+    /// Whether the mesh is the section of a body of revolution about x = 0.
+    bool
+    is_axisymmetric() const
+    {
+      return dim == 2 && plane_model() == PlaneModel::axisymmetric;
+    }
+
     bool
     has_springs() const;
 
@@ -260,6 +273,12 @@ namespace Viscoplastic
     void
     inspect_flatness(
       const parallel::distributed::Triangulation<dim> &triangulation);
+
+    /// That the section of a body of revolution lies on one side of its axis
+    /// and is held there. Collective.
+    void
+    inspect_axis(
+      const parallel::distributed::Triangulation<dim> &triangulation) const;
 
     /// Entries of boundaries without effect.
     void

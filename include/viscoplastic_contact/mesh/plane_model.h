@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping.h>
+
+#include <viscoplastic_contact/laws/strain.h>
+#include <viscoplastic_contact/parameters/choices.h>
+
+#include <algorithm>
+#include <cmath>
+
+// What a plane mesh stands for. All that axial symmetry changes in integrals is
+// here: the measure 2 pi r, which comes with the mapping, and the hoop strain
+// u_r/r. Coordinates are (x, y) = (r, z); the third direction of tensors, z in
+// their names, is that around the axis.
+
+namespace Viscoplastic
+{
+  /**
+   * The mapping of cells whose weights JxW integrate over what a cell stands
+   * for: itself, or the ring that it is a section of, with 2 pi r. Values of
+   * finite elements with it are those of the (bi-, tri-)linear mapping.
+   */
+  template <int dim>
+  const Mapping<dim> &
+  mapping_of(const PlaneModel model);
+
+
+
+  /// How many times a section at @p x counts: 2 pi r for that of a ring, or 1.
+  template <int dim>
+  double
+  extent(const PlaneModel model, const Point<dim> &x)
+  {
+    return model == PlaneModel::axisymmetric ? 2. * numbers::PI * x[0] : 1.;
+  }
+
+
+
+  /// Whether a face lies on the axis x = 0, but for what coordinates in mesh
+  /// files may miss.
+  template <typename Face>
+  bool
+  is_on_axis(const Face &face)
+  {
+    double largest = 0.;
+    for (const unsigned int v : face->vertex_indices())
+      largest = std::max(largest, std::abs(face->vertex(v)[0]));
+    return largest <= 1e-9 * face->diameter();
+  }
+
+
+
+  /// The hoop strain u_r/r of shape function @p i of V_h at a quadrature point
+  /// of a ring; on the axis, where u_r is zero, it is the radial strain.
+  template <int dim>
+  double
+  hoop_strain(const FEValuesBase<dim> &values,
+              const unsigned int       i,
+              const unsigned int       q)
+  {
+    if (i % dim != 0)
+      return 0.;
+    const double r = values.quadrature_point(q)[0];
+    return r > 0. ? values.shape_value(i, q) / r : values.shape_grad(i, q)[0];
+  }
+
+
+
+  /// The strain of a displacement with this value and gradient at @p x.
+  template <int dim>
+  SymmetricTensor<2, 3>
+  strain(const Tensor<1, dim> &displacement,
+         const Tensor<2, dim> &gradient,
+         const Point<dim>     &x,
+         const PlaneModel      model)
+  {
+    return strain(gradient,
+                  model == PlaneModel::strain ? 0. :
+                  x[0] > 0.                   ? displacement[0] / x[0] :
+                                                gradient[0][0]);
+  }
+} // namespace Viscoplastic

@@ -1,0 +1,519 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Bodies of revolution (`Geometry/Plane model` = axisymmetric): closed forms with
+rates, the same bodies in plane strain and in 3D, and the discrete identities.
+
+Manufactured solutions for all laws and both laws of friction are in
+test_manufactured.py."""
+
+import numpy as np
+from scipy.optimize import brentq
+
+from harness import TestCase, main, run
+
+RING = {"Dimension": 2, "Geometry/Plane model": "axisymmetric"}
+
+
+def boundaries(*roles):
+    """Entries of the boundaries 0, 1, ..., each a role or a dictionary."""
+    return {
+        f"Boundary {i}/{name}": value
+        for i, role in enumerate(roles)
+        for name, value in ({"Role": role} if isinstance(role, str) else role).items()
+    }
+
+
+def box(cells, corners, *roles, **more):
+    """A box (r and z of its corners), sides inside, outside, below, above."""
+    return {
+        **RING,
+        "Geometry/Arguments": f"{cells} : {corners} : true",
+        "Time/Phases": "1: 1",
+        "Solver/Contact tolerance": 1e-12,
+        "Output/Fields every": 0,
+        **boundaries(*roles),
+        **more,
+    }
+
+
+def pressed(pressure):
+    return {"Role": "traction", "Pressure": f"{pressure}*t"}
+
+
+def compute(entries, ranks=1):
+    return run("ring", entries, ranks=ranks, text="")
+
+
+def error(result, norm="energy"):
+    return result[f"error_{norm}"][-1] / result[f"exact_{norm}"][-1]
+
+
+class Patch(TestCase):
+    """A constant stress with equal radial and hoop parts is met to rounding, on a
+    distorted mesh with hanging nodes, on the axis and beside it."""
+
+    def check(self, inside, ranks=1, **more):
+        E, nu, radial, axial = 1, 0.3, 0.2, -0.5
+        u_r = (radial - nu * (radial + axial)) / E
+        u_z = (axial - 2 * nu * radial) / E
+        corners = f"{0 if inside == 'symmetry' else 0.5}, 0 : 1, 1"
+        result = compute(
+            box(
+                "3, 3",
+                corners,
+                inside,
+                pressed(-radial),
+                "symmetry",
+                pressed(-axial),
+                **{
+                    # straight where roles ask for it
+                    "Geometry/Coordinates": "x + 0.3*x*(x - 0.5)*(1 - x)*y; "
+                    "y*(1 + 0.2*(1 - y)*x)",
+                    "Geometry/Boundary refinements": "0: 1, 2: 1",
+                    "Exact solution/Displacement": f"{u_r}*x*t; {u_z}*y*t",
+                    "Material/Poisson's ratio": nu,
+                    **more,
+                },
+            ),
+            ranks,
+        )
+        self.assertLess(error(result), 1e-12)
+        self.assertLess(error(result, "stress"), 1e-12)
+        self.assertLess(result["force_balance_defect"].max(), 1e-11)
+        r = 0 if inside == "symmetry" else 0.5
+        energy = 0.5 * (2 * radial * u_r + axial * u_z) * np.pi * (1 - r**2)
+        self.assertClose(result["stored_energy"][-1], energy, relative=1e-12)
+        self.assertClose(
+            result["reaction_2_y"][-1], -axial * np.pi * (1 - r**2), relative=1e-11
+        )
+        return result
+
+    def test_on_the_axis(self):
+        self.check("symmetry")
+        self.check("symmetry", **{"Material/Volumetric integration": "mean dilatation"})
+
+    def test_beside_the_axis(self):
+        self.check(pressed(-0.2))
+
+    def test_ranks(self):
+        for ranks in 2, 3:
+            self.check("symmetry", ranks)
+
+
+class Lame(TestCase):
+    """Thick cylinder and sphere under internal pressure: first order, and the
+    estimate is the error."""
+
+    NU = 0.3
+
+    def check_ladder(self, ladder):
+        errors = [error(result) for result in ladder]
+        self.assertGreater(np.log2(errors[0] / errors[1]), 0.97)
+        stresses = [error(result, "stress") for result in ladder]
+        self.assertGreater(np.log2(stresses[0] / stresses[1]), 0.95)
+        for result in ladder:
+            effectivity = result["estimate_total"][-1] / result["error_energy"][-1]
+            self.assertGreater(effectivity, 0.8)
+            self.assertLess(effectivity, 2)
+
+    def cylinder(self, **more):
+        # u = A r + B/r by p = 1 inside, nothing outside, no strain along z
+        inner, outer, nu = 1, 2, self.NU
+        share = inner**2 / (outer**2 - inner**2)
+        A = (1 + nu) * (1 - 2 * nu) * share
+        B = (1 + nu) * share * outer**2
+        return compute(
+            box(
+                "4, 2",
+                f"{inner}, 0 : {outer}, 0.5",
+                pressed(1),
+                "free",
+                "symmetry",
+                "symmetry",
+                **{
+                    "Exact solution/Displacement": f"t*({A}*x + {B}/x); 0",
+                    "Material/Poisson's ratio": nu,
+                    **more,
+                },
+            )
+        )
+
+    def sphere(self, **more):
+        inner, outer, nu = 1, 2, self.NU
+        share = inner**3 / (outer**3 - inner**3)
+        A = (1 - 2 * nu) * share
+        B = (1 + nu) / 2 * share * outer**3
+        size = f"({A} + {B}/sqrt(x^2 + y^2)^3)"
+        return compute(
+            {
+                **RING,
+                "Geometry/Generator": "quarter_hyper_shell",
+                "Geometry/Arguments": f"0, 0 : {inner} : {outer} : 4 : true",
+                **boundaries(pressed(1), "free", "symmetry", "symmetry"),
+                "Time/Phases": "1: 1",
+                "Output/Fields every": 0,
+                "Exact solution/Displacement": f"t*{size}*x; t*{size}*y",
+                "Material/Poisson's ratio": nu,
+                **more,
+            }
+        )
+
+    def test_cylinder(self):
+        self.check_ladder(
+            [self.cylinder(**{"Geometry/Global refinements": g}) for g in (2, 3)]
+        )
+
+    def test_sphere(self):
+        self.check_ladder(
+            [self.sphere(**{"Geometry/Global refinements": g}) for g in (3, 4)]
+        )
+
+    def test_finer_run(self):
+        """A finer run in the place of the solution."""
+        unknown = {"Exact solution/Displacement": ""}
+        fine = self.cylinder(
+            **{
+                "Geometry/Global refinements": 4,
+                "Output/Reference fields": "true",
+                **unknown,
+            }
+        )
+        coarse = {
+            "Geometry/Global refinements": 1,
+            "Material/Volumetric integration": "mean dilatation",
+        }
+        known = self.cylinder(**coarse)
+        compared = self.cylinder(
+            **coarse,
+            **unknown,
+            **{"Exact solution/Reference directory": fine.directory},
+        )
+        for norm in "energy", "h1", "stress":
+            self.assertClose(
+                error(compared, norm), error(known, norm), relative=0.05, what=norm
+            )
+
+
+class Creep(TestCase):
+    """The steady states of power-law creep (Bailey)."""
+
+    RATE, N = 3.125e-14, 5
+    STEEL = {
+        "Material/Young's modulus": 2e5,
+        "Material/Poisson's ratio": 0.3,
+        "Material/Law": "norton",
+        "Material/norton/Rate factor": RATE,
+        "Material/norton/Exponent": N,
+        "Material/norton/Stress cap": 1000,
+        "Initial state/Equilibrate": "true",
+        "Time/Scheme": "backward Euler",
+        "Time/Phases": "1: 10, 10: 10",
+        "Output/Points": "100, 0",
+        "Output/Point fields": "velocity",
+    }
+
+    def test_cylinder(self):
+        """As literature/thick_cylinder_creep, a quarter of which is in plane strain
+        there."""
+        cylinder = compute(
+            box(
+                "16, 1",
+                "100, 0 : 200, 10",
+                {"Role": "traction", "Pressure": 200},
+                "free",
+                "symmetry",
+                "symmetry",
+                **self.STEEL,
+                **{
+                    "Solver/Contact tolerance": 1e-8,
+                    "Output/Lines": "196.875, 5 : 190.625, 5 : 2",
+                    "Output/Line fields": "stress",
+                },
+            )
+        )
+        self.assertClose(cylinder["point0_velocity_x"][-1], 5.190, relative=3e-3)
+        table = np.genfromtxt(
+            cylinder.directory / "line_0.csv", delimiter=",", names=True
+        )
+        last, other = table["stress_zz"][-2:]  # one cell apart
+        self.assertClose(last + 0.5 * (last - other), 250.4, relative=3e-3)
+
+    def test_sphere(self):
+        sphere = compute(
+            {
+                **RING,
+                "Geometry/Generator": "quarter_hyper_shell",
+                "Geometry/Arguments": "0, 0 : 100 : 200 : 4 : true",
+                "Geometry/Global refinements": 4,
+                **boundaries(
+                    {"Role": "traction", "Pressure": 200},
+                    "free",
+                    "symmetry",
+                    "symmetry",
+                ),
+                **self.STEEL,
+                "Output/Fields every": 0,
+            }
+        )
+        n = self.N
+        strength = 3 * 200 / (2 * n) / (100 ** (-3 / n) - 200 ** (-3 / n))
+        velocity = 0.5 * self.RATE * strength**n / 100**2
+        self.assertClose(sphere["point0_velocity_x"][-1], velocity, relative=0.01)
+
+
+class Contact(TestCase):
+    def test_hertz(self):
+        """The ball of the disc in hertz_disc_2d, by all solvers."""
+        forces = []
+        for solver in "direct", "multigrid", "algebraic multigrid":
+            ball = run(
+                "hertz_disc_2d",
+                {
+                    "Geometry/Plane model": "axisymmetric",
+                    "Solver/Linear solver": solver,
+                    "Output/Fields every": 0,
+                },
+            )
+            forces.append(ball["contact_force_y"][-1])
+        self.assertClose(forces, forces[0], relative=1e-8)
+        force, modulus = abs(forces[0]), 1 / (1 - 0.3**2)
+        radius = (0.75 * force / modulus) ** (1 / 3)
+        # of cells of a tenth of it
+        self.assertClose(
+            np.sqrt(ball["contact_area"][-1] / np.pi), radius, relative=0.05
+        )
+        self.assertClose(
+            ball["max_pressure"][-1], 1.5 * force / np.pi / radius**2, relative=0.02
+        )
+        self.assertLess(ball["force_balance_defect"].max(), 1e-9)
+
+    def test_beds(self):
+        """A solid cylinder pressed onto beds of all kinds: a uniform state, on the
+        axis, too."""
+        pressure, stiffness, nu = 0.1, 2, 0.3
+        for name, bed, depth in (
+            (
+                "contact_force_y",
+                {
+                    "Contact law": "normal compliance",
+                    "Compliance": stiffness,
+                    "Friction law": "none",
+                },
+                pressure / stiffness,
+            ),
+            (
+                "contact_force_y",
+                {
+                    "Contact law": "unilateral",
+                    "Friction law": "coulomb",
+                    "Friction coefficient": 0,
+                },
+                0,
+            ),
+            (
+                "reaction_2_y",
+                {"Role": "traction", "Normal stiffness": stiffness},
+                pressure / stiffness,
+            ),
+        ):
+            with self.subTest(name, bed=bed):
+                block = compute(
+                    box(
+                        "4, 4",
+                        "0, 0 : 1, 1",
+                        "symmetry",
+                        "free",
+                        {"Role": "contact", **bed},
+                        pressed(pressure),
+                        **{
+                            "Output/Points": "0, 1; 1, 0",
+                            "Geometry/Boundary refinements": "2: 1, 0: 1",
+                        },
+                    )
+                )
+                self.assertClose(abs(block[name][-1]), pressure * np.pi, relative=1e-9)
+                self.assertClose(
+                    block["point0_y"][-1], -depth - pressure, relative=1e-9
+                )
+                self.assertClose(block["point1_x"][-1], nu * pressure, relative=1e-9)
+
+    def test_ball_in_space(self):
+        """A ball that creeps, on a plane with Coulomb friction, is that in 3D up to
+        the error of its coarse mesh."""
+        creep = {
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 1,
+            "Boundary 4/Friction law": "coulomb",
+            "Boundary 4/Friction coefficient": 0.1,
+            "Time/Phases": "1: 4",
+            "Solver/Contact tolerance": 1e-8,
+            "Output/Fields every": 0,
+        }
+        ball = run(
+            "hertz_disc_2d",
+            {
+                "Geometry/Plane model": "axisymmetric",
+                "Geometry/Global refinements": 4,
+                "Boundary 1/Displacement": "free; 0.03*t",
+                **creep,
+            },
+        )
+        quarter = run("hertz_ball_3d", {"Geometry/Global refinements": 2, **creep})
+        for column, other, error in (
+            ("contact_force_y", "contact_force_z", 0.01),
+            ("stored_energy", "stored_energy", 0.015),
+            ("viscous_dissipation", "viscous_dissipation", 0.03),
+            ("friction_dissipation", "friction_dissipation", 0.15),
+        ):
+            self.assertClose(
+                4 * quarter[other][-1], ball[column][-1], relative=error, what=column
+            )
+
+    def test_ring_that_slips(self):
+        """A flat ring between plates, of which one has friction, is driven outwards:
+        the mean of u_r over its thickness solves an ordinary equation,
+        sigma_r' + (sigma_r - sigma_t)/r = g/h."""
+        height, friction, pressure, nu = 0.1, 0.01, 0.5, 0.3
+        ring = compute(
+            box(
+                "32, 4",
+                f"1, 0 : 2, {height}",
+                pressed(pressure),
+                "free",
+                {
+                    "Role": "contact",
+                    "Friction law": "tresca",
+                    "Friction bound": friction,
+                },
+                "symmetry",
+                **{
+                    "Output/Integrals": "boundary 0: displacement; "
+                    "boundary 1: displacement",
+                },
+            )
+        )
+        lame, mu = nu / (1 + nu) / (1 - 2 * nu), 1 / (2 + 2 * nu)
+        stiff = lame + 2 * mu
+        C = friction / height / (3 * stiff)
+
+        def row(r):
+            # sigma_r of A r + B/r
+            return [stiff + lame, (lame - stiff) / r**2]
+
+        def rest(r):
+            return (2 * stiff + lame) * C * r
+
+        A, B = np.linalg.solve([row(1), row(2)], [-pressure - rest(1), -rest(2)])
+        for i, r in enumerate((1, 2)):
+            mean = (
+                ring[f"integral_boundary_{i}_displacement_x"][-1]
+                / ring[f"area_boundary_{i}"][-1]
+            )
+            self.assertClose(mean, A * r + B / r + C * r**2, relative=1e-3)
+        area = np.pi * 3
+        self.assertClose(ring["slip_area"][-1], area, relative=1e-12)
+        work = ring["friction_dissipation"][-1]
+        self.assertGreater(work, 0)
+        self.assertLess(ring["energy_balance_defect"].max(), 1e-10)
+
+
+class Scenes(TestCase):
+    """Wrong scenes, units, and what is the same as elsewhere."""
+
+    def test_refusals(self):
+        scene = box("2, 2", "0, 0 : 1, 1", "symmetry", "free", "symmetry", "free")
+        for changes, *sentences in (
+            ({"Geometry/Translation": "-0.5, 0"}, "The mesh crosses the axis"),
+            ({"Boundary 0/Role": "free"}, "Boundary 0 lies on the axis", "u_r = 0"),
+            ({"Boundary 2/Role": "free"}, "rigid motion free: translation along y"),
+            (
+                {
+                    "Output/Points": "1, 1",
+                    "Error control/Quantity": "point0_y",
+                },
+                "displacement of elastic bodies of revolution",
+            ),
+            (
+                {"Dimension": 3, "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1"},
+                "is that of meshes in 2D",
+            ),
+        ):
+            with self.subTest(changes):
+                process = run("ring", {**scene, **changes}, text="", check=False)
+                self.assertRefused(process, *sentences)
+
+    def test_units(self):
+        """Of whole bodies, not on a unit of depth."""
+        units = {"Length": "m", "Time": "s", "Stress": "Pa"}
+        result = compute(
+            box(
+                "2, 2",
+                "0, 0 : 1, 1",
+                "symmetry",
+                "free",
+                "symmetry",
+                pressed(1),
+                **{f"Units/{name}": value for name, value in units.items()},
+                **{"Output/Integrals": "boundary 3: stress vector"},
+            )
+        )
+        header = (result.directory / "statistics.csv").read_text().splitlines()[0]
+        for label in (
+            *("load_y [N]", "stored_energy [J]", "area_boundary_3 [m^2]"),
+            "integral_boundary_3_stress_vector_y [N]",
+        ):
+            self.assertIn(label, header)
+
+    def test_far_from_the_axis(self):
+        """A thin ring is a body in plane strain, all around: under the given normal
+        stress of Coulomb's law, with a material that is excavated, and on meshes
+        that follow a front of slip, with hanging nodes."""
+        radius = 1e6
+        for scene in "coulomb_block_2d", "excavated_column", "slab_adaptive":
+            with self.subTest(scene):
+                plane, ring = (
+                    run(
+                        scene,
+                        {"Output/Fields every": 0, "Output/Points": "", **changes},
+                    )
+                    for changes in (
+                        {},
+                        {
+                            "Geometry/Plane model": "axisymmetric",
+                            "Geometry/Translation": f"{radius}, 0",
+                        },
+                    )
+                )
+                for column in (
+                    *("strain_energy", "stored_energy", "external_work"),
+                    *(c for c in ("friction_dissipation",) if c in plane.statistics),
+                ):
+                    size = abs(plane[column]).max()
+                    self.assertClose(
+                        ring[column] / (2 * np.pi * radius),
+                        plane[column],
+                        absolute=1e-5 * size,
+                        what=column,
+                    )
+
+    def test_effort(self):
+        """The round pillar takes the iterations of the long one."""
+        for solver in "multigrid", "algebraic multigrid":
+            long, round = (
+                run(
+                    "salt_pillar_2d",
+                    {
+                        "Geometry/Plane model": model,
+                        "Geometry/Arguments": "16, 8 : 0, 0 : 6, 3 : true",
+                        "Geometry/Global refinements": 2,
+                        "Solver/Linear solver": solver,
+                        "Time/Phases": "2.592e6: 12",
+                        "Output/Fields every": 0,
+                    },
+                )["linear_iterations"].sum()
+                for model in ("strain", "axisymmetric")
+            )
+            self.assertLess(round, 1.15 * long, solver)
+
+
+if __name__ == "__main__":
+    main()

@@ -182,8 +182,11 @@ namespace Viscoplastic
   void
   FaceTruncation::project(const ContactLayout &face, Vector<double> &x) const
   {
+    // Twice: what rounding leaves beside the space of large forces that are
+    // blocked, no iteration on the space takes away.
     for (unsigned int n = 0; n < face.n_nodes(); ++n)
-      face.set_node_values(projector[n] * face.node_values(x, n), n, x);
+      face.set_node_values(
+        projector[n] * (projector[n] * face.node_values(x, n)), n, x);
   }
 
 

@@ -54,6 +54,17 @@ namespace Viscoplastic
       Tensor<1, 3>
       gradient(const Tensor<1, 3> &x, Tensor<2, 3> *hessian = nullptr) const;
 
+      /// Where Newton's method has come to a kink, since the norm of a slip is
+      /// zero there: whether its point starts to slip, and along which
+      /// direction of descent.
+      std::optional<Tensor<1, 3>>
+      departure(const Tensor<1, 3> &x) const;
+
+      /// The step along a direction from constraints held.
+      Tensor<1, 3>
+      newton_direction(Tensor<2, 3>        hessian,
+                       const Tensor<1, 3> &downhill) const;
+
       /// How far J decreases from @p x along a direction of descent.
       double
       step_length(const Tensor<1, 3> &x, const Tensor<1, 3> &direction) const;
@@ -195,6 +206,54 @@ namespace Viscoplastic
 
 
 
+    Tensor<1, 3>
+    NodeProblem::newton_direction(Tensor<2, 3>        hessian,
+                                  const Tensor<1, 3> &downhill) const
+    {
+      double scale = 0.;
+      for (unsigned int d = 0; d < 3; ++d)
+        scale = std::max(scale, stiffness[d][d]);
+      hessian = projector * hessian * projector;
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = 0; j < 3; ++j)
+          hessian[i][j] += scale * ((i == j) - projector[i][j]);
+      return projector * (invert(hessian) * downhill);
+    }
+
+
+
+    std::optional<Tensor<1, 3>>
+    NodeProblem::departure(const Tensor<1, 3> &x) const
+    {
+      for (unsigned int p = begin; p < end; ++p)
+        if (has_friction(p) && !is_held[p - begin] &&
+            !(state.slip_with(face.points[p], p, x).norm() > 10. * negligible))
+          {
+            // Of the others, as if this had no friction.
+            ContactState without(state);
+            without.bound[p] = 0.;
+            NodeProblem others(
+              face, face.points[p].node, stiffness, force, without);
+            others.is_held   = is_held;
+            others.projector = projector;
+            Tensor<2, 3>       hessian;
+            const Tensor<1, 3> downhill =
+              -1. * projector * others.gradient(x, &hessian);
+            const Tensor<1, 2> wanted =
+              nearest_multiplier(face.points[p], downhill);
+            if (!(wanted.norm() > state.bound[p] * (1. + rounding)))
+              return {}; // it sticks
+            const Tensor<1, 3> rest =
+              downhill -
+              projector * node_force(face.points[p],
+                                     wanted * (state.bound[p] / wanted.norm()));
+            return newton_direction(hessian, rest);
+          }
+      return {};
+    }
+
+
+
     double
     NodeProblem::step_length(const Tensor<1, 3> &x,
                              const Tensor<1, 3> &direction) const
@@ -235,12 +294,10 @@ namespace Viscoplastic
         {
           Tensor<2, 3>       hessian;
           const Tensor<1, 3> downhill = -1. * projector * gradient(x, &hessian);
-          hessian                     = projector * hessian * projector;
-          for (unsigned int i = 0; i < 3; ++i)
-            for (unsigned int j = 0; j < 3; ++j)
-              hessian[i][j] += scale * ((i == j) - projector[i][j]);
-          const Tensor<1, 3> direction =
-            projector * (invert(hessian) * downhill);
+          Tensor<1, 3>       direction = newton_direction(hessian, downhill);
+          if (!(direction.norm() > negligible))
+            if (const auto leaving = departure(x))
+              direction = *leaving;
           if (!(direction.norm() > negligible) || !(direction * downhill > 0.))
             break;
           const double step = step_length(x, direction);

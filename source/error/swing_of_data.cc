@@ -231,8 +231,9 @@ namespace Viscoplastic
       !end.rate ? 1. :
                   std::min(1., end.state.k * end.rate->relaxation_rate);
     Swing swing;
-    // Below this it is rounding.
-    if (largest > 1e-20 * forces)
+    // Below this it is rounding. A bound without any force rubs nothing; what
+    // foundations move of the body is counted below.
+    if (forces > 0. && largest > 1e-20 * forces)
       {
         swing.share = remembered * std::sqrt(largest / forces);
         swing.energy_norm =

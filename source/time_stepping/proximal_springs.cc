@@ -371,9 +371,10 @@ namespace Viscoplastic
                       discretization.face->layout(),
                       contact,
                       discretization.face_restriction().gather(change));
+        const bool learns = n >= first_learned_step;
         if (n + 1 >= first_learned_step)
           {
-            if (n >= first_learned_step)
+            if (learns)
               {
                 const double learned =
                   learned_step(last_center, whole, last_change, change);
@@ -385,8 +386,9 @@ namespace Viscoplastic
         center = u;
         center.add(step, change);
         // A body on soft ground is where its loads are in balance as a whole,
-        // long before springs have let it go there.
-        if (discretization.face->gives_way())
+        // long before springs have let it go there. Steps that learn have the
+        // springs where they are to be, but exaggerate the strains.
+        if (discretization.face->gives_way() && !learns)
           {
             change = center;
             change -= old_u;

@@ -51,6 +51,11 @@ def of_promise(promise, sentence):
     best = re.search(r"bound is (\S+) at best", sentence)
     if best and float(best[1]) < 1e-9:
         return ""  # rounding, of a tolerance that asks for more
+    made = re.search(r"rounding alone makes (\S+) or more", sentence)
+    if made and float(made[1]) > 1e-3:
+        return ""  # no solution is in these numbers
+    if "use the direct linear solver" in sentence:
+        return ""  # which is the one for such a body
     if promise and PROMISES[promise].search(sentence):
         return f"refused, but it is {promise}: {sentence[:300]}"
     return ""

@@ -293,6 +293,22 @@ class Estimate(TestCase):
                     self.assertGreaterEqual(share[-1], least)
                     self.assertLessEqual(share[-1], most)
 
+    def test_bound_that_swings_where_nothing_presses(self):
+        """It is no part of any force."""
+        result = run(
+            "slab",
+            {
+                **SLAB,
+                "Material/Law": "elastic",
+                "Boundary 0/Traction": "0; 0",
+                "Boundary 2/Contact law": "unilateral",
+                "Boundary 2/Gap": "0.1",
+                "Boundary 2/Friction bound": "0.03*abs(sin(7*t))",
+            },
+        )
+        self.assertEqual(result["max_displacement"].max(), 0)
+        self.assertEqual(result["estimate_time"].max(), 0)
+
     def test_elastic_scene_has_no_time_error(self):
         result = run("elastic_frictionless")
         self.assertEqual(result["estimate_time"].max(), 0)

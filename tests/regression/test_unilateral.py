@@ -459,6 +459,34 @@ class Held(TestCase):
                 )
                 self.assertLess(found["contact_iterations"][-1], 60)
 
+    def test_nearly_incompressible_on_a_soft_bed(self):
+        """As soft as the springs of the method where the bulk is stiff (drawn by
+        contrib/fuzz): steps that learn are not settled as rigid bodies are."""
+        slab = {
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "2, 1 : 0, 0 : 1, 0.238 : true",
+            "Geometry/Global refinements": 1,
+            "Material/Young's modulus": 2.358,
+            "Material/Poisson's ratio": 0.4999,
+            "Boundary 0/Role": "symmetry",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "normal compliance",
+            "Boundary 2/Compliance": "0.4795*(1.5 + sin(7*x))",
+            "Boundary 2/Friction law": "coulomb",
+            "Boundary 2/Friction coefficient": 0.2,
+            "Boundary 2/Gap": "0.001237*x^2",
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Traction": "0; -0.002582*t",
+            "Time/Phases": "1: 2",
+            "Solver/Contact tolerance": 1e-8,
+        }
+        for solver in "direct", "multigrid":
+            with self.subTest(solver=solver):
+                found = run("slab", {**slab, "Solver/Linear solver": solver}, text="")
+                self.assertClose(found["contact_force_y"][-1], -0.002582, relative=1e-6)
+                self.assertLess(found["contact_iterations"].max(), 40)
+
     def test_relieved_of_all_loads(self):
         """The error is relative to what there was, not to the nothing that is
         left, and so are the bounds of friction."""

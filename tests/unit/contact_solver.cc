@@ -478,6 +478,32 @@ namespace
 
 
 
+  TEST(ContactSolver, RoundingOfBlockedForcesIsBlocked)
+  {
+    // As of the body in equilibrium on an oblique foundation: no iteration on
+    // the space could reduce what is left beside it.
+    Problem            problem;
+    const Tensor<1, 3> normal({0.7, 0.3, 0.9});
+    for (unsigned int node = 0; node < 10; ++node)
+      problem.add_node(3, {}, {normal / normal.norm()});
+    ContactState state(std::vector<double>(10, 0.));
+    state.sticks.assign(10, true);
+    const FaceTruncation truncation = make_truncation(problem.face, state, {});
+    Random               random(7);
+    Vector<double>       x(30);
+    for (unsigned int node = 0; node < 10; ++node)
+      problem.face.set_node_values(random.uniform() * normal, node, x);
+    const double blocked = x.l2_norm();
+    truncation.project(problem.face, x);
+    EXPECT_LT(x.l2_norm(), 1e-15 * blocked);
+    Vector<double> again(x);
+    truncation.project(problem.face, again);
+    again -= x;
+    EXPECT_LT(again.l2_norm(), 1e-14 * x.l2_norm());
+  }
+
+
+
   // ------------------------------------------------------ what must not pass
 
   TEST(ContactSolver, RefusesValuesThatAreNotFinite)

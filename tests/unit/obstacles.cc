@@ -335,4 +335,56 @@ namespace
           }
     EXPECT_LT(n_refused, 0.02 * n_solved);
   }
+
+
+
+  TEST(Obstacles, SlipThatBeginsBesideOneThatIsUnderWay)
+  {
+    // A node of an edge between a rigid and a soft plane with friction on both,
+    // as a solver met it. On the way to its minimum the slip on the rigid one
+    // vanishes, and has to begin anew.
+    ContactLayout        face;
+    ContactLayout::Point point;
+    point.node       = 0;
+    point.n_tangents = 2;
+    point.map = {{Tensor<1, 3>({0., 1., 0.}), Tensor<1, 3>({0., 0., 1.})}};
+    face.points.push_back(point);
+    point.map[0] = Tensor<1, 3>({1., 0., 0.});
+    face.points.push_back(point);
+    point.n_tangents  = 1;
+    point.is_obstacle = true;
+    point.map         = {{Tensor<1, 3>({-1., 0., 0.}), Tensor<1, 3>()}};
+    face.points.push_back(point);
+    point.map[0] = Tensor<1, 3>({0., -1., 0.});
+    point.compliance.add(0.416666666667, 1.);
+    face.points.push_back(point);
+    face.has_obstacles = true;
+    face.first_dof.push_back(3);
+    face.first_point.push_back(4);
+
+    const Tensor<2, 3> D(
+      {{0.0953053762799, 0.029781772858, 4.58165967476e-05},
+       {0.029781772858, 0.0952130180243, 4.72171061872e-05},
+       {4.58165967476e-05, 4.72171061872e-05, 0.0740933787698}});
+    const Tensor<1, 3> force(
+      D * Tensor<1, 3>({0., -7.41943195166e-07, 0.}) +
+      Tensor<1, 3>(
+        {-0.000239058511726, -0.000517824549264, 0.000322814252215}));
+    ContactState       state({6.36280209843e-05,
+                              0.000320944246214,
+                              -1.03209255237e-17,
+                              -0.00108932972468});
+    const Tensor<1, 3> x = relax_node(face, 0, invert(D), force, state);
+    EXPECT_GT(x[2], 1e-9);
+    Vector<double> residual(3), of_points(3);
+    face.set_node_values(force - D * x, 0, residual);
+    for (unsigned int p = 0; p < 4; ++p)
+      if (!face.points[p].is_obstacle)
+        state.slip[p] = slip(face.points[p], x);
+      else
+        state.slip[p][0] = face.points[p].map[0] * x;
+    fit_multipliers(face, residual, state, of_points);
+    of_points -= residual;
+    EXPECT_LT(of_points.l2_norm(), 1e-12 * residual.l2_norm());
+  }
 } // namespace

@@ -94,6 +94,9 @@ namespace Viscoplastic
     , face(scene.has_contact_points() ?
              std::make_unique<ContactFace<dim>>(space) :
              nullptr)
+    , held_traction(HeldTraction<dim>::is_needed(scene) ?
+                      std::make_unique<HeldTraction<dim>>(space) :
+                      nullptr)
     , n_steps(expected_steps(scene))
   {}
 

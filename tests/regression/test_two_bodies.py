@@ -95,46 +95,101 @@ SIDE_BY_SIDE = "6, 4 : 0, 0 : 1, 1 : true | 6, 4 : 0, 1 : 1, 2 : true"
 class Limits(TestCase):
     """What two bodies have in common with one."""
 
-    def test_glued_bodies_are_one(self):
-        """On meshes that match, to rounding, also in flow."""
-        load = {
+    def pair_and_one(self, cells, height, load, **more):
+        """Two glued blocks of these cells and this height each, and one of both."""
+        n, m = cells
+        common = {
             **TIGHT,
             "Boundary 0/Role": "free",
             "Boundary 2/Role": "clamped",
-            "Material 0/Law": "maxwell",
-            "Material 0/maxwell/Viscosity": 2,
-            "Time/Phases": "2: 4",
+            **more,
         }
-        shear = {"Pressure": "0.01*t*(1 + x)", "Traction": "0.01*t; 0"}
         two = run(
             "two_blocks_2d",
             {
-                **load,
+                **common,
                 **GLUED,
-                "Geometry/Arguments": SIDE_BY_SIDE,
-                "Boundary 20/Role": "free",
-                **{f"Boundary 23/{name}": value for name, value in shear.items()},
+                "Geometry/Arguments": f"{n}, {m} : 0, 0 : 1, {height} : true | "
+                f"{n}, {m} : 0, {height} : 1, {2 * height} : true",
+                "Boundary 20/Role": common["Boundary 0/Role"],
+                **{f"Boundary 23/{name}": value for name, value in load.items()},
             },
         )
-        text = "\n\n".join(self.parts_of_one_body())
         one = run(
             "one_block",
             {
-                **load,
+                **common,
                 "Geometry/Generator": "subdivided_hyper_rectangle",
-                "Geometry/Arguments": "6, 8 : 0, 0 : 1, 2 : true",
-                "Geometry/Material ids": "if(y < 1, 0, 1)",
+                "Geometry/Arguments": f"{n}, {2 * m} : 0, 0 : 1, {2 * height} : true",
+                "Geometry/Material ids": f"if(y < {height}, 0, 1)",
                 "Boundary 3/Role": "traction",
                 "Boundary 3/Contact law": "not given",
                 "Boundary 3/Against": "",
-                **{f"Boundary 3/{name}": value for name, value in shear.items()},
+                **{f"Boundary 3/{name}": value for name, value in load.items()},
             },
-            text=text,
+            text="\n\n".join(self.parts_of_one_body()),
+        )
+        return two, one
+
+    def test_glued_bodies_are_one(self):
+        """On meshes that match, to rounding, also in flow."""
+        two, one = self.pair_and_one(
+            (6, 4),
+            1,
+            {"Pressure": "0.01*t*(1 + x)", "Traction": "0.01*t; 0"},
+            **{
+                "Material 0/Law": "maxwell",
+                "Material 0/maxwell/Viscosity": 2,
+                "Time/Phases": "2: 4",
+            },
         )
         for column in ("point0_x", "point0_y", "point1_x", "strain_energy"):
             scale = abs(one[column]).max()
             self.assertClose(two[column], one[column], absolute=1e-10 * scale)
         self.assertGreater(abs(one["point0_x"]).max(), 0.05)
+
+    def test_glue_in_the_error_bar(self):
+        """Layers of one cell, whose tractions meet at the glue alone: it counts like
+        any face between two cells, also for a force."""
+        two, one = self.pair_and_one(
+            (8, 1),
+            0.125,
+            {"Pressure": 0, "Traction": "0.01*t*sin(pi*x); 0"},
+            **{
+                "Output/Points": "0.3, 0.25",
+                "Boundary 0/Role": "symmetry",
+                "Error control/Error bar": "true",
+                "Error control/Quantity": "reaction_2_x",
+            },
+        )
+        for column in ("estimate_space", "quantity_total"):
+            self.assertClose(two[column][-1], one[column][-1], relative=0.05)
+
+    def test_what_holds_bodies_is_the_pressure_of_contact(self):
+        """Where nothing opens, the error bar of bilateral contact, whose pressure is
+        a reaction, is that of unilateral contact, where it is a multiplier; that of a
+        point, too. With hanging nodes, on ranks."""
+        for dim, contact, top, column, ranks in (
+            (2, 3, 23, "point0_y", 1),
+            (3, 5, 25, "point0_z", 3),
+        ):
+            bilateral, unilateral = (
+                run(
+                    f"two_blocks_{dim}d",
+                    {
+                        **TIGHT,
+                        f"Boundary {contact}/Contact law": law,
+                        f"Boundary {top}/Pressure": "0.01*t*(1 + x)",
+                        "Geometry/Boundary refinements": "0: 1",
+                        "Error control/Error bar": "true",
+                        "Error control/Quantity": column,
+                    },
+                    ranks=ranks,
+                )
+                for law in ("bilateral", "unilateral")
+            )
+            for name in ("estimate_space", "quantity_total"):
+                self.assertClose(bilateral[name][-1], unilateral[name][-1], 1e-6)
 
     @staticmethod
     def parts_of_one_body():

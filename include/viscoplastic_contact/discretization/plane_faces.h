@@ -81,9 +81,11 @@ namespace Viscoplastic
     Point<d> xi;
     for (unsigned int i = 0; i < d; ++i)
       xi[i] = 0.5;
-    // Newton's method; one step where the face is a parallelogram.
+    // Newton's method; one step where the face is a parallelogram. What a step
+    // of this size leaves is its square, below the rounding of small faces far
+    // from the origin.
     double change = 1.;
-    for (unsigned int n = 0; change > 1e-13; ++n)
+    for (unsigned int n = 0; change > 1e-8; ++n)
       {
         AssertThrow(n < 50,
                     ExcMessage("A face on an interface between two bodies is "

@@ -130,6 +130,12 @@ SCENES = {
         "verification/literature/punch_with_friction": Scene(
             {"Geometry/Boundary refinements": "4: 3"}
         ),
+        "verification/literature/roller_on_block": Scene(
+            {
+                "Geometry/Arguments": "16, 16 : 0, -1 : 1, 0 : true | "
+                "20, 20 : 0, 1 : 1, 2 : true"
+            }
+        ),
         "verification/literature/salt_cavity": Scene(phases("5: 2, 40: 4")),
         "verification/literature/slip_zone": Scene(
             {"Geometry/Boundary refinements": "4: 2"}

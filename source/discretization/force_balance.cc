@@ -292,4 +292,6 @@ namespace Viscoplastic
 
   INSTANTIATE(2)
   INSTANTIATE(3)
+
+#undef INSTANTIATE
 } // namespace Viscoplastic

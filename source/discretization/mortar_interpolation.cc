@@ -39,12 +39,13 @@ namespace Viscoplastic
 
       std::array<Point<dim>, n> vertices;
       std::array<Row, n>        nodes;
+      double                    softness = 0.;
 
       template <class Archive>
       void
       serialize(Archive &archive, const unsigned int)
       {
-        archive &vertices &nodes;
+        archive &vertices &nodes &softness;
       }
     };
 
@@ -151,6 +152,42 @@ namespace Viscoplastic
         return result;
       }
 
+      template <typename Softness>
+      std::vector<PlaceOpposite<dim>>
+      opposite(const std::vector<Point<dim>> &places,
+               const Softness                &softness) const
+      {
+        const std::vector<PrimaryFace<dim>> primary  = primary_faces(softness);
+        const std::vector<PlaneFace<d>>     in_plane = projected(primary);
+        const auto                          tree     = tree_of(in_plane);
+        std::vector<PlaceOpposite<dim>>     result;
+        for (const Point<dim> &place : places)
+          {
+            result.emplace_back();
+            const Point<d> x = project(place);
+            for (const auto &[box, i] :
+                 tree | boost::geometry::index::adaptors::queried(
+                          boost::geometry::index::intersects(x)))
+              if (contains(in_plane[i], x))
+                {
+                  const Point<d> xi = reference_position<d>(in_plane[i], x);
+                  Integrals      sum;
+                  for (unsigned int v = 0; v < n; ++v)
+                    {
+                      const double phi =
+                        GeometryInfo<d>::d_linear_shape_function(xi, v);
+                      sum.add(phi, primary[i].nodes[v]);
+                      result.back().position += phi * primary[i].vertices[v];
+                    }
+                  for (const auto &[node, weight] : sum.products)
+                    result.back().nodes.push_back({node, weight});
+                  result.back().softness = primary[i].softness;
+                  break;
+                }
+          }
+        return result;
+      }
+
     private:
       static constexpr unsigned int d = dim - 1;
       static constexpr unsigned int n = GeometryInfo<dim>::vertices_per_face;
@@ -225,8 +262,9 @@ namespace Viscoplastic
 
       /// The faces of the primary side that may lie opposite to owned faces of
       /// the secondary one. Collective.
+      template <typename Softness>
       std::vector<PrimaryFace<dim>>
-      primary_faces() const
+      primary_faces(const Softness &softness) const
       {
         std::vector<Point<d>> places;
         for_each_face(pair.secondary,
@@ -252,6 +290,7 @@ namespace Viscoplastic
                                             box) != NeighborType::not_neighbors)
                 {
                   PrimaryFace<dim> face;
+                  face.softness = softness(cell, f);
                   for (unsigned int v = 0; v < n; ++v)
                     {
                       face.vertices[v] = cell->face(f)->vertex(v);
@@ -269,24 +308,39 @@ namespace Viscoplastic
         return result;
       }
 
+      std::vector<PlaneFace<d>>
+      projected(const std::vector<PrimaryFace<dim>> &faces) const
+      {
+        std::vector<PlaneFace<d>> result(faces.size());
+        for (std::size_t i = 0; i < faces.size(); ++i)
+          for (unsigned int v = 0; v < n; ++v)
+            result[i][v] = project(faces[i].vertices[v]);
+        return result;
+      }
+
+      static auto
+      tree_of(const std::vector<PlaneFace<d>> &faces)
+      {
+        std::vector<std::pair<BoundingBox<d>, std::size_t>> boxes;
+        for (std::size_t i = 0; i < faces.size(); ++i)
+          {
+            BoundingBox<d> box = box_of<d>(faces[i]);
+            box.extend(1e-10 * box.side_length(0)); // see contains()
+            boxes.emplace_back(box, i);
+          }
+        return pack_rtree(boxes);
+      }
+
       /// Over owned faces, for nodes of any rank. Collective.
       std::map<Node, Integrals>
       integrate() const
       {
-        const std::vector<PrimaryFace<dim>> primary = primary_faces();
-        std::vector<PlaneFace<d>>           in_plane;
-        std::vector<std::pair<BoundingBox<d>, std::size_t>> boxes;
-        for (const auto &face : primary)
-          {
-            PlaneFace<d> projected;
-            for (unsigned int v = 0; v < n; ++v)
-              projected[v] = project(face.vertices[v]);
-            boxes.emplace_back(box_of<d>(projected), in_plane.size());
-            in_plane.push_back(projected);
-          }
-        const auto                tree = pack_rtree(boxes);
-        const QGaussSimplex<d>    quadrature(3);
-        std::map<Node, Integrals> result;
+        const std::vector<PrimaryFace<dim>> primary =
+          primary_faces([](const auto &, const unsigned int) { return 0.; });
+        const std::vector<PlaneFace<d>> in_plane = projected(primary);
+        const auto                      tree     = tree_of(in_plane);
+        const QGaussSimplex<d>          quadrature(3);
+        std::map<Node, Integrals>       result;
         for_each_face(
           pair.secondary, 1., [&](const auto &cell, const unsigned int f) {
             if (!cell->is_locally_owned())
@@ -455,12 +509,37 @@ namespace Viscoplastic
 
 
 
-  template MortarRows
-  mortar_interpolation(const DoFHandler<2> &,
-                       const AffineConstraints<double> &,
-                       const ContactPair<2> &);
-  template MortarRows
-  mortar_interpolation(const DoFHandler<3> &,
-                       const AffineConstraints<double> &,
-                       const ContactPair<3> &);
+  template <int dim>
+  std::vector<PlaceOpposite<dim>>
+  places_opposite(const DoFHandler<dim>           &dof_handler,
+                  const AffineConstraints<double> &hanging_nodes,
+                  const ContactPair<dim>          &pair,
+                  const std::vector<Point<dim>>   &places,
+                  const std::function<double(
+                    const typename DoFHandler<dim>::active_cell_iterator &,
+                    const unsigned int)>          &softness)
+  {
+    return Sides<dim>(dof_handler, hanging_nodes, pair)
+      .opposite(places, softness);
+  }
+
+
+
+#define INSTANTIATE(dim)                                                      \
+  template MortarRows mortar_interpolation(const DoFHandler<dim> &,           \
+                                           const AffineConstraints<double> &, \
+                                           const ContactPair<dim> &);         \
+  template std::vector<PlaceOpposite<dim>> places_opposite(                   \
+    const DoFHandler<dim> &,                                                  \
+    const AffineConstraints<double> &,                                        \
+    const ContactPair<dim> &,                                                 \
+    const std::vector<Point<dim>> &,                                          \
+    const std::function<                                                      \
+      double(const typename DoFHandler<dim>::active_cell_iterator &,          \
+             const unsigned int)> &);
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+
+#undef INSTANTIATE
 } // namespace Viscoplastic

@@ -261,14 +261,16 @@ namespace Viscoplastic
       dual.norm = 0.;
     dual.cartesian = space.ghosted_vector();
     space.to_cartesian(dual.w, dual.cartesian);
+    // The load of a point does not hold w, that of friction does.
+    DistributedVector force = point_load;
+    force -= elastic;
     if (d.face)
       {
-        // The load of a point does not hold w, that of friction does.
-        DistributedVector force = point_load;
-        force -= elastic;
         dual.force   = d.face->restriction().gather(force);
         dual.density = density(dual.force);
       }
+    if (d.held_traction)
+      d.held_traction->add_density(force, dual.density);
     return dual;
   }
 

@@ -245,8 +245,9 @@ namespace Viscoplastic
         const bool   forgets = end.rate && (quantity.is_force() || tangent);
         const double memory =
           forgets ? nonlinearity(d.stress_space, state, *end.rate) : 0.;
-        const auto     products = space_estimator.multiply(state, dual, memory);
-        Vector<double> indicators(products.of_both);
+        const auto products =
+          space_estimator.multiply(state, end.forces, dual, memory);
+        Vector<double>      indicators(products.of_both);
         std::vector<double> sums(3, 0.);
         const auto          add_up = [&] {
           sums.assign(3, 0.);

@@ -55,13 +55,13 @@ namespace Viscoplastic
             residual = tangential(traction, condition.normal);
             break;
           case BoundaryRole::contact:
-            if (condition.is_glued())
-              break;
-            if (condition.is_unilateral())
+            if (condition.is_unilateral() || condition.against)
               {
                 residual = traction + multiplier_density;
                 break;
               }
+            if (condition.is_glued())
+              break;
             residual =
               tangential(traction + multiplier_density, condition.normal);
             if (condition.contact_law == ContactLaw::given_stress)
@@ -70,20 +70,6 @@ namespace Viscoplastic
             break;
         }
       return residual;
-    }
-
-
-
-    /// What of the residual of a loaded face is known where another body is in
-    /// contact with it.
-    template <int dim>
-    Tensor<1, dim>
-    on_other_side(const BoundaryCondition<dim> &contact,
-                  const Tensor<1, dim>         &residual)
-    {
-      return contact.is_glued()      ? Tensor<1, dim>() :
-             contact.is_unilateral() ? residual :
-                                       tangential(residual, contact.normal);
     }
   } // namespace
 
@@ -186,12 +172,10 @@ namespace Viscoplastic
   double
   ResidualEstimator<dim>::off_the_law(const BoundaryFace &face,
                                       const unsigned int  q,
+                                      const double        k,
                                       const double        w,
                                       const double        p) const
   {
-    const double k =
-      cells[face.cell].stiffness.smallest_deviatoric_eigenvalue() /
-      face.diameter;
     if (!face.condition->gives_way())
       return w > 0. ? k * w : std::min(-k * w, p);
     NormalCompliance foundation;
@@ -200,6 +184,45 @@ namespace Viscoplastic
     return p > 0. ? std::min(k * std::abs(w - foundation.penetration(p)),
                              another_pressure) :
                     std::min(k * std::max(0., w), another_pressure);
+  }
+
+
+
+  template <int dim>
+  double
+  ResidualEstimator<dim>::off_the_interface(const BoundaryFace   &face,
+                                            const unsigned int    q,
+                                            const Tensor<1, dim> &u,
+                                            const Tensor<1, dim> &relative_u,
+                                            const double          gap,
+                                            const Tensor<1, dim> &density,
+                                            const Fields         &fields) const
+  {
+    const auto &opposite = face.opposite[q];
+    if (opposite.nodes.empty())
+      return 0.;
+    const BoundaryCondition<dim> &condition = *face.condition;
+    Tensor<1, dim>                jump      = u;
+    for (const auto &[node, weight] : opposite.nodes)
+      for (unsigned int d = 0; d < dim; ++d)
+        jump[d] -= weight * fields.u.begin()[node + d];
+    const double         k     = 1. / opposite.softness;
+    const Tensor<1, dim> delta = jump - relative_u;
+    const double         along = delta * condition.normal,
+                 across        = tangential(delta, condition.normal).norm();
+    if (condition.is_glued())
+      return k * delta.norm();
+    const double of_slip =
+      std::min(k * across, tangential(density, condition.normal).norm());
+    return std::hypot(of_slip,
+                      condition.is_bilateral() ?
+                        k * along :
+                        off_the_law(face,
+                                    q,
+                                    k,
+                                    jump * condition.normal -
+                                      opposite.distance - gap,
+                                    std::max(0., density * condition.normal)));
   }
 
 
@@ -214,9 +237,8 @@ namespace Viscoplastic
     const BoundaryCondition<dim> &condition = *face.condition;
     const LocalCell              &cell      = cells[face.cell];
     const FaceShape              &shape = shapes[cell.shape].faces[face.face];
-    const bool                    has_multipliers =
-                 condition.has_contact_points() ||
-                 (face.opposite && face.opposite->has_contact_points()),
+    const bool has_multipliers          = condition.has_contact_points() ||
+                                 condition.against || face.is_other_side,
                varies =
                  condition.carries_load() && condition.load_depends_on_time(),
                has_bound   = condition.has_given_bound(),
@@ -239,7 +261,7 @@ namespace Viscoplastic
         if (has_multipliers)
           density = at_point(fields.multiplier_density->begin());
         // Where pieces meet, the field has the pressure of all of them.
-        if (opens && !condition.has_friction())
+        if (opens && !condition.has_friction() && !condition.against)
           density = (density * condition.normal) * condition.normal;
         if (fields.t)
           {
@@ -256,27 +278,33 @@ namespace Viscoplastic
                            (bounds_vary ?
                               condition.bound(face.positions[q], *fields.t) :
                               face.bounds[q]));
-            if (opens)
-              {
-                const double gap =
-                  bounds_vary ? condition.gap(face.positions[q], *fields.t) :
-                                face.gaps[q];
-                result[n_face_points + q][1] =
-                  off_the_law(face,
-                              q,
-                              at_point(condition.against ?
-                                         fields.approach->begin() :
-                                         fields.u.begin()) *
-                                  condition.normal -
-                                gap,
-                              std::max(0., density * condition.normal));
-              }
+            const double gap =
+              !opens      ? 0. :
+              bounds_vary ? condition.gap(face.positions[q], *fields.t) :
+                            face.gaps[q];
+            double &off_law = result[n_face_points + q][1];
+            if (!face.opposite.empty())
+              off_law = off_the_interface(face,
+                                          q,
+                                          at_point(fields.u.begin()),
+                                          at_point(fields.relative_u->begin()),
+                                          gap,
+                                          density,
+                                          fields);
+            else if (opens)
+              off_law =
+                off_the_law(face,
+                            q,
+                            cell.stiffness.smallest_deviatoric_eigenvalue() /
+                              face.diameter,
+                            at_point(fields.u.begin()) * condition.normal - gap,
+                            std::max(0., density * condition.normal));
           }
         if (!face.springs.empty())
           given -= face.springs[q].stiffness * at_point(fields.u.begin());
         result[q] = contradiction(condition, tractions[q], given, density);
-        if (face.opposite)
-          result[q] = on_other_side(*face.opposite, result[q] + density);
+        if (face.is_other_side)
+          result[q] += density;
         if (!face.springs.empty())
           result[q] = face.springs[q].weight * result[q];
       }

@@ -7,6 +7,7 @@
 #include <viscoplastic_contact/error/residual_estimator.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,6 +26,8 @@ namespace Viscoplastic
     make_faces();
     make_face_values();
     make_initial_stress();
+    if (!stress_space.space.mortar_rows.empty())
+      find_other_bodies();
     subface_shape_of.clear();
   }
 
@@ -120,7 +123,7 @@ namespace Viscoplastic
             {
               const auto &condition =
                 space.scene.boundary.at(cell->face(f)->boundary_id());
-              if (condition.prescribes_all() ||
+              if ((condition.prescribes_all() && !condition.against) ||
                   !cells[number_of(cell)].is_present ||
                   (local.has_hoops && is_on_axis(cell->face(f))))
                 continue;
@@ -170,13 +173,15 @@ namespace Viscoplastic
     const unsigned int            number,
     const BoundaryCondition<dim> &condition)
   {
-    BoundaryFace face{
-      number, f, &condition, cell->face(f)->diameter(), {}, {}, {}, {}, {}, {}};
+    BoundaryFace face{};
+    face.cell      = number;
+    face.face      = f;
+    face.condition = &condition;
+    face.diameter  = cell->face(f)->diameter();
     for (const auto &of_boundary : stress_space.space.mortar_rows)
-      if (const auto &contact =
-            stress_space.space.scene.boundary.at(of_boundary.first);
-          *contact.against == condition.id)
-        face.opposite = &contact;
+      face.is_other_side |=
+        stress_space.space.scene.boundary.at(of_boundary.first).against ==
+        condition.id;
     const FaceShape &shape = shapes[cells[number].shape].faces[f];
     for (unsigned int q = 0; q < n_face_points; ++q)
       {
@@ -208,6 +213,69 @@ namespace Viscoplastic
           }
       }
     boundary_faces.push_back(face);
+  }
+
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::find_other_bodies()
+  {
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    const auto softness = [&](const Cell &cell, const unsigned int f) {
+      return cell->face(f)->diameter() /
+             space.scene.material(cell->material_id())
+               .stiffness(cell->center())
+               .smallest_deviatoric_eigenvalue();
+    };
+    for (const auto &of_boundary : space.mortar_rows)
+      {
+        const BoundaryCondition<dim> &condition =
+          space.scene.boundary.at(of_boundary.first);
+        std::vector<BoundaryFace *> faces;
+        std::vector<Point<dim>>     places;
+        for (BoundaryFace &face : boundary_faces)
+          if (face.condition == &condition)
+            {
+              faces.push_back(&face);
+              places.insert(places.end(),
+                            face.positions.begin(),
+                            face.positions.end());
+            }
+        auto found = places_opposite<dim>(space.dof_handler,
+                                          space.cartesian_hanging_nodes(),
+                                          {condition.id,
+                                           *condition.against,
+                                           condition.normal},
+                                          places,
+                                          softness);
+        auto there = found.begin();
+        for (BoundaryFace *const face : faces)
+          for (const Point<dim> &x : face->positions)
+            {
+              typename BoundaryFace::Opposite opposite{
+                {},
+                (there->position - x) * condition.normal,
+                there->softness +
+                  face->diameter /
+                    cells[face->cell]
+                      .stiffness.smallest_deviatoric_eigenvalue()};
+              // Nodes beyond the edge of the other body do not touch it, and
+              // this rank need not know what lies opposite beside them.
+              if (std::all_of(there->nodes.begin(),
+                              there->nodes.end(),
+                              [&space](const auto &other) {
+                                return space.relevant.is_element(other.node *
+                                                                 dim);
+                              }))
+                for (const auto &other : there->nodes)
+                  opposite.nodes.emplace_back(space.relevant.index_within_set(
+                                                other.node * dim),
+                                              other.weight);
+              face->opposite.push_back(std::move(opposite));
+              ++there;
+            }
+      }
   }
 
 

@@ -37,9 +37,56 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// What ResidualEstimator asks of a state.
+    template <int dim>
+    class FieldsOfState
+    {
+    public:
+      FieldsOfState(const Discretization<dim> &d,
+                    const State<dim>          &state,
+                    const Forces<dim>         &forces)
+        : state(state)
+      {
+        if (d.face)
+          density = d.face->density(state.contact);
+        if (d.held_traction)
+          {
+            DistributedVector missing = forces.load.values;
+            missing -= forces.internal;
+            d.held_traction->add_density(missing, density);
+          }
+        if (d.scene().has_contact_pairs())
+          {
+            relative_u = state.u;
+            d.space.make_relative(relative_u);
+          }
+      }
+
+      typename ResidualEstimator<dim>::Fields
+      fields(const double memory) const
+      {
+        return {state.u,
+                state.z,
+                state.t,
+                density.size() > 0 ? &density : nullptr,
+                memory,
+                &relative_u};
+      }
+
+    private:
+      const State<dim> &state;
+      DistributedVector density, relative_u;
+    };
+  } // namespace
+
+
+
   template <int dim>
   SpaceEstimate
-  SpaceEstimator<dim>::estimate(const State<dim> &state) const
+  SpaceEstimator<dim>::estimate(const State<dim>  &state,
+                                const Forces<dim> &forces) const
   {
     const Discretization<dim> &d = discretization;
     SpaceEstimate              result;
@@ -47,14 +94,8 @@ namespace Viscoplastic
       result.squared_indicators = kelly_estimate(d.space, state.u);
     if (!residual_estimator)
       return result;
-    DistributedVector density;
-    if (d.face)
-      density = d.face->density(state.contact);
-    DistributedVector approach;
-    if (d.face && d.scene().has_contact_pairs())
-      approach = d.face->approach(state.u);
-    Vector<double> squared = residual_estimator->estimate(
-      {state.u, state.z, state.t, d.face ? &density : nullptr, 0., &approach});
+    const FieldsOfState of_state(d, state, forces);
+    Vector<double> squared = residual_estimator->estimate(of_state.fields(0.));
     const Vector<double> recovery = recovery_estimator->estimate(state.u);
     for (unsigned int i = 0; i < squared.size(); ++i)
       squared[i] = std::max(squared[i], recovery[i]);
@@ -73,25 +114,19 @@ namespace Viscoplastic
   template <int dim>
   typename ResidualEstimator<dim>::Products
   SpaceEstimator<dim>::multiply(const State<dim>        &state,
+                                const Forces<dim>       &forces,
                                 const DualSolution<dim> &dual,
                                 const double             memory) const
   {
-    const ContactFace<dim> *face = discretization.face.get();
-    DistributedVector       density;
-    if (face != nullptr)
-      density = face->density(state.contact);
-    DistributedVector approach;
-    if (face != nullptr && discretization.scene().has_contact_pairs())
-      approach = face->approach(state.u);
+    const FieldsOfState      of_state(discretization, state, forces);
     const IrreversibleStress none;
-    return residual_estimator->multiply(
-      {state.u,
-       state.z,
-       state.t,
-       face != nullptr ? &density : nullptr,
-       memory,
-       &approach},
-      {dual.cartesian, none, {}, face != nullptr ? &dual.density : nullptr});
+    return residual_estimator->multiply(of_state.fields(memory),
+                                        {dual.cartesian,
+                                         none,
+                                         {},
+                                         dual.density.size() > 0 ?
+                                           &dual.density :
+                                           nullptr});
   }
 
 

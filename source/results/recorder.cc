@@ -139,6 +139,7 @@ namespace Viscoplastic
       run.tension_share.update(quantities.tension_area /
                                  discretization->tension->area(),
                                t);
+    run.slide.update(quantities.slide, t);
     run.missed_bounds += step.end.state.k * quantities.friction_bounds.missed;
     run.computed_bounds += step.end.state.k * quantities.friction_bounds.sum;
     if (run.displacement.update(quantities.max_displacement, t))

@@ -216,6 +216,25 @@ namespace Viscoplastic
         result.push_back(text.str());
       }
 
+    if (run.slide.value > 1.)
+      {
+        std::ostringstream text;
+        text << std::setprecision(2) << "Note: at t = " << run.slide.t
+             << time_unit << " two bodies have slid along each other by "
+             << run.slide.value
+             << " times the width of a face, and still touch where they did "
+                "at first.";
+        result.push_back(text.str());
+      }
+    if (discretization->slide)
+      for (const auto &[id, share] : discretization->slide->uncovered_shares())
+        if (share > 0.005)
+          result.push_back(
+            "Note: " + std::to_string(std::lround(100. * share)) + " % of " +
+            scene.names.of("boundary", id) +
+            " has nothing opposite and touches nothing; 'Boundary " +
+            std::to_string(id) + "/Against' belongs to the smaller face.");
+
     if (run.missed_bounds > 0.01 * run.computed_bounds)
       {
         std::ostringstream text;

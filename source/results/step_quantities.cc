@@ -127,6 +127,8 @@ namespace Viscoplastic
       }
     if (d.tension)
       result.tension_area = d.tension->tension_area(state);
+    if (d.slide)
+      result.slide = d.slide->largest(state.u);
     if (!is_initial && d.face && d.face->has_computed_pressure() &&
         d.scene().parameters.solver.coulomb_pressure == CoulombPressure::lagged)
       result.friction_bounds = d.face->missed_bounds(state);

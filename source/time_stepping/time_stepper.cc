@@ -532,7 +532,8 @@ namespace Viscoplastic
     if (!space_estimator)
       return;
     TimerOutput::Scope phase(timer, "estimate");
-    evaluated.space_estimate = space_estimator->estimate(evaluated.state);
+    evaluated.space_estimate =
+      space_estimator->estimate(evaluated.state, evaluated.forces);
   }
 
 

@@ -132,6 +132,38 @@ class SaltPillar(TestCase):
         self.assertGreater(contact.point_data["slip"][:, 0].max(), 1e-3)
 
 
+class SaltPillarUnderRock(TestCase):
+    def test_what_a_rigid_roof_leaves_out(self):
+        """Statics say what the seam carries; the roof presses on the pillar's edge
+        more than a rigid one, and rubs more, until salt has crept away."""
+        elastic, rigid = (
+            run(
+                "salt_pillar_rock_2d",
+                {
+                    "Geometry/Arguments": "24, 12 : 0, 0 : 6, 3 : true | "
+                    "24, 24 : 0, 3 : 12, 15 : true",
+                    "Material 1/Young's modulus": modulus,
+                    "Time/Phases": "2.592e6: 20, 3.42144e7: 40",
+                    "Output/Fields every": 0,
+                },
+            )
+            for modulus in (15e9, 1e13)
+        )
+        driven = elastic.row(2.592e6)
+        for result in elastic, rigid:
+            self.check_identities(result, tolerance=COUPLED)
+            self.assertClose(result["contact_force_y"][driven], 72e6, relative=1e-6)
+        for column, now, then in (
+            ("max_pressure", 1.2, 1.02),
+            ("friction_dissipation", 5, 1.4),
+        ):
+            ratio = elastic[column] / np.maximum(rigid[column], 1e-300)
+            self.assertGreater(ratio[driven], now)
+            self.assertLess(ratio[-1], then)
+        sag = elastic["point1_y"] - elastic["point2_y"]
+        self.assertGreater(sag[driven], 5e-3)
+
+
 class SaltDrift(TestCase):
     """Initial stress and weight in equilibrium, numbers with units."""
 

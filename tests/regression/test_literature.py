@@ -54,6 +54,25 @@ class Published(TestCase):
         depth = load * wave / 2 / bed * (1 + np.cosh(np.pi)) / np.sinh(np.pi)
         self.assertClose(slab["max_penetration"][-1], depth, relative=0.05)
 
+    def test_roller_on_block(self):
+        """NAFEMS: Hertz's pressure and width between two bodies; friction changes
+        the pressure by little."""
+        roller = run("literature/roller_on_block")
+        pressure = roller["max_pressure"][-1]
+        self.assertClose(roller["contact_force_y"][-1], -17500, relative=1e-7)
+        self.assertClose(pressure, 3585.37, relative=3e-3)
+        self.assertClose(roller["contact_area"][-1], 6.21, absolute=12 / 48)
+        rough = run(
+            "literature/roller_on_block",
+            {
+                "Boundary 22/Friction law": "coulomb",
+                "Boundary 22/Friction coefficient": 0.1,
+                "Time/Phases": "1: 5",
+            },
+        )["max_pressure"][-1]
+        self.assertGreater(rough, pressure)
+        self.assertLess(rough, 1.03 * pressure)
+
     def test_punch_with_friction(self):
         """Spence: between two points of friction, and what the closed form leaves
         out (0.006)."""

@@ -130,6 +130,12 @@ SCENES = {
         "verification/literature/punch_with_friction": Scene(
             {"Geometry/Boundary refinements": "4: 3"}
         ),
+        "verification/literature/roller_on_block": Scene(
+            {
+                "Geometry/Arguments": "16, 16 : 0, -1 : 1, 0 : true | "
+                "20, 20 : 0, 1 : 1, 2 : true"
+            }
+        ),
         "verification/literature/salt_cavity": Scene(phases("5: 2, 40: 4")),
         "verification/literature/slip_zone": Scene(
             {"Geometry/Boundary refinements": "4: 2"}
@@ -200,6 +206,13 @@ SCENES = {
         ),
         "demos/salt_pillar_2d": Scene(
             {**cells(16, 8, to="6, 3"), **phases("8.64e5: 20")}
+        ),
+        "demos/salt_pillar_rock_2d": Scene(
+            {
+                "Geometry/Arguments": "16, 8 : 0, 0 : 6, 3 : true | "
+                "16, 16 : 0, 3 : 12, 15 : true",
+                **phases("8.64e5: 5"),
+            }
         ),
         "demos/sheared_slab_2d": Scene(
             {**cells(24, 4, to="0.12, 0.02"), **phases("180: 24")}

@@ -137,13 +137,6 @@ namespace Viscoplastic
                   const DistributedVector &u,
                   ContactState            &state) const;
 
-    /// The displacement @p ghosted_u (Cartesian) relative to other bodies, less
-    /// the distance that these had at first along the normal: its normal part
-    /// is at most the gap of the scene. With ghosts, zero where no node touches
-    /// another body. Collective.
-    DistributedVector
-    approach(const DistributedVector &ghosted_u) const;
-
     /// Whether the body at @p u (in frames) is beyond the gap at time t
     /// somewhere between the nodes, where nothing keeps it out. Collective.
     bool
@@ -259,8 +252,6 @@ namespace Viscoplastic
     make_nodes();
     void
     make_shares();
-    void
-    weigh_other_sides();
     void
     make_compliance();
 

@@ -5,6 +5,8 @@
 #include <viscoplastic_contact/discretization/contact_tension.h>
 #include <viscoplastic_contact/discretization/elasticity.h>
 #include <viscoplastic_contact/discretization/flow_laws.h>
+#include <viscoplastic_contact/discretization/held_traction.h>
+#include <viscoplastic_contact/discretization/interface_slide.h>
 #include <viscoplastic_contact/discretization/loads.h>
 #include <viscoplastic_contact/discretization/springs.h>
 #include <viscoplastic_contact/discretization/stress_space.h>
@@ -71,6 +73,10 @@ namespace Viscoplastic
     std::unique_ptr<ContactTension<dim>> tension;
     /// The contact points; null without friction and unilateral contact.
     std::unique_ptr<ContactFace<dim>> face;
+    /// Null where nothing holds bodies to each other.
+    std::unique_ptr<HeldTraction<dim>> held_traction;
+    /// Null without contact between bodies.
+    std::unique_ptr<InterfaceSlide<dim>> slide;
     /// How many steps there will be on this mesh at least.
     unsigned int n_steps;
     /// The matrix of a(.,.) with that of springs, in nodal frames.

@@ -7,6 +7,7 @@
 
 #include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
 
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -58,4 +59,29 @@ namespace Viscoplastic
   mortar_interpolation(const DoFHandler<dim>           &dof_handler,
                        const AffineConstraints<double> &hanging_nodes,
                        const ContactPair<dim>          &pair);
+
+
+  /// What lies opposite to a place of the secondary boundary along the normal:
+  /// a place of the primary one, where the displacement is the sum of those of
+  /// nodes with weights, and what softness() has for the face there.
+  template <int dim>
+  struct PlaceOpposite
+  {
+    /// None where nothing lies opposite.
+    std::vector<NodeHierarchy::Parent> nodes;
+    Point<dim>                         position;
+    double                             softness = 0.;
+  };
+
+  /// For places on the faces of the secondary boundary that this rank owns.
+  /// @p softness is asked for owned faces of the primary one. Collective.
+  template <int dim>
+  std::vector<PlaceOpposite<dim>>
+  places_opposite(const DoFHandler<dim>           &dof_handler,
+                  const AffineConstraints<double> &hanging_nodes,
+                  const ContactPair<dim>          &pair,
+                  const std::vector<Point<dim>>   &places,
+                  const std::function<double(
+                    const typename DoFHandler<dim>::active_cell_iterator &,
+                    const unsigned int)>          &softness);
 } // namespace Viscoplastic

@@ -81,9 +81,11 @@ namespace Viscoplastic
     Point<d> xi;
     for (unsigned int i = 0; i < d; ++i)
       xi[i] = 0.5;
-    // Newton's method; one step where the face is a parallelogram.
+    // Newton's method; one step where the face is a parallelogram. What a step
+    // of this size leaves is its square, below the rounding of small faces far
+    // from the origin.
     double change = 1.;
-    for (unsigned int n = 0; change > 1e-13; ++n)
+    for (unsigned int n = 0; change > 1e-8; ++n)
       {
         AssertThrow(n < 50,
                     ExcMessage("A face on an interface between two bodies is "
@@ -103,6 +105,17 @@ namespace Viscoplastic
         change = step.norm();
       }
     return xi;
+  }
+
+
+
+  /// Whether a place is on a face, or beside it by rounding.
+  inline bool
+  contains(const PlaneFace<1> &face, const Point<1> &x)
+  {
+    const double rounding = 1e-10 * std::abs(face[1][0] - face[0][0]);
+    return x[0] >= std::min(face[0][0], face[1][0]) - rounding &&
+           x[0] <= std::max(face[0][0], face[1][0]) + rounding;
   }
 
 
@@ -129,6 +142,20 @@ namespace Viscoplastic
   area(const Point<2> &a, const Point<2> &b, const Point<2> &c)
   {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  }
+
+
+
+  /// See above; of convex faces.
+  inline bool
+  contains(const PlaneFace<2> &face, const Point<2> &x)
+  {
+    const std::array<Point<2>, 4> corners{{face[0], face[1], face[3], face[2]}};
+    const double                  whole = area(face[0], face[1], face[3]);
+    for (unsigned int e = 0; e < 4; ++e)
+      if (area(corners[e], corners[(e + 1) % 4], x) / whole < -1e-10)
+        return false;
+    return true;
   }
 
 

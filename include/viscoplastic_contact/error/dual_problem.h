@@ -18,8 +18,9 @@ namespace Viscoplastic
   {
     /// In frames, and Cartesian with ghosts.
     DistributedVector w, cartesian;
-    /// What holds w on Gamma_3: nodal forces on the face and their density,
-    /// Cartesian with ghosts; empty without contact points.
+    /// What holds w on Gamma_3: nodal forces on the face, empty without contact
+    /// points, and their density with that of what holds bodies to each other,
+    /// Cartesian with ghosts.
     Vector<double>    force;
     DistributedVector density;
     /// a(w, w)^{1/2}.

@@ -43,6 +43,11 @@ namespace Viscoplastic
    * between the nodes are not those of one state of the foundation. Such
    * tractions have no direction of their own, and 1/mu for M^-1.
    *
+   * Two bodies have r = lambda_h + sigma_h nu on both sides, also of what is
+   * glued: where meshes match, with lambda_h halfway between both tractions,
+   * these two are what an interior face has. off_the_interface() counts
+   * besides.
+   *
    * The estimate bounds the error of one step for given z; the error that has
    * accumulated in z is not part of it. An initial stress, which may vary in
    * cells and balance the loads there, is taken as it is, and not as the cell
@@ -68,15 +73,16 @@ namespace Viscoplastic
       const IrreversibleStress &z;
       /// Of the data; none, for fields that have no data.
       std::optional<double> t;
-      /// The nodal field lambda_h on Gamma_3, Cartesian with ghosts; null
-      /// without contact points.
+      /// The nodal field lambda_h on Gamma_3 and on both sides of interfaces,
+      /// Cartesian with ghosts; null without contact points and interfaces.
       const DistributedVector *multiplier_density;
       /// Of a strain whose stress has relaxed only this times |sigma|/|E eps|
       /// of the deviatoric means counts of what it varies by within a cell, if
       /// that is less than 1; 0: all of it.
       double memory = 0.;
-      /// ContactFace::approach(); null without contact between bodies.
-      const DistributedVector *approach = nullptr;
+      /// AdmissibleSpace::make_relative() of u; null without contact between
+      /// bodies.
+      const DistributedVector *relative_u = nullptr;
     };
 
     /// eta_K^2 for each active cell, zero on cells of other ranks. Collective.
@@ -153,8 +159,18 @@ namespace Viscoplastic
       };
       /// None without springs.
       std::vector<Spring> springs;
-      /// The contact that another body has with this one here, or null.
-      const BoundaryCondition<dim> *opposite = nullptr;
+      /// Whether another body has contact with this one here.
+      bool is_other_side = false;
+
+      /// Where another body was opposite to a point at first: relevant nodes
+      /// with weights, the distance along the normal, and h_e/(2 mu) of both.
+      struct Opposite
+      {
+        std::vector<std::pair<std::size_t, double>> nodes;
+        double                                      distance, softness;
+      };
+      /// None without another body; without nodes where nothing is opposite.
+      std::vector<Opposite> opposite;
     };
 
     /// What makes the stress at points of one cell.
@@ -172,6 +188,8 @@ namespace Viscoplastic
     make_face_values();
     void
     make_initial_stress();
+    void
+    find_other_bodies();
 
     /// Face @p f of a cell with this number.
     void
@@ -216,8 +234,26 @@ namespace Viscoplastic
     double
     off_the_law(const BoundaryFace &face,
                 const unsigned int  q,
+                const double        k,
                 const double        w,
                 const double        p) const;
+
+    /**
+     * What is amiss with displacements at a point of an interface, in stress:
+     * off_the_law() of contact that opens, and k |delta|, delta being what the
+     * jump between the bodies has beyond the interpolated one of the nodes,
+     * which alone obeys the laws of contact: of meshes that do not match. Its
+     * tangential part says nothing beyond the traction there. k is that of both
+     * bodies one after the other.
+     */
+    double
+    off_the_interface(const BoundaryFace   &face,
+                      const unsigned int    q,
+                      const Tensor<1, dim> &u,
+                      const Tensor<1, dim> &relative_u,
+                      const double          gap,
+                      const Tensor<1, dim> &density,
+                      const Fields         &fields) const;
 
     /// The residuals on a face, or a part of one, for a cell beside it, of this
     /// rank or a ghost.

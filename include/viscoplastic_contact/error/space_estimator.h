@@ -50,13 +50,14 @@ namespace Viscoplastic
 
     /// Collective.
     SpaceEstimate
-    estimate(const State<dim> &state) const;
+    estimate(const State<dim> &state, const Forces<dim> &forces) const;
 
     /// How the residuals of a state and of a dual solution go together; there
     /// has to be a residual estimator. @p memory: of the state, see
     /// ResidualEstimator::Fields. Collective.
     typename ResidualEstimator<dim>::Products
     multiply(const State<dim>        &state,
+             const Forces<dim>       &forces,
              const DualSolution<dim> &dual,
              const double             memory) const;
 

@@ -258,6 +258,7 @@ namespace Viscoplastic
                              &run.slip_area,
                              &run.capped_volume,
                              &run.tension_share,
+                             &run.slide,
                              &run.utilization,
                              &run.stiffness})
       archive & largest->value & largest->t;

@@ -74,6 +74,8 @@ namespace Viscoplastic
     /// The part of the faces in bilateral contact on which the foundation
     /// pulls.
     Largest tension_share;
+    /// InterfaceSlide::largest().
+    Largest slide;
     /// Where the displacement and the stress were that large.
     Point<dim> displacement_position, von_mises_position;
     /// The area of all friction points on the mesh on which slip_area was

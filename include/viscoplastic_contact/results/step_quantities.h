@@ -43,6 +43,8 @@ namespace Viscoplastic
     Point<dim> displacement_position;
     /// The area on which bilateral contact pulls at the body.
     double tension_area = 0.;
+    /// InterfaceSlide::largest(); zero without contact between bodies.
+    double slide = 0.;
     /// By how much friction bounds of the pressure of the step before miss
     /// those of the present one.
     typename ContactFace<dim>::MissedBounds friction_bounds;

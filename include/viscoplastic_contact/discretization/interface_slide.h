@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/admissible_space.h>
+
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * How far two bodies slide along each other, and what of a face finds nothing
+   * opposite: they touch where they did at first, so that what lies opposite is
+   * right as long as slides are small beside a face.
+   */
+  template <int dim>
+  class InterfaceSlide
+  {
+  public:
+    /// The argument stays in use. Collective.
+    explicit InterfaceSlide(const AdmissibleSpace<dim> &space);
+
+    /// The largest slide of a node over the width of its faces, the root of the
+    /// area that it stands for (in the plane its length). Collective.
+    double
+    largest(const DistributedVector &ghosted_u) const;
+
+    /// The part of each boundary with contact to another body whose nodes have
+    /// nothing opposite; the same on all ranks.
+    const std::map<types::boundary_id, double> &
+    uncovered_shares() const
+    {
+      return shares;
+    }
+
+  private:
+    struct Node
+    {
+      std::size_t    position; // of its first entry among the relevant ones
+      Tensor<1, dim> normal;
+      double         width;
+    };
+
+    const AdmissibleSpace<dim>          &space;
+    std::vector<Node>                    nodes; // of this rank
+    std::map<types::boundary_id, double> shares;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <viscoplastic_contact/discretization/held_traction.h>
+
+#include <algorithm>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  LinearAlgebra::distributed::Vector<double>
+  boundary_weights(const AdmissibleSpace<dim>         &space,
+                   const std::set<types::boundary_id> &ids)
+  {
+    LinearAlgebra::distributed::Vector<double> weights(space.owned,
+                                                       space.relevant,
+                                                       space.communicator);
+    FEFaceValues<dim>                          face_values(space.mapping,
+                                  space.dof_handler.get_fe(),
+                                  QGauss<dim - 1>(2),
+                                  update_values | update_JxW_values);
+    const auto &hanging = space.cartesian_hanging_nodes();
+    for (const auto &cell : space.cells)
+      for (const unsigned int f : cell->face_indices())
+        if (cell->at_boundary(f) &&
+            ids.count(cell->face(f)->boundary_id()) == 1)
+          {
+            face_values.reinit(cell, f);
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                double weight = 0.;
+                for (const unsigned int q :
+                     face_values.quadrature_point_indices())
+                  weight +=
+                    face_values.shape_value(v * dim, q) * face_values.JxW(q);
+                const auto dof = cell->vertex_dof_index(v, 0);
+                if (!hanging.is_constrained(dof))
+                  weights(dof) += weight;
+                else
+                  for (const auto &[parent, share] :
+                       *hanging.get_constraint_entries(dof))
+                    weights(parent) += share * weight;
+              }
+          }
+    weights.compress(VectorOperation::add);
+    return weights;
+  }
+
+
+
+  namespace
+  {
+    template <int dim>
+    bool
+    holds(const BoundaryCondition<dim> &condition)
+    {
+      return condition.against && condition.is_bilateral();
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  HeldTraction<dim>::HeldTraction(const AdmissibleSpace<dim> &space)
+    : space(space)
+  {
+    std::set<types::boundary_id> ids;
+    for (const auto &[id, condition] : space.scene.boundary)
+      if (holds(condition))
+        {
+          ids.insert(id);
+          ids.insert(*condition.against);
+        }
+    weights = boundary_weights(space, ids);
+  }
+
+
+
+  template <int dim>
+  bool
+  HeldTraction<dim>::is_needed(const Scene<dim> &scene)
+  {
+    return std::any_of(scene.boundary.begin(),
+                       scene.boundary.end(),
+                       [](const auto &pair) { return holds(pair.second); });
+  }
+
+
+
+  template <int dim>
+  void
+  HeldTraction<dim>::add_density(const DistributedVector &missing,
+                                 DistributedVector       &density) const
+  {
+    LinearAlgebra::distributed::Vector<double> forces(space.owned,
+                                                      space.relevant,
+                                                      space.communicator);
+    for (const auto &node : space.boundary_nodes())
+      {
+        const NodalFrame<dim> &frame = space.frame(node.frame);
+        const std::size_t first = space.owned.index_within_set(node.first_dof);
+        Tensor<1, dim>    fixed;
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          fixed[i] = missing.begin()[first + frame.fixed[i]];
+        const Tensor<1, dim> part =
+          transpose(invert(condition_matrix(frame))) * fixed;
+        Tensor<1, dim> force;
+        for (unsigned int i = 0; i < frame.n_fixed; ++i)
+          if (const auto condition =
+                space.scene.boundary.find(frame.condition_boundary[i]);
+              condition != space.scene.boundary.end() &&
+              holds(condition->second))
+            force += part[i] * frame.condition_direction[i];
+        if (force.norm() == 0.)
+          continue;
+        for (unsigned int d = 0; d < dim; ++d)
+          forces.local_element(first + d) += force[d];
+        const auto &coupling = space.coupling_at(node.first_dof);
+        force                = coupling.projector * force;
+        for (const auto &[other, weight] : coupling.others)
+          for (unsigned int d = 0; d < dim; ++d)
+            forces(space.relevant.nth_index_in_set(other + d)) -=
+              weight * force[d];
+      }
+    forces.compress(VectorOperation::add);
+    DistributedVector values  = space.owned_vector(),
+                      ghosted = space.ghosted_vector();
+    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+      if (const double force = forces.local_element(i); force != 0.)
+        values.begin()[i] = force / weights.local_element(i - i % dim);
+    space.distribute_hanging_nodes(values);
+    ghosted = values;
+    if (density.size() == 0)
+      density = ghosted;
+    else
+      for (std::size_t i = 0; i < space.relevant.n_elements(); ++i)
+        density.begin()[i] += ghosted.begin()[i];
+  }
+
+
+
+#define INSTANTIATE(dim)                                                 \
+  template LinearAlgebra::distributed::Vector<double> boundary_weights(  \
+    const AdmissibleSpace<dim> &, const std::set<types::boundary_id> &); \
+  template class HeldTraction<dim>;
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+
+#undef INSTANTIATE
+} // namespace Viscoplastic

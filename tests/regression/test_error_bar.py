@@ -271,7 +271,7 @@ class VolumetricLocking(TestCase):
 
     def test_of_an_elastic_body(self):
         effectivity = self.effectivity(self.ELASTIC)[1]
-        # 0.58 without; its error is more than the solution
+        # 0.58 without; its error is four fifths of the solution
         self.assertGreater(effectivity.min(), 0.7)
         self.assertLess(effectivity.max(), 3)
 

@@ -11,16 +11,25 @@ namespace Viscoplastic
 {
   template <int dim>
   bool
-  uses_mean_dilatation(const Scene<dim> &scene, const double max_nu)
+  may_lock(const Scene<dim> &scene, const double max_nu)
   {
-    const VolumetricIntegration choice =
-      scene.parameters.stress.volumetric_integration;
-    if (choice != VolumetricIntegration::automatic)
-      return choice == VolumetricIntegration::mean_dilatation;
     for (const auto &material : scene.materials)
       if (material->law && material->law->deviatoric_flow())
         return true;
     return max_nu > 0.4;
+  }
+
+
+
+  template <int dim>
+  bool
+  uses_mean_dilatation(const Scene<dim> &scene, const double max_nu)
+  {
+    const VolumetricIntegration choice =
+      scene.parameters.stress.volumetric_integration;
+    return choice == VolumetricIntegration::automatic ?
+             may_lock(scene, max_nu) :
+             choice == VolumetricIntegration::mean_dilatation;
   }
 
 
@@ -151,6 +160,10 @@ namespace Viscoplastic
 
 
 
+  template bool
+  may_lock(const Scene<2> &, const double);
+  template bool
+  may_lock(const Scene<3> &, const double);
   template bool
   uses_mean_dilatation(const Scene<2> &, const double);
   template bool

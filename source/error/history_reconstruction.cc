@@ -247,10 +247,20 @@ namespace Viscoplastic
                       const IrreversibleStress &z,
                       const IrreversibleStress &stress)
   {
-    const unsigned int    n = stress_space.n_samples;
+    // Of cell means, the values of children follow.
+    const bool         of_children = stress_space.n_samples == 1;
+    const unsigned int n           = 1u << dim;
+    const auto         values      = [&](const IrreversibleStress &field) {
+      if (!of_children)
+        return field;
+      IrreversibleStress result;
+      for (const Stress &mean : field)
+        result.insert(result.end(), n, mean);
+      return result;
+    };
     HistoryReconstruction result{
-      z,
-      stress,
+      values(z),
+      values(stress),
       Vector<double>(
         stress_space.space.dof_handler.get_triangulation().n_active_cells())};
     const Neighborhood<dim> near(stress_space);
@@ -298,12 +308,17 @@ namespace Viscoplastic
           }
         double &error = result.squared_error[cell->active_cell_index()];
         error         = of_samples;
-        if (n == 1 || of_slopes >= of_samples)
+        if (of_slopes >= of_samples)
           continue;
         error = of_slopes;
         // Where creep prevails, the stress has relaxed to what lets strains of
         // this mesh flow, and another one would have to do so again.
-        const auto   places    = near.sample_places(c);
+        std::vector<Tensor<1, dim>> places;
+        if (of_children)
+          for (const unsigned int v : cell->vertex_indices())
+            places.push_back(0.5 * (cell->vertex(v) - near.centers[c]));
+        else
+          places = near.sample_places(c);
         const double size_of_z = deviator(mean_z[c]).norm(),
                      unrelaxed =
                        size_of_z > 0. ?

@@ -15,7 +15,7 @@ namespace Viscoplastic
   MeshController<dim>::MeshController(
     const Scene<dim>                          &scene,
     parallel::distributed::Triangulation<dim> &triangulation,
-    const ErrorBudget                         *budget)
+    ErrorBudget                               *budget)
     : scene(scene)
     , wanted(scene.parameters.refinement)
     , triangulation(triangulation)
@@ -77,17 +77,40 @@ namespace Viscoplastic
                                      const double               so_far)
   {
     ratio = space_ratio(end.errors, so_far);
-    if (ratio <= 1. || !mark_cells_to_tolerance(
-                         triangulation,
-                         end.space_estimate.squared_indicators,
-                         limits(discretization),
-                         ratio,
-                         n_refinements == 0 ?
-                           limit_coarsening(discretization, accepted, so_far) :
-                           std::function<void()>()))
+    if (ratio <= 1. || is_in_vain(end) ||
+        !mark_cells_to_tolerance(
+          triangulation,
+          end.space_estimate.squared_indicators,
+          limits(discretization),
+          ratio,
+          n_refinements == 0 ?
+            limit_coarsening(discretization, accepted, so_far) :
+            std::function<void()>()))
       return false;
     ++n_refinements;
     return true;
+  }
+
+
+
+  template <int dim>
+  bool
+  MeshController<dim>::is_in_vain(const EvaluatedState<dim> &end)
+  {
+    // Quantities have signs: theirs may grow by chance.
+    if (scene.quantity)
+      return false;
+    // Where finer meshes leave more than 0.95 of an error three times in turn,
+    // it is not theirs, and cells would have no end: the step accepts it, and
+    // the next ones leave it alone until it has grown by half.
+    constexpr double       hardly = 0.95, growth = 1.5;
+    constexpr unsigned int enough = 3;
+    const double           error  = budget->errors(end.errors).of_meshes();
+    n_vain = n_refinements > 0 && error > hardly * last_error ? n_vain + 1 : 0;
+    last_error = error;
+    if (n_vain >= enough)
+      budget->unavoidable = std::max(budget->unavoidable, error);
+    return error < growth * budget->unavoidable;
   }
 
 

@@ -490,9 +490,11 @@ namespace Viscoplastic
 
   template <int dim>
   Vector<double>
-  RecoveryEstimator<dim>::estimate(const DistributedVector &u) const
+  RecoveryEstimator<dim>::estimate(const DistributedVector &u,
+                                   double                  *deviatoric) const
   {
     std::vector<double> squares(local.cells.size());
+    double              of_deviators = 0.;
     for (const Part &part : parts)
       {
         recover(part, u, /* from_inside = */ false);
@@ -503,11 +505,19 @@ namespace Viscoplastic
             const auto  e       = defects(c, u);
             for (unsigned int q = 0; q < n_points; ++q)
               squares[c] += weights[q] * (cell.stiffness.stress(e[q]) * e[q]);
+            if (deviatoric != nullptr)
+              for (unsigned int q = 0; q < n_points; ++q)
+                of_deviators +=
+                  weights[q] * cell.stiffness.smallest_deviatoric_eigenvalue() *
+                  (deviator(e[q]) * deviator(e[q]));
           }
         // What linear laws have at corners is recovered well enough.
         if (part.largest_share > 0.5)
           raise_at_singular_points(part, u, squares);
       }
+    if (deviatoric != nullptr)
+      *deviatoric = Utilities::MPI::sum(of_deviators,
+                                        local.stress_space.space.communicator);
     return local.by_active_index(squares);
   }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/discretization/volumetric_integration.h>
 #include <viscoplastic_contact/error/history_error.h>
 #include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/error/space_estimator.h>
+#include <viscoplastic_contact/error/volumetric_locking.h>
 
 #include <algorithm>
 
@@ -15,6 +17,9 @@ namespace Viscoplastic
     , refines_by_residual(
         discretization.scene().parameters.refinement.strategy ==
         RefinementStrategy::residual)
+    , locks(!discretization.mean_dilatation &&
+            may_lock(discretization.scene(),
+                     discretization.moduli.max_poissons_ratio()))
   {
     if (discretization.scene().parameters.error_control.error_estimator ||
         refines_by_residual)
@@ -96,12 +101,21 @@ namespace Viscoplastic
       return result;
     const FieldsOfState of_state(d, state, forces);
     Vector<double> squared = residual_estimator->estimate(of_state.fields(0.));
-    const Vector<double> recovery = recovery_estimator->estimate(state.u);
+    double         of_deviators = 0.;
+    const Vector<double> recovery =
+      recovery_estimator->estimate(state.u, locks ? &of_deviators : nullptr);
     for (unsigned int i = 0; i < squared.size(); ++i)
       squared[i] = std::max(squared[i], recovery[i]);
     const auto &triangulation = d.space.dof_handler.get_triangulation();
-    result.total              = total_estimate(squared, triangulation);
     result.recovery           = total_estimate(recovery, triangulation);
+    if (locks)
+      {
+        const VolumetricLocking locking =
+          volumetric_locking(*cells, d.laws, state, of_deviators);
+        squared += locking.squared_error;
+        result.rate_defect = locking.rate;
+      }
+    result.total = total_estimate(squared, triangulation);
     if (d.scene().has_viscosity() && d.stress_space.n_samples == 1)
       result.rate_defect = cell_mean_defect(*cells, d.laws, state);
     if (refines_by_residual)

@@ -75,12 +75,9 @@ namespace Viscoplastic
       {
         carried.push_back(stress);
         old_samples.push_back(sampled_stress(old_stress_space, state));
-        // z is the first field. Cell means stay as they are; what is wrong in
-        // them is for the error bar.
-        if (n_samples > 1 || old_stress_space.space.scene.parameters
-                               .error_control.error_estimator)
-          for_children =
-            reconstruct_history(old_stress_space, state.z, old_samples.back());
+        // z is the first field.
+        for_children =
+          reconstruct_history(old_stress_space, state.z, old_samples.back());
       }
     old_cell.resize(triangulation.n_active_cells());
     unsigned int index = 0;
@@ -107,8 +104,9 @@ namespace Viscoplastic
   StateTransfer<dim>::pack(const CellIterator &cell,
                            const CellStatus    status) const
   {
-    // The samples and their integral. For a cell to be coarsened, instead of
-    // the samples r of the parent to be, which divides by its own weights W_r:
+    // The samples, or of cell means that are refined the values of children,
+    // and their integral. For a cell to be coarsened, instead of the samples r
+    // of the parent to be, which divides by its own weights W_r:
     //
     //   W_r z_r = sum over samples s of all children: w_s P_sr z_s.
     //
@@ -120,10 +118,12 @@ namespace Viscoplastic
       status == Triangulation<dim>::CELL_REFINE && !for_children.z.empty();
     if (passes_on)
       of_refined_cells += for_children.squared_error[cell->active_cell_index()];
-    IrreversibleStress values(carried.size() * (n_samples + 1));
+    const bool of_children =
+      status == Triangulation<dim>::CELL_REFINE && n_samples == 1;
+    IrreversibleStress values(carried.size() * (n_values + 1));
     for (unsigned int f = 0; f < carried.size(); ++f)
       {
-        SymmetricTensor<2, 3>    *packed = &values[f * (n_samples + 1)];
+        SymmetricTensor<2, 3>    *packed = &values[f * (n_values + 1)];
         const IrreversibleStress &old =
           passes_on && f == 0               ? for_children.z :
           passes_on && carried[f] == stress ? for_children.stress :
@@ -143,12 +143,20 @@ namespace Viscoplastic
           }
         else
           {
-            const std::size_t first =
-              std::size_t(n_samples) * old_cell[cell->active_cell_index()];
+            const std::size_t c = old_cell[cell->active_cell_index()];
+            if (of_children)
+              {
+                const bool has_slopes = &old != &old_samples[f];
+                for (unsigned int child = 0; child < n_values; ++child)
+                  packed[child] = old[has_slopes ? c * n_values + child : c];
+                packed[n_values] = old_weights[c] * old_samples[f][c];
+                continue;
+              }
+            const std::size_t first = c * n_samples;
             for (unsigned int s = 0; s < n_samples; ++s)
               {
                 packed[s] = old[first + s];
-                packed[n_samples] += old_weights[first + s] * old[first + s];
+                packed[n_values] += old_weights[first + s] * old[first + s];
               }
           }
       }
@@ -215,7 +223,7 @@ namespace Viscoplastic
         {
           // On curved cells the children do not fill the parent; a shift
           // makes up for it.
-          SymmetricTensor<2, 3> missing = values[n_samples];
+          SymmetricTensor<2, 3> missing = values[n_values];
           double                volume  = 0.;
           for (unsigned int child = 0; child < cell->n_children(); ++child)
             {
@@ -225,8 +233,11 @@ namespace Viscoplastic
               for (unsigned int s = 0; s < n_samples; ++s)
                 {
                   SymmetricTensor<2, 3> &sample = z[c * n_samples + s];
-                  for (unsigned int r = 0; r < n_samples; ++r)
-                    sample += prolongation[child](s, r) * values[r];
+                  if (n_samples == 1)
+                    sample = values[child];
+                  else
+                    for (unsigned int r = 0; r < n_samples; ++r)
+                      sample += prolongation[child](s, r) * values[r];
                   missing -= new_stress_space.weight(c, s) * sample;
                 }
             }
@@ -259,7 +270,7 @@ namespace Viscoplastic
         for (unsigned int f = 0; f < carried.size(); ++f)
           unpack_field(cell,
                        status,
-                       &values[f * (n_samples + 1)],
+                       &values[f * (n_values + 1)],
                        *sampled(carried[f]));
       });
     return result;

@@ -168,6 +168,10 @@ namespace Viscoplastic
               "or 'Step control/Smallest step' is too large.";
     else if (!scene.is_adaptive())
       text << "the mesh is fixed by 'Mesh refinement/Strategy'.";
+    else if (budget->unavoidable > 0.)
+      text << "finer meshes do not lower what earlier ones have left in the "
+              "history: begin with more 'Geometry/Global refinements', or with "
+              "'Material/Stress history' = quadrature points.";
     else if (n_in_memory < refinement.cell_budget &&
              n_cells > 0.8 * n_in_memory)
       text << "it takes more memory than 'Mesh refinement/Memory budget' = "

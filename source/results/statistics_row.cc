@@ -44,7 +44,9 @@ namespace Viscoplastic
       row.add("estimate_space", estimate.space, Quantity::energy_norm);
       row.add("estimate_time", estimate.time, Quantity::energy_norm);
       if (scene.has_viscosity() &&
-          (scene.is_adaptive() || !scene.keeps_history_at_points()))
+          (scene.is_adaptive() || !scene.keeps_history_at_points() ||
+           scene.parameters.stress.volumetric_integration ==
+             VolumetricIntegration::full))
         row.add("estimate_history", estimate.history, Quantity::energy_norm);
       if (scene.has_friction())
         row.add("estimate_friction", estimate.friction, Quantity::energy_norm);

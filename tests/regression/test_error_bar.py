@@ -217,6 +217,65 @@ class LongCreep(TestCase):
         )
 
 
+class VolumetricLocking(TestCase):
+    """The slab in full integration, against mean dilatation on a mesh four times as
+    fine: pushed over its foundation for a hundred relaxation times, and next to
+    incompressible."""
+
+    CREEP = {
+        "Geometry/Arguments": "16, 4 : 0, 0 : 4, 1 : true",
+        "Material/Stress history": "quadrature points",
+        "Boundary 0/Traction": "0.05; 0",
+        "Boundary 1/Role": "symmetry",
+        "Boundary 2/Friction bound": "0.02*(1 + 0.5*sin(3*x))",
+        "Boundary 3/Role": "free",
+        "Initial state/Equilibrate": "true",
+        "Time/Scheme": "backward Euler",
+        "Time/Phases": "13: 6, 130: 6",
+        "Output/Fields every": 0,
+    }
+    ELASTIC = {
+        **CREEP,
+        "Boundary 0/Traction": "0.05*t; 0",
+        "Initial state/Equilibrate": "false",
+        "Material/Law": "elastic",
+        "Material/Poisson's ratio": "0.4999",
+        "Time/Scheme": "forward Euler",
+        "Time/Phases": "1: 1",
+    }
+
+    def effectivity(self, scene):
+        fine = run(
+            "slab",
+            {
+                **scene,
+                "Geometry/Global refinements": 2,
+                "Material/Volumetric integration": "mean dilatation",
+                "Output/Reference fields": "true",
+            },
+        )
+        result = run(
+            "slab", {**scene, "Exact solution/Reference directory": fine.directory}
+        )
+        known = ~np.isnan(result["error_energy"]) & (result["t"] > 0)
+        return result, (result["estimate_total"] / result["error_energy"])[known]
+
+    def test_in_creep(self):
+        result, effectivity = self.effectivity(self.CREEP)
+        # 0.37 at the end without; its error is a quarter of the solution
+        self.assertGreater(effectivity.min(), 0.7)
+        self.assertLess(effectivity.max(), 3)
+        self.assertGreater(
+            result["estimate_history"][-1], 2 * result["estimate_space"][-1]
+        )
+
+    def test_of_an_elastic_body(self):
+        effectivity = self.effectivity(self.ELASTIC)[1]
+        # 0.58 without; its error is four fifths of the solution
+        self.assertGreater(effectivity.min(), 0.7)
+        self.assertLess(effectivity.max(), 3)
+
+
 class Estimate(TestCase):
     @classmethod
     def setUpClass(cls):

@@ -157,6 +157,47 @@ namespace
 
 
 
+  TYPED_TEST(RunParts, MeshesAreNotRefinedInVain)
+  {
+    constexpr int     dim = TypeParam::value;
+    SteppingBody<dim> body(maxwell + time("forward Euler", "1: 8") + adaptive +
+                           to_tolerance);
+    body.advance(3);
+    const double size = body.accepted.errors.energy_norm;
+    ErrorBudget  budget(1e-4, dim, 1);
+    budget.expect_size(size);
+    MeshController<dim> controller(body.scene, body.triangulation, &budget);
+    const auto          refines = [&] {
+      const bool result = controller.mark_for_step(*body.discretization,
+                                                   body.accepted,
+                                                   body.accepted,
+                                                   size);
+      for (const auto &cell : body.triangulation.active_cell_iterators())
+        {
+          cell->clear_refine_flag();
+          cell->clear_coarsen_flag();
+        }
+      return result;
+    };
+    // As long as the error falls.
+    const double error = body.accepted.errors.space;
+    for (unsigned int i = 0; i < 6; ++i, body.accepted.errors.space *= 0.9)
+      EXPECT_TRUE(refines()) << i;
+    EXPECT_EQ(budget.unavoidable, 0.);
+    controller.accept_step();
+    // An error that stays is left alone, also by later steps.
+    body.accepted.errors.space = error;
+    for (unsigned int i = 0; i < 3; ++i)
+      EXPECT_TRUE(refines()) << i;
+    for (unsigned int step = 0; step < 2; ++step, controller.accept_step())
+      EXPECT_FALSE(refines()) << step;
+    EXPECT_EQ(budget.unavoidable, body.accepted.errors.of_meshes());
+    body.accepted.errors.space *= 2.;
+    EXPECT_TRUE(refines());
+  }
+
+
+
   /// A body with what a run keeps of it.
   template <int dim>
   struct Archived : SteppingBody<dim>

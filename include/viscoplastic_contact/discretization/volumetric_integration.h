@@ -5,6 +5,12 @@
 
 namespace Viscoplastic
 {
+  /// Whether full integration may lock: with laws whose flow is deviatoric, or
+  /// where the largest Poisson's ratio is @p max_nu > 0.4.
+  template <int dim>
+  bool
+  may_lock(const Scene<dim> &scene, const double max_nu);
+
   /// Whether the volumetric strain is the mean over each cell: as the scene
   /// says, or by what `automatic' stands for where the largest Poisson's ratio
   /// is @p max_nu.

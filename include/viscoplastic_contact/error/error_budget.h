@@ -102,6 +102,9 @@ namespace Viscoplastic
     const double tolerance;
     const bool   of_quantity;
     double       expected_size = 0.;
+    /// What finer meshes have been found not to lower of the error of meshes,
+    /// as what earlier ones have left in z. Zero if nothing.
+    double unavoidable = 0.;
 
   private:
     const double time_share;

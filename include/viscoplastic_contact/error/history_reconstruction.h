@@ -26,7 +26,8 @@ namespace Viscoplastic
    */
   struct HistoryReconstruction
   {
-    /// At the samples of all owned cells. Cell means stay as they are.
+    /// At the samples of all owned cells, or of cell means at the centers of
+    /// the children that they would have.
     IrreversibleStress z, stress;
     /// What is wrong in z in each active cell, (int E^-1 e : e), zero on cells
     /// of other ranks. As it was, e is what the slopes have changed;

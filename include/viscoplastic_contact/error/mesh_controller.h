@@ -24,7 +24,7 @@ namespace Viscoplastic
     /// All arguments stay in use. @p budget is null without a tolerance.
     MeshController(const Scene<dim>                          &scene,
                    parallel::distributed::Triangulation<dim> &triangulation,
-                   const ErrorBudget                         *budget);
+                   ErrorBudget                               *budget);
 
     /// Whether the mesh may change between step @p n and the next.
     bool
@@ -62,7 +62,7 @@ namespace Viscoplastic
     void
     accept_step()
     {
-      n_refinements = 0;
+      n_refinements = n_vain = 0;
     }
 
     /// Mark cells of the first mesh if an estimate of it is larger than
@@ -102,9 +102,16 @@ namespace Viscoplastic
     const Scene<dim>                          &scene;
     const RefinementParameters                &wanted;
     parallel::distributed::Triangulation<dim> &triangulation;
-    const ErrorBudget                         *budget;
+    ErrorBudget                               *budget;
     /// How often the mesh has been refined for the step that is being made.
     unsigned int n_refinements = 0;
-    double       ratio         = 0.;
+    /// How many times in turn that has not lowered the error, and the last one.
+    unsigned int n_vain     = 0;
+    double       last_error = 0.;
+    double       ratio      = 0.;
+
+    /// Whether a step has an error that finer meshes do not lower.
+    bool
+    is_in_vain(const EvaluatedState<dim> &end);
   };
 } // namespace Viscoplastic

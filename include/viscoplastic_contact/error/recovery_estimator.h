@@ -59,9 +59,10 @@ namespace Viscoplastic
     explicit RecoveryEstimator(const LocalCells<dim> &cells);
 
     /// eta_K^2 by active cell, zero in cells of other ranks; @p u with ghosts,
-    /// Cartesian. Collective.
+    /// Cartesian. If asked for, also the sum of what deviators alone make of it
+    /// (without singular points). Collective.
     Vector<double>
-    estimate(const DistributedVector &u) const;
+    estimate(const DistributedVector &u, double *deviatoric = nullptr) const;
 
     /**
      * a(e_u, e_w) by active cell in the form of the tangents C, of the strain

@@ -18,8 +18,8 @@ namespace Viscoplastic
     double total = 0.;
     /// The part of it that recovered strains tell.
     double recovery = 0.;
-    /// What cell means leave out of G, see cell_mean_defect(); zero where the
-    /// history is kept at quadrature points.
+    /// What cell means leave out of G, see cell_mean_defect(), or volumetric
+    /// locking holds back; zero where neither is.
     double rate_defect = 0.;
     /// The squared share of each active cell by which the mesh is refined;
     /// empty in scenes on a fixed mesh.
@@ -72,6 +72,8 @@ namespace Viscoplastic
   private:
     const Discretization<dim> &discretization;
     const bool                 refines_by_kelly, refines_by_residual;
+    /// Whether volumetric locking counts.
+    const bool locks;
     /// Null if only Kelly's estimate is asked for.
     std::unique_ptr<LocalCells<dim>>        cells;
     std::unique_ptr<ResidualEstimator<dim>> residual_estimator;

@@ -24,8 +24,8 @@ namespace Viscoplastic
    * z over every cell that is refined or coarsened. Samples on the children of
    * a cell are values of the polynomial through the parent's samples: a copy of
    * cell means, the (bi-, tri-)linear interpolant of quadrature points. With
-   * viscosity, these samples of z and sigma_h have slopes that fit to their
-   * neighbors' (see HistoryReconstruction).
+   * viscosity, z and sigma_h of children have slopes that fit to the neighbors
+   * (see HistoryReconstruction).
    *
    * Equilibrium is restored by the next step, which solves for the total
    * displacement.
@@ -77,6 +77,8 @@ namespace Viscoplastic
 
     parallel::distributed::Triangulation<dim> &triangulation;
     const unsigned int                         n_samples;
+    /// Of a field that a cell passes on, at most.
+    static constexpr unsigned int n_values = 1u << dim;
 
     /// The old nodal_fields() and the multiplier density; absent ones are
     /// empty.

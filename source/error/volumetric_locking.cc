@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/error/volumetric_locking.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// Deviators of unit norm along the axes.
+    template <int dim>
+    std::vector<SymmetricTensor<2, 3>>
+    unit_deviators()
+    {
+      std::vector<SymmetricTensor<2, 3>> result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = i + 1; j < dim; ++j)
+          {
+            result.emplace_back();
+            result.back()[i][i] = std::sqrt(0.5);
+            result.back()[j][j] = -std::sqrt(0.5);
+          }
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  VolumetricLocking
+  volumetric_locking(const LocalCells<dim> &cells,
+                     const FlowLaws<dim>   &laws,
+                     const State<dim>      &state,
+                     const double           defect)
+  {
+    const StressSpace<dim> &stress_space = laws.stress_space;
+    const MPI_Comm          communicator = stress_space.space.communicator;
+    const bool              at_points    = stress_space.n_samples > 1;
+    const auto              deviators    = unit_deviators<dim>();
+    const auto              now          = laws.at(state.t);
+    std::vector<double>     squares(cells.cells.size());
+    double                  rate = 0., deviators_square = 0.;
+    fail_together(communicator, [&] {
+      for (unsigned int c = 0; c < stress_space.n_cells(); ++c)
+        {
+          const auto &cell = cells.cells[c];
+          if (!cell.is_present)
+            continue;
+          const Stiffness &stiffness = cell.stiffness;
+          const double     two_mu = stiffness.smallest_deviatoric_eigenvalue(),
+                       bulk       = stiffness.bulk_modulus();
+          const auto &weights     = cells.shapes[cell.shape].weights;
+          const auto  strains =
+            cells.strains(cell, cells.displacements(cell, state.u.begin()));
+          double mean_trace = 0., mean_z = 0.;
+          for (unsigned int q = 0; q < strains.size(); ++q)
+            {
+              mean_trace += weights[q] * trace(strains[q]);
+              if (at_points)
+                mean_z +=
+                  weights[q] * trace(state.z[c * stress_space.n_samples + q]);
+            }
+          mean_trace /= stress_space.volume(c);
+          mean_z /= stress_space.volume(c);
+          const ViscoplasticLaw *law = now.law(c);
+          const bool             flows =
+            at_points && law != nullptr && law->deviatoric_flow();
+          for (unsigned int q = 0; q < strains.size(); ++q)
+            {
+              const double excess = trace(strains[q]) - mean_trace;
+              deviators_square += weights[q] * two_mu * deviator(strains[q]) *
+                                  deviator(strains[q]);
+              double pressure = bulk * excess;
+              if (at_points && !state.z.empty())
+                pressure +=
+                  (trace(state.z[c * stress_space.n_samples + q]) - mean_z) /
+                  3.;
+              squares[c] += weights[q] * pressure * pressure / two_mu;
+              if (!flows)
+                continue;
+              const auto tangents =
+                law->tangents(stiffness.stress(strains[q]) +
+                                state.z[c * stress_space.n_samples + q],
+                              strains[q],
+                              stiffness,
+                              now.point(c, q));
+              for (const SymmetricTensor<2, 3> &deviator : deviators)
+                rate += weights[q] * pressure * pressure / deviators.size() *
+                        stiffness.complementary_square(
+                          SymmetricTensor<2, 3>(tangents.stress * deviator));
+            }
+        }
+    });
+    rate             = Utilities::MPI::sum(rate, communicator);
+    deviators_square = Utilities::MPI::sum(deviators_square, communicator);
+    // 3/2 in a single mode; bodies that hardly bend any more tell less of their
+    // curvatures.
+    constexpr double calibration = 2.5;
+    const double     factor =
+      deviators_square > 0. ? calibration * defect / deviators_square : 0.;
+    for (double &square : squares)
+      square *= factor;
+    return {cells.by_active_index(squares), std::sqrt(factor * rate)};
+  }
+
+
+
+  template VolumetricLocking
+  volumetric_locking<2>(const LocalCells<2> &,
+                        const FlowLaws<2> &,
+                        const State<2> &,
+                        const double);
+  template VolumetricLocking
+  volumetric_locking<3>(const LocalCells<3> &,
+                        const FlowLaws<3> &,
+                        const State<3> &,
+                        const double);
+} // namespace Viscoplastic

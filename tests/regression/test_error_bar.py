@@ -162,12 +162,12 @@ class LongCreep(TestCase):
         self.assertClose(self.velocity(result), self.VELOCITY, relative=0.02)
         # 2.6 % before
         self.assertClose(result["point0_x"][-1], self.fine["point0_x"][-1], 0.02)
-        # one mesh from the beginning, found by runs that begin again on each
+        # one mesh from the beginning, found by passes that begin again on each, of
+        # which the last one is the run
         self.assertEqual(result["cells"][0], result["cells"][-1])
-        self.assertEqual(
-            result.stdout.count("Again from the beginning"),
-            1 + result.stdout.count("times too coarse"),
-        )
+        passes = result.stdout.count("Again from the beginning")
+        self.assertGreater(passes, 0)
+        self.assertEqual(passes, result.stdout.count("times too coarse"))
         # measured: 27; 104 while the beginning of creep, where hardly anything has
         # moved, had steps in proportion to that
         self.assertLess(len(result["t"]), 50)

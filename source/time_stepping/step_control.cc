@@ -53,7 +53,7 @@ namespace Viscoplastic
     /// The part of what is left that any step may use: what is fast but small,
     /// as the beginning of creep, would otherwise have most of the steps and
     /// next to none of the error. Fewest steps have equal errors.
-    constexpr double least_share = 1e-3;
+    constexpr double least_share = 1e-2;
     /// Step sizes that are chosen by the error are fractions 2^(-i/n) of the
     /// whole time, so that what solvers leave of a solution does not choose
     /// others, which differ the more from step to step.

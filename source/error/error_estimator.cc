@@ -211,23 +211,36 @@ namespace Viscoplastic
     std::vector<SymmetricTensor<2, 3>>   strains(stress_space.n_samples);
     std::optional<SymmetricTensor<4, 3>> fading;
     SymmetricTensor<4, 3>                relaxation;
+    SymmetricTensor<2, 3>                stress;
+    bool                                 is_uniform     = false;
     const ViscoplasticLaw               *last_law       = nullptr;
     const Stiffness                     *last_stiffness = nullptr;
     std::size_t                          i              = 0;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
-        if (relaxes || fades)
-          stress_space.strains(c, state.u.begin(), strains.data());
         const Stiffness       &stiffness = stress_space.moduli(c);
         const ViscoplasticLaw *law       = now.law(c);
         // The same in all cells of most bodies.
         if (c == 0 || law != last_law || &stiffness != last_stiffness ||
             (law && law->depends_on_position()))
-          fading = law ?
-                     fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
-                     std::nullopt;
-        last_law       = law;
-        last_stiffness = &stiffness;
+          {
+            fading     = law ?
+                           fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
+                           std::nullopt;
+            is_uniform = law && law->has_constant_tangents() &&
+                         !law->depends_on_position();
+            if (law == nullptr)
+              relaxation = identity_tensor<3>();
+            else if (is_uniform && (relaxes || fades))
+              relaxation =
+                error_relaxation(*law, {}, {}, k, stiffness, now.point(c, 0));
+          }
+        last_law                = law;
+        last_stiffness          = &stiffness;
+        const bool needs_stress = law && ((fades && of_loads > 0.) ||
+                                          ((relaxes || fades) && !is_uniform));
+        if (needs_stress)
+          stress_space.strains(c, state.u.begin(), strains.data());
         for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
           {
             const double                weight = stress_space.weight(c, s);
@@ -242,16 +255,11 @@ namespace Viscoplastic
                   step += defect.second * k * k * k * 2. / (k + accepted.k) *
                           (state.rate_slope[i] - accepted.rate_slope[i]);
               }
-            SymmetricTensor<2, 3> stress;
-            if (relaxes || fades)
-              {
-                stress = stiffness.stress(strains[s]) + state.z[i];
-                relaxation =
-                  law ?
-                    error_relaxation(
-                      *law, stress, strains[s], k, stiffness, now.point(c, s)) :
-                    identity_tensor<3>();
-              }
+            if (needs_stress)
+              stress = stiffness.stress(strains[s]) + state.z[i];
+            if (law && (relaxes || fades) && !is_uniform)
+              relaxation = error_relaxation(
+                *law, stress, strains[s], k, stiffness, now.point(c, s));
             const SymmetricTensor<2, 3> all = step;
             if (fades)
               {

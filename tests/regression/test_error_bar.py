@@ -345,6 +345,39 @@ class TimePart(TestCase):
         self.check(10)
         self.check(40)
 
+    def test_long_steps_of_backward_euler(self):
+        """A thick cylinder of norton against short steps on the same mesh: two steps of
+        five and 500 relaxation times under a constant load, which stress that relaxes by
+        itself made 350 and 500 times too large; and a load that is taken off."""
+        radial = "x/sqrt(x*x + y*y)*{0}; y/sqrt(x*x + y*y)*{0}"
+        off = radial.format("(t < 0.5 ? min(t/0.01, 1) : 1 - 1.6*(t - 0.5))")
+        for load, phases, more in (
+            (radial.format("1"), "0.01: 1, 1: 1", "0.01: 64, 1: 64"),
+            (off, "0.01: 2, 0.5: 2, 1: 2", "0.01: 48, 0.5: 48, 1: 48"),
+        ):
+            scene = {
+                "Geometry/Global refinements": 2,
+                "Material/norton/Exponent": 5,
+                "Boundary 0/Traction": load,
+                "Output/Fields every": 0,
+            }
+            fine = run(
+                "hard/norton_cylinder",
+                {**scene, "Time/Phases": more, "Output/Reference fields": "true"},
+            )
+            result = run(
+                "hard/norton_cylinder",
+                {
+                    **scene,
+                    "Time/Phases": phases,
+                    "Exact solution/Reference directory": fine.directory,
+                },
+            )
+            known = ~np.isnan(result["error_energy"]) & (result["t"] > 0)
+            index = result["estimate_time"][known] / result["error_energy"][known]
+            self.assertGreater(index.min(), 0.7)
+            self.assertLess(index.max(), 3)
+
     def test_adds_up_over_unequal_steps(self):
         """With signs: after t* the stress falls, and part of what has been
         left out before comes back."""

@@ -327,10 +327,10 @@ DRAWN = {
     "block on a curved foundation, 3D, perzyna": (
         "verification/hard/drawn_block_3d",
         None,
-        (0.3, None),
+        (0.5, None),
         2,
         {
-            "Geometry/Global refinements": "2",
+            "Geometry/Global refinements": "1",
             "Time/Scheme": "backward Euler",
             "Time/Phases": "0.5: 3",
         },
@@ -360,7 +360,7 @@ DRAWN = {
     "lifted slab, 3D, parsed": (
         "verification/hard/drawn_slab_3d",
         None,
-        (0.2, None),
+        (0.3, None),
         2,
         {
             "Geometry/Global refinements": "1",

@@ -265,12 +265,16 @@ namespace Viscoplastic
               {
                 // The loads have changed G by no more than r times the change
                 // of the stress.
-                const double most = of_loads * r *
-                                    std::sqrt(
-                                      stiffness.complementary_square(stress)),
-                             size = std::sqrt(
-                               stiffness.complementary_square(change)),
-                             share = most < size ? most / size : 1.;
+                double share = 0.;
+                if (of_loads > 0.)
+                  {
+                    const double most =
+                      of_loads * r *
+                      std::sqrt(stiffness.complementary_square(stress));
+                    const double size =
+                      std::sqrt(stiffness.complementary_square(change));
+                    share = most < size ? most / size : 1.;
+                  }
                 step = share * all + (1. - share) * (relaxation * all);
               }
             state.time_error[i] += step;

@@ -325,7 +325,8 @@ namespace Viscoplastic
                                   size > 0. ? errors.change / size : 0.);
     return std::max(std::max(all - errors.before, least_rest * all) *
                       std::min(1., share / cancellation),
-                    least_share * (most_of_beginning * all - errors.before));
+                    least_share / cancellation *
+                      (most_of_beginning * all - errors.before));
   }
 
 

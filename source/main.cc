@@ -9,11 +9,10 @@
 #include <viscoplastic_contact/base/unexpected_end.h>
 #include <viscoplastic_contact/parameters/parameter_description.h>
 #include <viscoplastic_contact/run/command_line.h>
-#include <viscoplastic_contact/run/runs_ahead.h>
+#include <viscoplastic_contact/run/passes.h>
 #include <viscoplastic_contact/run/scene_as_json.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/two_level.h>
-#include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <cctype>
 #include <chrono>
@@ -89,17 +88,17 @@ namespace
         check_scene<dim>(parameters, console);
         return "";
       }
-    ViscoplasticContact<dim> problem(parameters,
-                                     console,
-                                     runs_ahead<dim>(parameters, console));
     if (!compares)
-      return problem.run(command_line.restart);
+      return run_in_passes<dim>(parameters,
+                                console,
+                                command_line.restart,
+                                nullptr);
     console.stream() << "First with twice the mesh width and twice the time "
                         "steps, to compare."
                      << std::endl;
     const RunSummary<dim> coarser =
       run_coarser_scene<dim>(parameters, command_line);
-    return problem.run(command_line.restart, &coarser);
+    return run_in_passes(parameters, console, command_line.restart, &coarser);
   }
 
 

@@ -24,6 +24,7 @@ ABOUT = {
     "prices": "what errors of some per cent cost on these scenes",
     "known_to_tolerance": "true errors of runs to a tolerance",
     "long_creep": "estimated over true errors after long creep",
+    "drawn": "the same of scenes drawn at random",
     "to_tolerance": "what runs to a tolerance cost, beside uniform meshes",
     "tolerance": "what coupling the solver's tolerance to the error saves",
     "references": "reference cases beside independent values",
@@ -266,11 +267,20 @@ def known_to_tolerance(runner):
 
 
 def long_creep(runner):
+    return effectivities(runner, "long_creep", plan.LONG_CREEP)
+
+
+def drawn(runner):
+    return effectivities(runner, "drawn", plan.DRAWN)
+
+
+def effectivities(runner, piece, scenes):
+    """Runs beside references; without a quantity those for the energy norm."""
     rows = []
-    for name, (scene, quantity, tolerances, halved, entries) in plan.LONG_CREEP.items():
+    for name, (scene, quantity, tolerances, halved, entries) in scenes.items():
         files = [SCENES.parent / f"{scene}.prm"]
         entries = {**plan.COUPLED, **entries}
-        folder = f"long_creep/{name.replace(', ', '_').replace(' ', '_')}"
+        folder = f"{piece}/{name.replace(', ', '_').replace(' ', '_')}"
         level = int(entries.get("Geometry/Global refinements", 0))
         reference = f"{folder}/reference"
         finest = runner.run(
@@ -285,17 +295,19 @@ def long_creep(runner):
         )
         entries["Exact solution/Reference directory"] = runner.directory / reference
         level_limit = {"Mesh refinement/Maximal level": level + 1}
-        of_quantity = {"Error control/Quantity": quantity}
+        of_quantity = {"Error control/Quantity": quantity} if quantity else {}
         norm, value = tolerances
-        for way, overrides in {
+        ways = {
             "uniform": of_quantity,
             "adaptive": {**plan.ADAPTIVE_CREEP, **level_limit, **of_quantity},
             f"to {tables.percent(norm)}": {"Error control/Tolerance": norm},
-            f"quantity to {tables.percent(value)}": {
+        }
+        if quantity:
+            ways[f"quantity to {tables.percent(value)}"] = {
                 "Error control/Tolerance": value,
                 **of_quantity,
-            },
-        }.items():
+            }
+        for way, overrides in ways.items():
             columns = runner.run(
                 f"{folder}/{way.replace(' ', '_').replace('%', 'percent')}",
                 files,
@@ -347,6 +359,7 @@ SHORTENED = {
     "low_regularity": low_regularity,
     "known_to_tolerance": known_to_tolerance,
     "long_creep": long_creep,
+    "drawn": drawn,
     "to_tolerance": to_tolerance,
     "references": lambda runner: (references.rows(runner), None),
 }

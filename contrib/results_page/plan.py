@@ -322,6 +322,53 @@ LONG_CREEP = {
         },
     ),
 }
+# Four scenes drawn at random, as their files say.
+DRAWN = {
+    "block on a curved foundation, 3D, perzyna": (
+        "verification/hard/drawn_block_3d",
+        None,
+        (0.5, None),
+        2,
+        {
+            "Geometry/Global refinements": "1",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "0.5: 3",
+        },
+    ),
+    "strip of two materials on a foundation that sinks": (
+        "verification/hard/drawn_strip_2d",
+        None,
+        (0.3, None),
+        2,
+        {
+            "Geometry/Global refinements": "1",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "1: 2",
+        },
+    ),
+    "ring whose data contradict each other, zener": (
+        "verification/hard/drawn_ring_2d",
+        None,
+        (0.3, None),
+        2,
+        {
+            "Geometry/Global refinements": "2",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "0.25: 3",
+        },
+    ),
+    "lifted slab, 3D, parsed": (
+        "verification/hard/drawn_slab_3d",
+        None,
+        (0.3, None),
+        2,
+        {
+            "Geometry/Global refinements": "1",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "0.25: 4",
+        },
+    ),
+}
 
 # Where the fixed tolerance is compared with the coupled one: the ladder of h
 # and k of the diagrams again.

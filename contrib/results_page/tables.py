@@ -513,22 +513,27 @@ def long_creep_row(scene, way, quantity, columns, reference):
     known = np.flatnonzero(~np.isnan(columns["error_energy"]))[-4:]
     size = np.nanmax(columns["energy_norm"])
     error = columns["error_energy"][known]
-    true = [
-        reference[quantity][np.argmin(abs(reference["t"] - t))]
-        for t in columns["t"][known]
-    ]
-    of_quantity = abs(columns[quantity][known] - true)
-    estimate = columns.get("quantity_total", np.full(columns["t"].size, np.nan))[known]
     quotient = lambda a, b: number(a / b if b > 0 else np.nan, 2)
     quotients = lambda a, b: at_times(map(quotient, a, b))
-    largest = np.max(abs(reference[quantity]))
-    return [
+    row = [
         scene,
         way,
         number(columns["cells"].max(), 9),
         number(columns["step"].max(), 9),
         at_times(number(100 * e, 2) for e in error / size),
         quotients(columns["estimate_total"][known], error),
+    ]
+    if not quantity:
+        return row + [UNKNOWN] * 3
+    true = [
+        reference[quantity][np.argmin(abs(reference["t"] - t))]
+        for t in columns["t"][known]
+    ]
+    of_quantity = abs(columns[quantity][known] - true)
+    estimate = columns.get("quantity_total", np.full(columns["t"].size, np.nan))[known]
+    largest = np.max(abs(reference[quantity]))
+    return [
+        *row,
         f"`{quantity}`",
         at_times(number(100 * e, 2) for e in of_quantity / largest),
         quotients(estimate, of_quantity),
@@ -775,6 +780,11 @@ SHORTENED = {
         known_by_scene,
     ),
     "long_creep": (LONG_CREEP_HEADER, LONG_CREEP_SHOWN, creep_by_scene),
+    "drawn": (
+        LONG_CREEP_HEADER,
+        LONG_CREEP_SHOWN[:3],
+        lambda rows: [line[:3] for line in creep_by_scene(rows)],
+    ),
     "to_tolerance": (TO_TOLERANCE_HEADER, TO_TOLERANCE_SHOWN, smallest_tolerances),
     "references": (
         REFERENCE_HEADER,

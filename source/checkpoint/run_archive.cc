@@ -60,7 +60,8 @@ namespace Viscoplastic
         .tolerance;
       run.control.exchange(archive);
       if (run.budget != nullptr)
-        archive &run.budget->expected_size &run.budget->unavoidable;
+        archive &run.budget->expected_size &run.budget->unavoidable &run.pass
+          .follows_another &run.pass.has_changed_mesh;
       if (run.scene.parameters.error_control.error_estimator)
         accepted.errors.exchange(archive);
       run.recorder.exchange(archive);

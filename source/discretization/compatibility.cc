@@ -16,6 +16,24 @@ namespace Viscoplastic
 {
   namespace
   {
+    /// The boundaries that a node is on. Collective.
+    template <int dim>
+    std::set<types::boundary_id>
+    boundaries_at(const AdmissibleSpace<dim> &space, const Point<dim> &position)
+    {
+      // Which ranks see its faces, not only the one that owns it.
+      std::set<types::boundary_id> here;
+      for (const auto &cell : space.cells)
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            for (const unsigned int v : cell->face(f)->vertex_indices())
+              if (cell->face(f)->vertex(v) == position)
+                here.insert(cell->face(f)->boundary_id());
+      return Utilities::MPI::compute_set_union(here, space.communicator);
+    }
+
+
+
     /// The node with the largest of some forces, and its boundaries. Forces of
     /// hanging nodes are zero.
     template <int dim>
@@ -37,18 +55,42 @@ namespace Viscoplastic
               largest.add(stable_norm(force), cell->vertex(v));
             }
       largest.reduce(space.communicator);
-      result.position = largest.position();
+      result.position   = largest.position();
+      result.boundaries = boundaries_at(space, result.position);
+    }
 
-      // Which ranks see its faces, not only the one that owns it.
-      std::set<types::boundary_id> here;
-      for (const auto &cell : space.cells)
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            for (const unsigned int v : cell->face(f)->vertex_indices())
-              if (cell->face(f)->vertex(v) == result.position)
-                here.insert(cell->face(f)->boundary_id());
-      result.boundaries =
-        Utilities::MPI::compute_set_union(here, space.communicator);
+
+
+    /// What a condition prescribes of u: the directions, and the values there.
+    template <int dim>
+    std::vector<std::pair<Tensor<1, dim>, double>>
+    prescribed(const BoundaryCondition<dim> &condition,
+               const Point<dim>             &x,
+               const double                  t)
+    {
+      std::vector<std::pair<Tensor<1, dim>, double>> result;
+      if (condition.is_glued() && condition.against)
+        return result;
+      const bool is_normal =
+        !condition.is_glued() && (condition.role == BoundaryRole::symmetry ||
+                                  condition.role == BoundaryRole::contact);
+      if (is_normal && condition.is_bilateral())
+        result.emplace_back(condition.normal,
+                            condition.foundation_displacement ?
+                              condition.foundation_displacement->value(x, t) :
+                              0.);
+      for (unsigned int d = 0; d < dim && !is_normal; ++d)
+        {
+          Tensor<1, dim> axis;
+          axis[d] = 1.;
+          if (condition.role == BoundaryRole::clamped)
+            result.emplace_back(axis, 0.);
+          else if (condition.is_glued())
+            result.emplace_back(axis, condition.glued_displacement(x, t)[d]);
+          else if (condition.displacement[d])
+            result.emplace_back(axis, condition.displacement[d]->value(x, t));
+        }
+      return result;
     }
 
 
@@ -153,6 +195,44 @@ namespace Viscoplastic
 
 
 
+  template <int dim>
+  DisplacementJump<dim>
+  largest_jump(const AdmissibleSpace<dim> &space, const double t)
+  {
+    DistributedVector in_frames = space.owned_vector(),
+                      u         = space.ghosted_vector();
+    space.set_prescribed(t, in_frames);
+    space.to_cartesian(in_frames, u);
+    DisplacementJump<dim> result;
+    LargestPlace<dim>     largest;
+    for (const auto &cell : space.cells)
+      for (const unsigned int f : cell->face_indices())
+        if (const auto face = cell->face(f); face->at_boundary())
+          for (const unsigned int v : face->vertex_indices())
+            {
+              const Point<dim> x     = face->vertex(v);
+              const auto       first = face->vertex_dof_index(v, 0);
+              Tensor<1, dim>   value;
+              for (unsigned int d = 0; d < dim; ++d)
+                value[d] =
+                  u.begin()[space.relevant.index_within_set(first + d)];
+              for (const auto &[direction, datum] :
+                   prescribed(space.scene.condition(face->boundary_id()), x, t))
+                {
+                  result.largest = std::max(result.largest, std::abs(datum));
+                  largest.add(std::abs(direction * value - datum), x);
+                }
+            }
+    largest.reduce(space.communicator);
+    result.largest    = Utilities::MPI::max(result.largest, space.communicator);
+    result.size       = largest.value();
+    result.position   = largest.position();
+    result.boundaries = boundaries_at(space, result.position);
+    return result;
+  }
+
+
+
   template CompatibilityViolation<2>
   compatibility_violation<2>(const AdmissibleSpace<2> &,
                              const Load<2> &,
@@ -165,4 +245,8 @@ namespace Viscoplastic
                              const ContactFace<3> *,
                              const DistributedVector &,
                              ContactState &);
+  template DisplacementJump<2>
+  largest_jump<2>(const AdmissibleSpace<2> &, const double);
+  template DisplacementJump<3>
+  largest_jump<3>(const AdmissibleSpace<3> &, const double);
 } // namespace Viscoplastic

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Viscoplastic
 {
@@ -17,6 +18,31 @@ namespace Viscoplastic
     energy_norm(const Forces<dim> &forces)
     {
       return std::sqrt(2. * std::max(0., forces.strain_energy));
+    }
+
+
+
+    /// How much loads change in a step, relative to those at its end. Friction
+    /// bounds that are given count as loads, and change without limit.
+    /// Collective.
+    template <int dim>
+    double
+    change_of_loads(const Scene<dim>  &scene,
+                    const Forces<dim> &before,
+                    const Forces<dim> &after)
+    {
+      const auto changes = [](const auto &datum) {
+        return datum && datum->depends_on_time();
+      };
+      for (const auto &[id, condition] : scene.boundary)
+        if (changes(condition.friction_bound) ||
+            changes(condition.friction_coefficient) ||
+            changes(condition.normal_stress))
+          return std::numeric_limits<double>::infinity();
+      DistributedVector change = after.load.values;
+      change -= before.load.values;
+      const double size = change.l2_norm();
+      return size > 0. ? size / after.load.values.l2_norm() : 0.;
     }
 
 
@@ -151,13 +177,14 @@ namespace Viscoplastic
 
   template <int dim>
   void
-  ErrorEstimator<dim>::add_defect(const FlowLaws<dim> &laws,
-                                  const TimeDefect    &defect,
-                                  const bool           has_slope,
-                                  const State<dim>    &accepted,
-                                  const FlowRate      &accepted_rate,
-                                  EvaluatedState<dim> &end) const
+  ErrorEstimator<dim>::add_defect(const FlowLaws<dim>       &laws,
+                                  const TimeDefect          &defect,
+                                  const bool                 has_slope,
+                                  const EvaluatedState<dim> &old,
+                                  const FlowRate            &accepted_rate,
+                                  EvaluatedState<dim>       &end) const
   {
+    const State<dim>       &accepted     = old.state;
     const StressSpace<dim> &stress_space = laws.stress_space;
     const auto              now          = laws.at(end.state.t);
     State<dim>             &state        = end.state;
@@ -167,31 +194,53 @@ namespace Viscoplastic
     const bool is_measured = scene.parameters.step_control.is_on() ||
                              scene.parameters.error_control.has_tolerance() ||
                              scene.quantity;
-    const double k   = state.k;
-    state.time_error = accepted.time_error;
+    const double k = state.k;
+    // What relaxes by itself does so in a time 1/r, however long the step.
+    constexpr double resolved = 0.1;
+    const double     r =
+      std::max(accepted_rate.relaxation_rate, end.rate->relaxation_rate);
+    const double of_loads = defect.first < 0. && k * r > resolved ?
+                              change_of_loads(scene, old.forces, end.forces) :
+                              std::numeric_limits<double>::infinity();
+    const bool   fades    = std::isfinite(of_loads);
+    state.time_error      = accepted.time_error;
     if (is_second)
       state.rate_slope.resize(accepted.rate_slope.size());
     state.remembered_error = accepted.remembered_error;
     std::vector<double>                  sums(5, 0.);
     std::vector<SymmetricTensor<2, 3>>   strains(stress_space.n_samples);
     std::optional<SymmetricTensor<4, 3>> fading;
+    SymmetricTensor<4, 3>                relaxation;
+    SymmetricTensor<2, 3>                stress;
+    bool                                 is_uniform     = false;
     const ViscoplasticLaw               *last_law       = nullptr;
     const Stiffness                     *last_stiffness = nullptr;
     std::size_t                          i              = 0;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
-        if (relaxes)
-          stress_space.strains(c, state.u.begin(), strains.data());
         const Stiffness       &stiffness = stress_space.moduli(c);
         const ViscoplasticLaw *law       = now.law(c);
         // The same in all cells of most bodies.
         if (c == 0 || law != last_law || &stiffness != last_stiffness ||
             (law && law->depends_on_position()))
-          fading = law ?
-                     fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
-                     std::nullopt;
-        last_law       = law;
-        last_stiffness = &stiffness;
+          {
+            fading     = law ?
+                           fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
+                           std::nullopt;
+            is_uniform = law && law->has_constant_tangents() &&
+                         !law->depends_on_position();
+            if (law == nullptr)
+              relaxation = identity_tensor<3>();
+            else if (is_uniform && (relaxes || fades))
+              relaxation =
+                error_relaxation(*law, {}, {}, k, stiffness, now.point(c, 0));
+          }
+        last_law                = law;
+        last_stiffness          = &stiffness;
+        const bool needs_stress = law && ((fades && of_loads > 0.) ||
+                                          ((relaxes || fades) && !is_uniform));
+        if (needs_stress)
+          stress_space.strains(c, state.u.begin(), strains.data());
         for (unsigned int s = 0; s < stress_space.n_samples; ++s, ++i)
           {
             const double                weight = stress_space.weight(c, s);
@@ -206,6 +255,28 @@ namespace Viscoplastic
                   step += defect.second * k * k * k * 2. / (k + accepted.k) *
                           (state.rate_slope[i] - accepted.rate_slope[i]);
               }
+            if (needs_stress)
+              stress = stiffness.stress(strains[s]) + state.z[i];
+            if (law && (relaxes || fades) && !is_uniform)
+              relaxation = error_relaxation(
+                *law, stress, strains[s], k, stiffness, now.point(c, s));
+            const SymmetricTensor<2, 3> all = step;
+            if (fades)
+              {
+                // The loads have changed G by no more than r times the change
+                // of the stress.
+                double share = 0.;
+                if (of_loads > 0.)
+                  {
+                    const double most =
+                      of_loads * r *
+                      std::sqrt(stiffness.complementary_square(stress));
+                    const double size =
+                      std::sqrt(stiffness.complementary_square(change));
+                    share = most < size ? most / size : 1.;
+                  }
+                step = share * all + (1. - share) * (relaxation * all);
+              }
             state.time_error[i] += step;
             if (fading)
               state.time_error[i] = *fading * state.time_error[i];
@@ -214,19 +285,11 @@ namespace Viscoplastic
               step += defect.second * k * change;
             if (relaxes)
               {
-                const SymmetricTensor<4, 3> relaxation =
-                  law ?
-                    error_relaxation(*law,
-                                     stiffness.stress(strains[s]) + state.z[i],
-                                     strains[s],
-                                     k,
-                                     stiffness,
-                                     now.point(c, s)) :
-                    identity_tensor<3>();
+                const SymmetricTensor<2, 3> left =
+                  relaxation * (fades ? all : step);
                 state.remembered_error[i] =
-                  relaxation * (state.remembered_error[i] + step);
-                sums[4] += weight * stiffness.complementary_square(
-                                      SymmetricTensor<2, 3>(relaxation * step));
+                  relaxation * state.remembered_error[i] + left;
+                sums[4] += weight * stiffness.complementary_square(left);
               }
             sums[0] += weight * stiffness.complementary_square(step);
             sums[1] +=
@@ -288,7 +351,7 @@ namespace Viscoplastic
         add_defect(laws,
                    defect,
                    /* has_slope = */ accepted.state.k > 0. && !is_fresh,
-                   accepted.state,
+                   accepted,
                    *accepted_rate,
                    end);
         estimate.creep_path += estimate.irreversible_change;

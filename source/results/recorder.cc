@@ -272,6 +272,8 @@ namespace Viscoplastic
   {
     auto result      = timer.get_summary_data(TimerOutput::total_wall_time);
     result["set-up"] = first_set_up_seconds;
+    if (pilot_seconds > 0.)
+      result["pilot run"] += pilot_seconds;
     return result;
   }
 

@@ -161,11 +161,15 @@ namespace Viscoplastic
          << summary.relative() << " of the "
          << (scene.quantity ? "largest " + scene.quantity->name : "solution")
          << ", of it " << errors.space / size << " by the mesh, "
+         << errors.history / size << " by the history, "
          << (errors.time + errors.friction) / size << " by the time steps and "
          << errors.initial / size << " by the initial data; ";
     if (errors.time + errors.friction > 0.5 * errors.total())
       text << "steps of the smallest size are too long, so that the data jump "
               "or 'Step control/Smallest step' is too large.";
+    else if (errors.history_adds && errors.history > 0.5 * errors.total())
+      text << "'Material/Stress history' = cell means lets no stress flow that "
+              "varies within cells.";
     else if (!scene.is_adaptive())
       text << "the mesh is fixed by 'Mesh refinement/Strategy'.";
     else if (budget->unavoidable > 0.)

@@ -3,7 +3,10 @@
 
 #include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/version.h>
+#include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/run/announcer.h>
+
+#include <sstream>
 
 namespace Viscoplastic
 {
@@ -93,6 +96,37 @@ namespace Viscoplastic
             n > 0 || (!of_obstacles && discretization.scene().has_friction()))
           out << ", " << n << name;
     out << (discretization.mean_dilatation ? ", mean dilatation\n" : "\n");
+    warn_of_jumps(discretization.space);
+  }
+
+
+
+  template <int dim>
+  void
+  Announcer<dim>::warn_of_jumps(const AdmissibleSpace<dim> &space)
+  {
+    const TimeSchedule &schedule = space.scene.schedule;
+    for (double t = 0.; t < schedule.end_time();)
+      {
+        t                                = schedule.phase_at(t).end;
+        const DisplacementJump<dim> jump = largest_jump(space, t);
+        if (jump.size <= 1e-6 * jump.largest)
+          continue;
+        std::vector<std::string> names;
+        for (const types::boundary_id id : jump.boundaries)
+          names.push_back(space.scene.names.of("boundary", id));
+        std::ostringstream text;
+        text << "Warning: what is prescribed of displacements jumps by "
+             << jump.size << space.scene.unit(Quantity::length) << " at x = ("
+             << jump.position << "), where " << enumeration(names)
+             << " meet (t = " << t << space.scene.unit(Quantity::time)
+             << "). No displacement of finite energy does that: forces, "
+                "energies and errors grow with each finer mesh, and no error "
+                "bar tells their limit. Let the data agree where boundaries "
+                "meet.";
+        console.remark(text.str());
+        return;
+      }
   }
 
 

@@ -70,7 +70,7 @@ namespace Viscoplastic
 
 
   void
-  RunDirectories::begin_checkpoints()
+  RunDirectories::begin_checkpoints(const bool are_of_this_run)
   {
     const CheckpointParameters &wanted = parameters.checkpoint;
     if (wanted.every_n_steps > 0 || wanted.wall_time_interval > 0. ||
@@ -82,7 +82,7 @@ namespace Viscoplastic
     const CheckpointStore::Removal removal = checkpoints.remove_all();
     for (const std::string &remark : removal.remarks)
       console.remark(remark);
-    if (removal.n_checkpoints > 0)
+    if (removal.n_checkpoints > 0 && !are_of_this_run)
       console.remark("Note: the checkpoints of an earlier run in '" +
                      checkpoints.directory + "' have been removed.");
   }

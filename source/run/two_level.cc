@@ -3,7 +3,7 @@
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/parameters/phases.h>
-#include <viscoplastic_contact/run/runs_ahead.h>
+#include <viscoplastic_contact/run/passes.h>
 #include <viscoplastic_contact/run/two_level.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
@@ -82,7 +82,7 @@ namespace Viscoplastic
         const Parameters         coarser(command_line.files, overrides);
         ViscoplasticContact<dim> problem(coarser,
                                          silence,
-                                         runs_ahead<dim>(coarser, silence));
+                                         pilot_run<dim>(coarser));
         return problem.run_without_files();
       }
     catch (const std::exception &exception)

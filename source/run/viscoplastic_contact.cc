@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/error/quantity_estimator.h>
 #include <viscoplastic_contact/error/solution_errors.h>
+#include <viscoplastic_contact/mesh/mesh_refinement.h>
 #include <viscoplastic_contact/results/step_quantities.h>
 #include <viscoplastic_contact/run/scene_check.h>
 #include <viscoplastic_contact/run/state_carrier.h>
@@ -33,17 +34,16 @@ namespace Viscoplastic
 
 
   template <int dim>
-  ViscoplasticContact<dim>::ViscoplasticContact(
-    const Parameters     &parameters,
-    Console              &console,
-    const RunsAhead<dim> &runs_ahead)
+  ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
+                                                Console          &console,
+                                                const PilotRun   &pilot_run)
     : communicator(MPI_COMM_WORLD)
     , parameters(parameters)
     , scene(parameters)
     , triangulation(communicator)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
-    , runs_ahead(runs_ahead)
+    , pilot_run(pilot_run)
     , budget(ErrorBudget::of_run(parameters))
     , control(parameters, scene.schedule, budget ? &*budget : nullptr)
     , mesh_controller(scene, triangulation, budget ? &*budget : nullptr)
@@ -58,7 +58,12 @@ namespace Viscoplastic
     , recorder(scene, control, console, timer, budget ? &*budget : nullptr)
     , directories(parameters, console, communicator)
     , lines(scene)
-    , run_state{scene, accepted, control, budget ? &*budget : nullptr, recorder}
+    , run_state{scene,
+                accepted,
+                control,
+                budget ? &*budget : nullptr,
+                pass,
+                recorder}
     , checkpoint_schedule(parameters.checkpoint)
   {}
 
@@ -70,13 +75,14 @@ namespace Viscoplastic
                                 const RunSummary<dim>     *coarser)
   {
     first_memory = memory_of_ranks(communicator).first;
-    make_first_mesh(scene, triangulation, control, &announcer);
+    if (!pass.follows_another)
+      make_first_mesh(scene, triangulation, control, &announcer);
     known_solution.check();
     directories.lock();
     if (const auto checkpoint = directories.find_checkpoint(restart))
       {
         resume(*checkpoint);
-        if (is_finished())
+        if (is_finished() && !needs_another_pass())
           {
             out << "This is the last step: there is nothing left to do."
                 << std::endl;
@@ -88,8 +94,10 @@ namespace Viscoplastic
 
     const SignalRequests signals;
     const std::string    interruption = make_steps(&signals);
-    if (interruption.empty())
+    if (interruption.empty() && !needs_another_pass())
       close(coarser);
+    else
+      output->finish(); // before another pass writes over it
     return interruption;
   }
 
@@ -109,9 +117,9 @@ namespace Viscoplastic
         AcceptedStep<dim> step = time_stepper->next(accepted);
         if (refine_for(step))
           {
-            if (signals == nullptr && accepted.state.n > 0 &&
-                QuantityEstimator<dim>::is_of_creep(scene))
-              return ""; // to begin again
+            pass.has_changed_mesh |= accepted.state.n > 0;
+            if (needs_another_pass())
+              return "";
             continue;
           }
         announcer.announce_solver(time_stepper->method().solver_name());
@@ -149,15 +157,43 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  ViscoplasticContact<dim>::needs_another_pass() const
+  {
+    if (!budget || !scene.quantity || !pass.has_changed_mesh)
+      return false;
+    return QuantityEstimator<dim>::is_of_creep(scene) ||
+           (is_finished() && !pass.follows_another);
+  }
+
+
+
+  template <int dim>
+  void
+  ViscoplasticContact<dim>::follow(const ViscoplasticContact<dim> &earlier)
+  {
+    pass.follows_another = true;
+    make_first_mesh<dim>(scene, triangulation, control, nullptr);
+    refine_like(earlier.triangulation, triangulation);
+    budget->expected_size = earlier.budget->expected_size;
+    recorder.count_pilot_run(earlier.recorder);
+  }
+
+
+
+  template <int dim>
   void
   ViscoplasticContact<dim>::begin_state()
   {
     Expectation expectation;
     if (budget)
       {
-        TimerOutput::Scope phase(timer, "pilot run");
-        expectation = runs_ahead(triangulation);
-        budget->expect_size(expectation.size);
+        if (!pass.follows_another)
+          {
+            TimerOutput::Scope phase(timer, "pilot run");
+            expectation = pilot_run();
+            budget->expect_size(expectation.size);
+          }
         control.expect_size(budget->expected_size);
       }
     check_stages(fe, dof_handler, scene);
@@ -183,8 +219,10 @@ namespace Viscoplastic
     begin_state();
     directories.begin();
     output.emplace(scene, communicator);
+    if (pass.follows_another)
+      output->resume({});
     lines.begin(output->directory());
-    directories.begin_checkpoints();
+    directories.begin_checkpoints(pass.follows_another);
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       recorder.write_to(std::make_unique<Statistics>(
         output->directory() + "statistics.csv", scene.parameters.units, dim));

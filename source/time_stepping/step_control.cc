@@ -50,10 +50,10 @@ namespace Viscoplastic
     /// the first power of the step size, as that part of the time does, so that
     /// no step would be short enough.
     constexpr double most_of_event = 0.01;
-    /// The part of what is left that any step may use: what is fast but small,
-    /// as the beginning of creep, would otherwise have most of the steps and
-    /// next to none of the error. Fewest steps have equal errors.
-    constexpr double least_share = 1e-3;
+    /// The part that any step may use of what is left of half of all: what is
+    /// fast but small, as the beginning of creep, would otherwise have most of
+    /// the steps and next to none of the error. Fewest steps have equal errors.
+    constexpr double least_share = 1e-2, most_of_beginning = 0.5;
     /// Step sizes that are chosen by the error are fractions 2^(-i/n) of the
     /// whole time, so that what solvers leave of a solution does not choose
     /// others, which differ the more from step to step.
@@ -323,11 +323,12 @@ namespace Viscoplastic
         std::clamp(errors.before / std::min(present.unsigned_sum, all),
                    least_cancellation,
                    1.);
-    const double share = std::max({step.k / (T - step.t_old),
-                                   size > 0. ? errors.change / size : 0.,
-                                   least_share});
-    return std::max(all - errors.before, least_rest * all) *
-           std::min(1., share / cancellation);
+    const double share = std::max(step.k / (T - step.t_old),
+                                  size > 0. ? errors.change / size : 0.);
+    return std::max(std::max(all - errors.before, least_rest * all) *
+                      std::min(1., share / cancellation),
+                    least_share / cancellation *
+                      (most_of_beginning * all - errors.before));
   }
 
 

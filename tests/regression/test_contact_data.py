@@ -508,6 +508,26 @@ class Junctions(TestCase):
                                          "Time/Phases": "0.1: 1"})
             self.assertEqual(warning in result.stdout, is_whole, result.stdout)
 
+    def test_prescribed_displacements_that_jump(self):
+        """A foundation lifts one side of a ring, whose next side is clamped: no solution
+        has finite energy."""
+        coarse = {"Geometry/Global refinements": 0, "Time/Phases": "0.25: 1"}
+        lift = "0.003016*exp(-(y)^2)*t"
+        for refined, ranks in (("", 1), ("3: 1", 2)):
+            result = run(
+                "hard/drawn_ring_2d",
+                {**coarse, "Geometry/Boundary refinements": refined},
+                ranks=ranks,
+            )
+            self.assertRegex(
+                result.stdout,
+                r"Warning: what is prescribed of displacements jumps by 0.000754 at "
+                r"x = \(1 \S+\), where boundary 1, boundary 3 meet \(t = 0.25\)",
+            )
+        agreeing = {"Boundary 3/Foundation displacement": f"{lift}*(1 - x)"}
+        result = run("hard/drawn_ring_2d", {**coarse, **agreeing})
+        self.assertNotIn("jumps by", result.stdout)
+
     def test_no_warning_where_they_are_apart(self):
         result = run("conveyor_2d", {"Boundary 3/Role": "clamped",
                                      "Boundary 3/Displacement": "",

@@ -162,12 +162,12 @@ class LongCreep(TestCase):
         self.assertClose(self.velocity(result), self.VELOCITY, relative=0.02)
         # 2.6 % before
         self.assertClose(result["point0_x"][-1], self.fine["point0_x"][-1], 0.02)
-        # one mesh from the beginning, found by runs that begin again on each
+        # one mesh from the beginning, found by passes that begin again on each, of
+        # which the last one is the run
         self.assertEqual(result["cells"][0], result["cells"][-1])
-        self.assertEqual(
-            result.stdout.count("Again from the beginning"),
-            1 + result.stdout.count("times too coarse"),
-        )
+        passes = result.stdout.count("Again from the beginning")
+        self.assertGreater(passes, 0)
+        self.assertEqual(passes, result.stdout.count("times too coarse"))
         # measured: 27; 104 while the beginning of creep, where hardly anything has
         # moved, had steps in proportion to that
         self.assertLess(len(result["t"]), 50)
@@ -419,6 +419,39 @@ class TimePart(TestCase):
     def test_exact_for_cell_means(self):
         self.check(10)
         self.check(40)
+
+    def test_long_steps_of_backward_euler(self):
+        """A thick cylinder of norton against short steps on the same mesh: two steps of
+        five and 500 relaxation times under a constant load, which stress that relaxes by
+        itself made 350 and 500 times too large; and a load that is taken off."""
+        radial = "x/sqrt(x*x + y*y)*{0}; y/sqrt(x*x + y*y)*{0}"
+        off = radial.format("(t < 0.5 ? min(t/0.01, 1) : 1 - 1.6*(t - 0.5))")
+        for load, phases, more in (
+            (radial.format("1"), "0.01: 1, 1: 1", "0.01: 64, 1: 64"),
+            (off, "0.01: 2, 0.5: 2, 1: 2", "0.01: 48, 0.5: 48, 1: 48"),
+        ):
+            scene = {
+                "Geometry/Global refinements": 2,
+                "Material/norton/Exponent": 5,
+                "Boundary 0/Traction": load,
+                "Output/Fields every": 0,
+            }
+            fine = run(
+                "hard/norton_cylinder",
+                {**scene, "Time/Phases": more, "Output/Reference fields": "true"},
+            )
+            result = run(
+                "hard/norton_cylinder",
+                {
+                    **scene,
+                    "Time/Phases": phases,
+                    "Exact solution/Reference directory": fine.directory,
+                },
+            )
+            known = ~np.isnan(result["error_energy"]) & (result["t"] > 0)
+            index = result["estimate_time"][known] / result["error_energy"][known]
+            self.assertGreater(index.min(), 0.7)
+            self.assertLess(index.max(), 3)
 
     def test_adds_up_over_unequal_steps(self):
         """With signs: after t* the stress falls, and part of what has been

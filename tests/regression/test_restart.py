@@ -543,6 +543,32 @@ class Triggers(RestartCase):
             job.run("--restart")
             self.assertIdentical(job.results, reference.results)
 
+    def test_wall_time_limit_in_an_early_pass(self):
+        """A run to the tolerance of a quantity goes on in the pass that has ended, and
+        of what passes have written the last one's is left."""
+        scene = {
+            "Geometry/Arguments": "8, 4 : 0, 0 : 2, 1 : true",
+            "Output/Points": "0, 0",
+            "Output/Fields every": 1,
+            "Error control/Quantity": "point0_x",
+            "Error control/Tolerance": 0.05,
+        }
+        with Job("slab", scene) as reference, Job("slab", scene) as job:
+            result = reference.run()
+            self.assertGreater(result.stdout.count("Again from the beginning"), 1)
+            self.assertNotIn("have been removed", result.stdout)
+            self.assertEqual(
+                len(list(reference.results.glob("solution_*.vtu"))), len(result["t"])
+            )
+            job.overrides["Checkpoint/Wall time limit"] = 1e-6
+            job.run(code=3)
+            job.run("--restart", code=3)
+            self.assertEqual(job.steps(), [1, 2])
+            self.assertLess(job.run("--restart", code=3)["cells"][-1], result["cells"][0])
+            job.overrides["Checkpoint/Wall time limit"] = 1000
+            job.run("--restart")
+            self.assertIdentical(job.results, reference.results)
+
     def test_no_traces_without_checkpoints(self):
         with Job("slab", SLAB) as job:
             job.run()

@@ -17,6 +17,14 @@
 
 namespace Viscoplastic
 {
+  /// Where a run that is made in passes is, see run_in_passes().
+  struct PassState
+  {
+    bool follows_another = false, has_changed_mesh = false;
+  };
+
+
+
   /// What a run knows between two steps beside its mesh: all that a restart
   /// has to bring back.
   template <int dim>
@@ -26,6 +34,7 @@ namespace Viscoplastic
     EvaluatedState<dim> &accepted;
     StepControl         &control;
     ErrorBudget         *budget; // null without a tolerance
+    PassState           &pass;
     Recorder<dim>       &recorder;
   };
 

@@ -38,4 +38,22 @@ namespace Viscoplastic
                           const ContactFace<dim>     *face,
                           const DistributedVector    &u,
                           ContactState               &contact);
+
+  /// Where what boundaries prescribe of u at a common node differs most.
+  template <int dim>
+  struct DisplacementJump
+  {
+    double size = 0.;
+    /// Of what is prescribed anywhere.
+    double                       largest = 0.;
+    Point<dim>                   position;
+    std::set<types::boundary_id> boundaries;
+  };
+
+  /// Find that at time t. No displacement of finite energy jumps on the
+  /// boundary: that of a mesh does within a cell, and its energy grows with
+  /// each finer one. Collective.
+  template <int dim>
+  DisplacementJump<dim>
+  largest_jump(const AdmissibleSpace<dim> &space, const double t);
 } // namespace Viscoplastic

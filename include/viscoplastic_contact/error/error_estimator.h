@@ -132,12 +132,12 @@ namespace Viscoplastic
     /// into the estimate. @p has_slope: whether the slope of G before the step
     /// goes on in it. Collective.
     void
-    add_defect(const FlowLaws<dim> &laws,
-               const TimeDefect    &defect,
-               const bool           has_slope,
-               const State<dim>    &accepted,
-               const FlowRate      &accepted_rate,
-               EvaluatedState<dim> &end) const;
+    add_defect(const FlowLaws<dim>       &laws,
+               const TimeDefect          &defect,
+               const bool                 has_slope,
+               const EvaluatedState<dim> &accepted,
+               const FlowRate            &accepted_rate,
+               EvaluatedState<dim>       &end) const;
 
     const Scene<dim>       &scene;
     const SolverParameters &solver;

@@ -84,6 +84,14 @@ namespace Viscoplastic
     void
     resume(const State<dim> &state, const double seconds);
 
+    /// Take the time of an earlier pass for that of a pilot run.
+    void
+    count_pilot_run(const Recorder<dim> &earlier)
+    {
+      pilot_seconds   = earlier.elapsed();
+      earlier_seconds = earlier.earlier_seconds;
+    }
+
     /// Throws ExcMessage if the largest displacement, force or stress of the
     /// run is so large, or at its end so small, that squares of it, as energies
     /// are, mean nothing.
@@ -119,7 +127,7 @@ namespace Viscoplastic
     double
     elapsed() const
     {
-      return clock.wall_time();
+      return pilot_seconds + clock.wall_time();
     }
 
     /// Wall time of the whole run, with the parts before restarts.
@@ -226,14 +234,14 @@ namespace Viscoplastic
 
     std::unique_ptr<Statistics> statistics;
     Progress                    progress;
-    /// Wall time by phase a step ago, of the first set-up, and of the parts of
-    /// the run before the last restart.
+    /// Wall time by phase a step ago, and of the first set-up.
     std::map<std::string, double> last_seconds;
     double                        first_set_up_seconds = 0.;
     /// Seconds of the solves of this process, and what they would have taken
     /// without friction; see ContactReport.
-    double       solve_seconds = 0., plain_solve_seconds = 0.;
-    double       earlier_seconds = 0.;
+    double solve_seconds = 0., plain_solve_seconds = 0.;
+    /// Of the parts of the run before the last restart, and of earlier passes.
+    double       earlier_seconds = 0., pilot_seconds = 0.;
     ExpectedStep expected_step;
     Timer        clock;
   };

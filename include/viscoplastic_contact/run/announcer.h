@@ -38,7 +38,7 @@ namespace Viscoplastic
     void
     announce_stage(const Scene<dim> &scene);
 
-    /// The size of the first mesh.
+    /// The size of the first mesh, and what no mesh mends. Collective.
     void
     announce(const Discretization<dim> &discretization);
 
@@ -51,6 +51,10 @@ namespace Viscoplastic
     announce_solver(const std::string &name);
 
   private:
+    /// Where data contradict each other at the end of a phase. Collective.
+    void
+    warn_of_jumps(const AdmissibleSpace<dim> &space);
+
     Console                     &console;
     std::string                  solver;
     std::set<types::boundary_id> held_faces;

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/distributed/tria.h>
-
 #include <functional>
 #include <string>
 
 namespace Viscoplastic
 {
-  using namespace dealii;
-
   /// What a run to a tolerance has to know before its first step.
   struct Expectation
   {
@@ -19,8 +15,6 @@ namespace Viscoplastic
     std::string failure;
   };
 
-  /// Finds that out, and may refine the first mesh. Collective.
-  template <int dim>
-  using RunsAhead =
-    std::function<Expectation(parallel::distributed::Triangulation<dim> &)>;
+  /// Finds that out. Collective.
+  using PilotRun = std::function<Expectation()>;
 } // namespace Viscoplastic

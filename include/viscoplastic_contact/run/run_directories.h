@@ -37,9 +37,10 @@ namespace Viscoplastic
     begin();
 
     /// Remove the checkpoints of an earlier run, which go with its results, and
-    /// make sure that there is a place for those of this one.
+    /// make sure that there is a place for those of this one. It is told,
+    /// unless they are of an earlier pass of this run.
     void
-    begin_checkpoints();
+    begin_checkpoints(const bool are_of_this_run);
 
     /// The checkpoint to go on from, if the run is to go on and there is one.
     std::optional<CheckpointManifest>

@@ -45,13 +45,14 @@ namespace Viscoplastic
   class ViscoplasticContact
   {
   public:
-    /// @p runs_ahead is called in runs to a tolerance only. Throws ExcMessage
+    /// @p pilot_run is called in runs to a tolerance only. Throws ExcMessage
     /// with a sentence for the user, as all functions do.
-    ViscoplasticContact(const Parameters     &parameters,
-                        Console              &console,
-                        const RunsAhead<dim> &runs_ahead);
+    ViscoplasticContact(const Parameters &parameters,
+                        Console          &console,
+                        const PilotRun   &pilot_run);
 
-    /// Simulate, from the start or from a checkpoint. The closing words give
+    /// Simulate, from the start or from a checkpoint; a pass that needs another
+    /// one ends without closing words. These give
     /// each quantity with its difference from that of @p coarser, a run with
     /// twice the mesh width and time steps, unless that is null. Returns a
     /// sentence if a signal has ended the run early, after a checkpoint.
@@ -59,26 +60,28 @@ namespace Viscoplastic
     run(const CommandLine::Restart restart = CommandLine::Restart::no,
         const RunSummary<dim>     *coarser = nullptr);
 
-    /// Run without files and without the words at the beginning; returns what
-    /// is known at the end. A body that creeps is left on a mesh that is fine
-    /// enough for one step more, for a new run, if the tolerance is that of a
-    /// displacement.
+    /// Run without files and without the words at the beginning, in one pass;
+    /// returns what is known at the end.
     RunSummary<dim>
     run_without_files();
 
+    /// Whether the pass that has ended is not the run: it has changed its mesh
+    /// where only the mesh from the beginning will do, see run_in_passes().
+    bool
+    needs_another_pass() const;
+
+    /// Begin on the mesh that another pass has come to, when this one runs, and
+    /// count its time as that of a pilot run.
+    void
+    follow(const ViscoplasticContact<dim> &earlier);
+
+  private:
     bool
     is_finished() const
     {
       return accepted.state.t >= scene.schedule.end_time();
     }
 
-    const parallel::distributed::Triangulation<dim> &
-    mesh() const
-    {
-      return triangulation;
-    }
-
-  private:
     /// Everything up to the initial state, and its record.
     void
     begin();
@@ -151,7 +154,7 @@ namespace Viscoplastic
     DoFHandler<dim>                           dof_handler;
 
     // How meshes and steps are chosen.
-    const RunsAhead<dim>                 runs_ahead;
+    const PilotRun                       pilot_run;
     std::optional<ErrorBudget>           budget; // of a tolerance
     StepControl                          control;
     MeshController<dim>                  mesh_controller;
@@ -160,6 +163,9 @@ namespace Viscoplastic
     // Made anew on each mesh.
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<TimeStepper<dim>>    time_stepper;
+
+    /// Of the passes of a run.
+    PassState pass;
 
     /// The last state that will do, and the solve that has made the first one.
     EvaluatedState<dim> accepted;

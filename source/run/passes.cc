@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/base/messages.h>
-#include <viscoplastic_contact/mesh/mesh_refinement.h>
 #include <viscoplastic_contact/parameters/phases.h>
-#include <viscoplastic_contact/run/runs_ahead.h>
+#include <viscoplastic_contact/run/passes.h>
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <algorithm>
@@ -38,13 +37,15 @@ namespace Viscoplastic
         result.push_back(assignment);
       return result;
     }
+  } // namespace
 
 
 
-    template <int dim>
-    Expectation
-    make_pilot_run(const Parameters &parameters)
-    {
+  template <int dim>
+  PilotRun
+  pilot_run(const Parameters &parameters)
+  {
+    return [&parameters] {
       Console     silence(MPI_COMM_WORLD, /* quiet = */ true);
       Expectation expectation;
       try
@@ -59,49 +60,52 @@ namespace Viscoplastic
           expectation.failure = reason(exception);
         }
       return expectation;
-    }
-  } // namespace
-
-
-
-  template <int dim>
-  RunsAhead<dim>
-  runs_ahead(const Parameters &parameters, Console &console)
-  {
-    return [&](parallel::distributed::Triangulation<dim> &triangulation) {
-      const Expectation expectation = make_pilot_run<dim>(parameters);
-      if (parameters.error_control.quantity.empty() ||
-          parameters.refinement.strategy == RefinementStrategy::none)
-        return expectation;
-      std::ostream &out = console.stream();
-      out << "First without files, to find a mesh for all times:" << std::endl;
-      std::unique_ptr<ViscoplasticContact<dim>> run, before;
-      do
-        {
-          before = std::move(run);
-          if (before)
-            out << "Again from the beginning:" << std::endl;
-          run = std::make_unique<ViscoplasticContact<dim>>(
-            parameters, console, [&](auto &first_mesh) {
-              if (before)
-                refine_like(before->mesh(), first_mesh);
-              before.reset();
-              return expectation;
-            });
-          run->run_without_files();
-        }
-      while (!run->is_finished());
-      refine_like(run->mesh(), triangulation);
-      out << "Again from the beginning, on the mesh that has been found:"
-          << std::endl;
-      return expectation;
     };
   }
 
 
 
-  template RunsAhead<2>
-  runs_ahead<2>(const Parameters &, Console &);
-  template RunsAhead<3>
-  runs_ahead<3>(const Parameters &, Console &);
+  template <int dim>
+  std::string
+  run_in_passes(const Parameters          &parameters,
+                Console                   &console,
+                const CommandLine::Restart restart,
+                const RunSummary<dim>     *coarser)
+  {
+    auto pass =
+      std::make_unique<ViscoplasticContact<dim>>(parameters,
+                                                 console,
+                                                 pilot_run<dim>(parameters));
+    std::string interruption = pass->run(restart, coarser);
+    while (pass->needs_another_pass())
+      {
+        console.stream() << "Again from the beginning, on the mesh that has "
+                            "been found:"
+                         << std::endl;
+        auto next = std::make_unique<ViscoplasticContact<dim>>(parameters,
+                                                               console,
+                                                               PilotRun());
+        next->follow(*pass);
+        pass         = std::move(next); // which has let go of the directories
+        interruption = pass->run(CommandLine::Restart::no, coarser);
+      }
+    return interruption;
+  }
+
+
+
+  template PilotRun
+  pilot_run<2>(const Parameters &);
+  template PilotRun
+  pilot_run<3>(const Parameters &);
+  template std::string
+  run_in_passes<2>(const Parameters &,
+                   Console &,
+                   const CommandLine::Restart,
+                   const RunSummary<2> *);
+  template std::string
+  run_in_passes<3>(const Parameters &,
+                   Console &,
+                   const CommandLine::Restart,
+                   const RunSummary<3> *);
 } // namespace Viscoplastic

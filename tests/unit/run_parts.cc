@@ -205,10 +205,16 @@ namespace
     explicit Archived(const std::string &more)
       : SteppingBody<dim>(more)
       , recorder(this->scene, *this->control, console, this->timer, nullptr)
-      , run{this->scene, this->accepted, *this->control, nullptr, recorder}
+      , run{this->scene,
+            this->accepted,
+            *this->control,
+            nullptr,
+            pass,
+            recorder}
     {}
 
     Console       console{MPI_COMM_WORLD, /* quiet = */ true};
+    PassState     pass;
     Recorder<dim> recorder;
     RunState<dim> run;
   };

@@ -202,8 +202,7 @@ namespace Viscoplastic
                report.iterations >= last_gain + stalled_after ?
                  bulk.rounding_of_residual() / size :
                  0.;
-             // Exact solvers come to rest for no other reason.
-             rounding > 0. && (bulk.is_exact || best_error < 1e3 * rounding))
+             rounding > 0. && best_error < 1e3 * rounding)
       {
         message << "it has come to rest there, and rounding alone makes "
                 << rounding

@@ -32,7 +32,8 @@ namespace Viscoplastic
       "Whether steps chosen by their error end where data have "
       "kinks in time (`min', `abs', `if', ...), and just before "
       "and after jumps. These times are looked for at the "
-      "beginning and named.");
+      "beginning and named. Steps of `Time/Phases' stay as they are, "
+      "but no rate is extrapolated across these times.");
     add_choice(prm,
                "Resolve events",
                resolve_events,

@@ -33,7 +33,7 @@ namespace Viscoplastic
       Announcer<dim>                                  *announcer)
     {
       control.land_on(scene.stage_ends, {});
-      if (control.is_on && !scene.parameters.step_control.land_on_kinks)
+      if (!scene.parameters.step_control.land_on_kinks)
         return;
       const KinksOfScene found = find_kinks(scene, triangulation);
       if (found.kinks.empty())
@@ -119,6 +119,10 @@ namespace Viscoplastic
       const DoFHandler<dim> &dof_handler = discretization.space.dof_handler;
       const SolverDemand     demand      = discretization.solver_demand();
       const BulkSolverKind   solver      = choose_bulk_solver(demand);
+      const double           n_cells =
+        dof_handler.get_triangulation().n_global_active_cells();
+      const unsigned int n_ranks =
+        Utilities::MPI::n_mpi_processes(dof_handler.get_communicator());
       Utilities::System::MemoryStats now;
       Utilities::System::get_memory_stats(now);
       const double bytes =
@@ -129,9 +133,11 @@ namespace Viscoplastic
            // A second matrix, and two tensors of rank 4 a sample.
            dof_handler.n_dofs() * (dim == 2 ? 18. : 81.) * 12. +
              2. * sizeof(SymmetricTensor<4, 3>) *
-               discretization.stress_space.n_samples *
-               dof_handler.get_triangulation().n_global_active_cells() :
-           0.);
+               discretization.stress_space.n_samples * n_cells :
+           0.) +
+        // Fields that are written while the run goes on, in single precision.
+        (n_ranks == 1 ? n_cells * GeometryInfo<dim>::vertices_per_cell * 140. :
+                        0.);
       out << "Linear solver: "
           << (solver == BulkSolverKind::direct ?
                 "direct (CHOLMOD)" :

@@ -304,7 +304,7 @@ class Voice(Manners):
         self.assertEqual(text.splitlines()[-1], "Results in output/slab/")
 
         def words(name):
-            return re.search(rf"^  {name} +(.*)$", text, re.M).group(1)
+            return re.search(rf"^  {name} +(?!of )(.*)$", text, re.M).group(1)
 
         for name, column in (
             ("external work", "external_work"),

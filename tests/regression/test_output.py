@@ -57,6 +57,7 @@ STATISTICS_2D = [
     "estimate_space",
     "estimate_time",
     "estimate_history",
+    "estimate_friction",
     "estimate_algebraic",
     "estimate_initial",
     "estimate_total",

@@ -511,6 +511,9 @@ SHORT = (
 # number, or whose rounding does not scale.
 LEFT_OUT = {
     "manufactured/*": "exact solutions are formulas with units of their own",
+    "hard/drawn_ring_2d": "a number of cells behind the lengths",
+    "hard/drawn_slab_3d": "as drawn, with a column that is never finite",
+    "hard/drawn_strip_2d": "two steps are longer than the stability limit",
     "hard/incompressible": "exact solution",
     "hard/slivers": "exact solution",
     "tilted_plane_2d": "exact solution",
@@ -647,7 +650,8 @@ class Work(TestCase):
             flow = 3 * modulus / 2.5 * (3.65e-5 / 365.25) * 6**3 * (2 / 3) ** 0.5
             self.assertClose(time, 6 / flow, 1e-3)
         self.assertIn("until t = 91.3125 day", said)
-        self.assertNotIn("Warning", said)
+        # the floor and the wall that goes down, where they meet
+        self.assertEqual(re.findall("Warning: (.{18})", said), ["what is prescribed"])
         for entries, words in (
             (["Material/Young's modulus=25 GPa*1e6"], "(2.5e+16 Pa in the SI); known"),
             (["Material/Young's modulus=25"], "a strain of about 24 % with"),

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace Viscoplastic
 {
@@ -97,11 +98,16 @@ namespace Viscoplastic
     });
     rate             = Utilities::MPI::sum(rate, communicator);
     deviators_square = Utilities::MPI::sum(deviators_square, communicator);
+    const double pressures_square =
+      Utilities::MPI::sum(std::accumulate(squares.begin(), squares.end(), 0.),
+                          communicator);
     // 3/2 in a single mode; bodies that hardly bend any more tell less of their
     // curvatures.
     constexpr double calibration = 2.5;
-    const double     factor =
-      deviators_square > 0. ? calibration * defect / deviators_square : 0.;
+    // What is at rest under a pressure deforms by rounding only.
+    const double factor = deviators_square > 1e-20 * pressures_square ?
+                            calibration * defect / deviators_square :
+                            0.;
     for (double &square : squares)
       square *= factor;
     return {cells.by_active_index(squares), std::sqrt(factor * rate)};

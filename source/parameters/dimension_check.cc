@@ -26,6 +26,15 @@ namespace Viscoplastic
       std::optional<Dimension> dimension;
       /// The value of a constant, which exponents need, whatever its dimension.
       std::optional<double> number = {};
+      /// Whether a unit has been written in it.
+      bool has_unit = false;
+
+      /// A number without unit, which is a pure one beside numbers with units.
+      bool
+      is_bare_number() const
+      {
+        return !dimension && number && !has_unit;
+      }
     };
 
     const Value pure_number{Dimension()}, anything{};
@@ -125,14 +134,15 @@ namespace Viscoplastic
       Value
       common(const Value &a, const Value &b, const std::size_t begin) const
       {
+        const bool has_unit = a.has_unit || b.has_unit;
         if (!a.dimension || !b.dimension)
-          return {a.dimension ? a.dimension : b.dimension};
+          return {a.dimension ? a.dimension : b.dimension, {}, has_unit};
         if (!(*a.dimension == *b.dimension))
           throw Contradiction{
             "'" + excerpt(Utilities::trim(text.substr(begin, at - begin))) +
             "' brings together " + in_words(*a.dimension) + " and " +
             in_words(*b.dimension)};
-        return {a.dimension};
+        return {a.dimension, {}, has_unit};
       }
 
       static Value
@@ -141,17 +151,17 @@ namespace Viscoplastic
         if (exponent.dimension && !(*exponent.dimension == Dimension()))
           throw Contradiction{"an exponent is " +
                               in_words(*exponent.dimension) +
-                              "; put a number that a unit follows in the form "
-                              "of 1e6"};
+                              ", since a unit follows it; write 1e6 for 10^6 "
+                              "and ^5/(1 day) for ^5/day"};
         const auto number =
           base.number && exponent.number ?
             std::make_optional(std::pow(*base.number, *exponent.number)) :
             std::nullopt;
         if (!base.dimension || *base.dimension == Dimension())
-          return {base.dimension, number};
+          return {base.dimension, number, base.has_unit};
         if (!exponent.number)
           return anything;
-        return {base.dimension->power(*exponent.number), number};
+        return {base.dimension->power(*exponent.number), number, base.has_unit};
       }
 
       Value
@@ -192,9 +202,9 @@ namespace Viscoplastic
       }
 
       Value
-      result(const Value       &a,
+      result(Value              a,
              const std::string &sign,
-             const Value       &b,
+             Value              b,
              const std::size_t  begin) const
       {
         if (sign != "*" && sign != "/")
@@ -207,7 +217,16 @@ namespace Viscoplastic
             return value;
           }
         const double exponent = sign == "*" ? 1. : -1.;
-        Value        value;
+        const auto   measures = [](const Value &value) {
+          return value.has_unit && value.dimension &&
+                 !(*value.dimension == Dimension());
+        };
+        if (a.is_bare_number() && measures(b))
+          a.dimension = Dimension();
+        if (b.is_bare_number() && measures(a))
+          b.dimension = Dimension();
+        Value value;
+        value.has_unit = a.has_unit || b.has_unit;
         if (a.number && b.number)
           value.number = *a.number * std::pow(*b.number, exponent);
         if (a.dimension && b.dimension)
@@ -250,7 +269,7 @@ namespace Viscoplastic
             if (const auto found = read_unit(text, end))
               {
                 at = found->end;
-                return {found->unit.dimension};
+                return {found->unit.dimension, {}, true};
               }
             return {{}, number};
           }

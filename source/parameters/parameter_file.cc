@@ -85,7 +85,7 @@ namespace Viscoplastic
     };
     handler.add_parameter("Dimension",
                           dimension,
-                          "2 (plane strain) or 3.",
+                          "2 (plane strain, or a body of revolution) or 3.",
                           Patterns::Integer(2, 3));
     // Independent of the working directory, as the name of the mesh file.
     handler.declare_entry(

@@ -136,8 +136,8 @@ namespace Viscoplastic
         if (!entries.empty() && loads.count(id) == 0)
           result.push_back("the load on " + scene.names.of("boundary", id) +
                            " has never acted: what " + entries +
-                           " gives has been zero everywhere and at all "
-                           "times, and " +
+                           " gives has been zero at all times wherever "
+                           "displacements are free, and " +
                            (condition.role == BoundaryRole::displacement ||
                                 condition.has_springs() ?
                               "can go." :

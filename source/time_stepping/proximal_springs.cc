@@ -293,6 +293,27 @@ namespace Viscoplastic
 
 
   template <int dim>
+  bool
+  ProximalSprings<dim>::rests(const StepProblem<dim>  &problem,
+                              const HeldBody          &body,
+                              const DistributedVector &right_side) const
+  {
+    const ContactLayout &face   = discretization.face->layout();
+    double               pushes = 0.;
+    bool                 moves  = false;
+    for (const double work : body.load)
+      moves |= std::abs(work) > 1e-10 * body.load_size;
+    for (unsigned int p = 0; p < problem.bounds.size(); ++p)
+      {
+        pushes += problem.old.state.contact.multiplier[p].norm();
+        moves |= face.points[p].is_obstacle && problem.bounds[p] < 0.;
+      }
+    return !face.any(moves) && face.sum(pushes) <= 1e-8 * right_side.l1_norm();
+  }
+
+
+
+  template <int dim>
   ContactReport
   ProximalSprings<dim>::solve(const StepProblem<dim>  &problem,
                               const DistributedVector &right_side,
@@ -307,6 +328,13 @@ namespace Viscoplastic
     double            inner_tolerance = tolerance, left_by_rounding = 0.;
     const HeldBody    body = held_body(problem);
     DistributedVector center(u), right(u), change(u), last_center, last_change;
+    if (rests(problem, body, right_side))
+      {
+        // The first guess goes on as the body went before.
+        change -= problem.old_u();
+        u -= rigid_part(change);
+        center = u;
+      }
     // How far the body has gone as a whole makes no strain, but rounding of
     // it would make forces, which soft ground does not tell from loads: all
     // displacements are those relative to a rigid motion.

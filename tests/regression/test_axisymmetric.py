@@ -515,5 +515,35 @@ class Scenes(TestCase):
             self.assertLess(round, 1.15 * long, solver)
 
 
+class CreepTest(TestCase):
+    """The sample of prm/verification/round_sample.prm."""
+
+    def strain(self, result, t):
+        step = np.argmin(abs(result["t"] - t))
+        return (result["point1_y"][step] - result["point0_y"][step]) / 100
+
+    def test_friction_lies_between_none_and_glue(self):
+        found = {
+            law: run("round_sample", {"Boundary 2/Friction law": law, **more})
+            for law, more in (
+                ("none", {}),
+                ("coulomb", {}),
+                ("glued", {"Boundary 2/Contact law": "bilateral"}),
+            )
+        }
+        # sigma/E, and sigma^5 over the hour of loading and ten days
+        uniform = 15 / 25e3 + 1e-4 / 24 * (1 / 6 + 240)
+        self.assertClose(self.strain(found["none"], 241), uniform, relative=3e-4)
+        held = self.strain(found["coulomb"], 241) / uniform
+        self.assertLess(held, 0.95)
+        self.assertGreater(held, self.strain(found["glued"], 241) / uniform + 0.02)
+        # Once nothing presses it, it stays where it is (it went up by 6e-4 a step).
+        rest = found["coulomb"]["t"] >= 242
+        for column in "max_gap", "point0_y", "point2_x":
+            at_rest = found["coulomb"][column][rest]
+            self.assertClose(at_rest, at_rest[0], absolute=1e-5, what=column)
+        self.assertLess(found["coulomb"]["max_gap"][-1], 1e-3)
+
+
 if __name__ == "__main__":
     main()

@@ -149,6 +149,9 @@ namespace
                                    "(1 MPa^2)^2^-1",
                                    "(4 MPa^2)^(1 - 3/(2*3))",
                                    "3*t*1 m",
+                                   "12*min(t/(1 day), 1)",
+                                   "2*3 MPa",
+                                   "1e-4/2*(1 m)*3 MPa/(1 m)",
                                    "2 MPa*(("}) // for the parser of expressions
       EXPECT_EQ(wrong_dimension(text, stress), "") << text;
     EXPECT_EQ(wrong_dimension("1 m: 2, 3 m", length), "");
@@ -171,6 +174,9 @@ namespace
            {std::string(20000, '-') + "1 MPa", "nested more than 1000 deep"},
            {std::string(20000, '(') + "1 MPa", "nested more than 1000 deep"},
            {"1 MPa" + chain, "nested more than 1000 deep"},
+           {"50/2 GPa", "stress^-1, but it must be a stress"},
+           {"1e-4*(15 MPa)^5", "stress^5, but it must be"},
+           {"2200*9.81 m/s^2", "but it must be a stress"},
            {"2 MPa/(3 MPa)", "a pure number, but it must be a stress"}})
       EXPECT_NE(wrong_dimension(text, stress).find(why), std::string::npos)
         << text << ": " << wrong_dimension(text, stress);

@@ -71,6 +71,13 @@ namespace Viscoplastic
     HeldBody
     held_body(const StepProblem<dim> &problem) const;
 
+    /// Whether nothing moves a body: neither loads nor a foundation, and the
+    /// forces of contact were rounding. Collective.
+    bool
+    rests(const StepProblem<dim>  &problem,
+          const HeldBody          &body,
+          const DistributedVector &right_side) const;
+
     /// The norm of a displacement in the springs. Collective.
     double
     norm(const DistributedVector &u) const;

@@ -85,8 +85,8 @@ QUANTITY = Panel(
 )
 
 PANELS = (
-    Panel("friction force\non the other side", ["friction_force_[xyz]"]),
-    Panel("contact force\non the other side", ["contact_force_[xyz]"]),
+    Panel("friction force\nexerted by the body", ["friction_force_[xyz]"]),
+    Panel("contact force\nexerted by the body", ["contact_force_[xyz]"]),
     Panel("reactions\non the body", ["reaction_(point|edge)?\\d+_[xyz]"]),
     Panel("loads on the body", ["load_[xyz]"]),
     AREA,

@@ -92,7 +92,7 @@ def forces(statistics):
         match = re.fullmatch(r"(friction|contact)_force_([xyz])", name)
         if match:
             found[name] = values, (
-                f"{match.group(1)} force on the other side, $F_{match.group(2)}$"
+                f"{match.group(1)} force exerted by the body, $F_{match.group(2)}$"
             )
         match = re.fullmatch(r"reaction_(\d+)_([xyz])", name)
         if match:

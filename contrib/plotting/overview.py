@@ -137,7 +137,7 @@ def draw_force_curve(axes, statistics, body):
     axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
     show(axes.xaxis, "time $t$", units.unit("time", times))
     unit = units.unit("force", largest)
-    show(axes.yaxis, f"{kind} force\non the other side", unit)
+    show(axes.yaxis, f"{kind} force\nexerted by the body", unit)
     axes.margins(x=0.01)
     # A number beside the ends of the curve, where one is near.
     low, high = axes.get_ylim()

@@ -106,6 +106,8 @@ SCENES = {
         ),
         "verification/indentation_3d": Scene({**refined(0), **phases("0.1: 1, 2: 5")}),
         "verification/lifted_beam_2d": Scene(phases("1: 2")),
+        # Unloaded, nothing decides who sticks.
+        "verification/round_sample": Scene(phases("241: 4")),
         "verification/partial_slip_2d": Scene(
             {
                 **refined(2),

@@ -275,7 +275,7 @@ class Runs(TestCase):
         page = self.pages[3]
         self.assertEqual(page.curves["time"]["label"], "time <i>t</i> [ms]")
         self.assertRegex(page.body["fields"]["von_mises"]["unit"], "Pa$")
-        self.assertRegex(page.words["results"], r"friction force on the other side.*N")
+        self.assertRegex(page.words["results"], r"friction force exerted by the body.*N")
 
     def test_nothing_comes_from_elsewhere_and_pages_are_small(self):
         for _, page in self.each():

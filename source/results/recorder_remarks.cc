@@ -104,6 +104,25 @@ namespace Viscoplastic
         run.doubtful_steps.push_back(text.str());
         console.remark("Warning: " + text.str());
       }
+    if (!is_loose && step.time_step.n > 0 &&
+        discretization->space.is_held_by_contact())
+      {
+        double pushes = 0.;
+        for (const auto &multiplier : step.end.state.contact.multiplier)
+          pushes += multiplier.norm();
+        is_loose =
+          Utilities::MPI::sum(pushes, discretization->space.communicator) <=
+          1e-8 * step.end.forces.internal.l1_norm();
+        if (is_loose)
+          {
+            std::ostringstream text;
+            text << "Note: at t = " << step.time_step.t << time_unit
+                 << " nothing presses the body onto its foundation, so that "
+                    "its rigid motions are arbitrary; a small load that "
+                    "presses it determines them.";
+            console.remark(text.str());
+          }
+      }
     // Beside the nodal forces of the stress: loads may balance each other.
     if (!scene.supports.empty() && !support_carries && step.time_step.n > 0)
       {

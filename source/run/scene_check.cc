@@ -33,7 +33,9 @@ namespace Viscoplastic
       Announcer<dim>                                  *announcer)
     {
       control.land_on(scene.stage_ends, {});
-      if (!scene.parameters.step_control.land_on_kinks)
+      // Given steps need them for their error alone.
+      if (!scene.parameters.step_control.land_on_kinks ||
+          !(control.is_on || scene.parameters.error_control.error_estimator))
         return;
       const KinksOfScene found = find_kinks(scene, triangulation);
       if (found.kinks.empty())

@@ -537,6 +537,8 @@ class CreepTest(TestCase):
         held = self.strain(found["coulomb"], 241) / uniform
         self.assertLess(held, 0.95)
         self.assertGreater(held, self.strain(found["glued"], 241) / uniform + 0.02)
+        self.assertIn("nothing presses the body", found["coulomb"].stdout)
+        self.assertNotIn("nothing presses", found["glued"].stdout)
         # Once nothing presses it, it stays where it is (it went up by 6e-4 a step).
         rest = found["coulomb"]["t"] >= 242
         for column in "max_gap", "point0_y", "point2_x":

@@ -231,6 +231,9 @@ namespace Viscoplastic
     bool solver_error_is_told = false;
     /// Whether the user has been told of a support that carries a force.
     bool support_carries = false;
+    /// Whether the user has been told that nothing presses a body that only
+    /// contact holds.
+    bool is_loose = false;
 
     std::unique_ptr<Statistics> statistics;
     Progress                    progress;

@@ -67,6 +67,26 @@ class Blocks(TestCase):
                         },
                     )
 
+    def test_what_holds_a_node_beside_contact_stays(self):
+        """The side x = 0 is held below the interface and comes out above it."""
+        for dim in 2, 3:
+            middle = "0.5, " * (dim - 2)
+            result = run(
+                f"two_blocks_{dim}d",
+                {
+                    **TIGHT,
+                    "Geometry/Boundary refinements": "0: 1",
+                    "Boundary 20/Role": "free",
+                    "Boundary 21/Role": "symmetry",
+                    "Output/Points": f"0, {middle}0.99; 0, {middle}1.01",
+                },
+            )
+            self.assertLess(abs(result["point0_x"][-1]), 1e-15)
+            self.assertLess(result["point1_x"][-1], -5e-4)
+            self.assertClose(
+                result[f"contact_force_{'xyz'[dim - 1]}"][-1], 0.01, absolute=1e-11
+            )
+
     def test_turned(self):
         for dim, ranks in ((2, 1), (3, 3)):
             result = run(

@@ -193,7 +193,7 @@ namespace Viscoplastic
   bool
   Output<dim>::is_due(const TimeStep &step) const
   {
-    if (step.t >= scene.schedule.end_time())
+    if (step.n == 0 || step.t >= scene.schedule.end_time())
       return true;
     const OutputParameters &parameters = scene.parameters.output;
     if (parameters.fields_interval > 0.)

@@ -13,26 +13,10 @@
 #include <viscoplastic_contact/run/viscoplastic_contact.h>
 
 #include <iomanip>
-#include <limits>
 #include <sstream>
 
 namespace Viscoplastic
 {
-  namespace
-  {
-    /// The memory of all ranks together in MB, now and at the most.
-    std::pair<double, double>
-    memory_of_ranks(const MPI_Comm communicator)
-    {
-      Utilities::System::MemoryStats stats;
-      Utilities::System::get_memory_stats(stats); // kB
-      return {Utilities::MPI::sum(stats.VmRSS / 1024., communicator),
-              Utilities::MPI::sum(stats.VmHWM / 1024., communicator)};
-    }
-  } // namespace
-
-
-
   template <int dim>
   ViscoplasticContact<dim>::ViscoplasticContact(const Parameters &parameters,
                                                 Console          &console,
@@ -56,15 +40,12 @@ namespace Viscoplastic
     , timer(out, TimerOutput::never, TimerOutput::wall_times)
     , known_solution(scene, timer)
     , recorder(scene, control, console, timer, budget ? &*budget : nullptr)
-    , directories(parameters, console, communicator)
-    , lines(scene)
     , run_state{scene,
                 accepted,
                 control,
                 budget ? &*budget : nullptr,
                 pass,
                 recorder}
-    , checkpoint_schedule(parameters.checkpoint)
   {}
 
 
@@ -74,12 +55,11 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::run(const CommandLine::Restart restart,
                                 const RunSummary<dim>     *coarser)
   {
-    first_memory = memory_of_ranks(communicator).first;
+    files.emplace(run_state, console, timer, communicator);
     if (!pass.follows_another)
       make_first_mesh(scene, triangulation, control, &announcer);
     known_solution.check();
-    directories.lock();
-    if (const auto checkpoint = directories.find_checkpoint(restart))
+    if (const auto checkpoint = files->find_checkpoint(restart))
       {
         resume(*checkpoint);
         if (is_finished() && !needs_another_pass())
@@ -92,12 +72,11 @@ namespace Viscoplastic
     else
       begin();
 
-    const SignalRequests signals;
-    const std::string    interruption = make_steps(&signals);
+    files->begin_steps();
+    const std::string interruption = make_steps();
+    files->finish();
     if (interruption.empty() && !needs_another_pass())
       close(coarser);
-    else
-      output->finish(); // before another pass writes over it
     return interruption;
   }
 
@@ -105,9 +84,8 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  ViscoplasticContact<dim>::make_steps(const SignalRequests *signals)
+  ViscoplasticContact<dim>::make_steps()
   {
-    checkpoint_schedule.begin_steps(recorder.elapsed());
     while (!is_finished())
       {
         if (scene.stage_is_over(accepted.state.t))
@@ -127,13 +105,14 @@ namespace Viscoplastic
                         step,
                         known_solution.errors(*discretization, step.end.state));
         accepted = std::move(step.end);
-        if (signals == nullptr)
+        if (!files)
           continue;
         known_solution.write_reference(*discretization,
                                        accepted.state,
-                                       output->directory());
-        write_results(output->is_due(step.time_step));
-        const std::string interruption = keep_checkpoints(*signals);
+                                       files->directory());
+        files->write(step.time_step);
+        const std::string interruption =
+          files->keep_checkpoints(triangulation, *time_stepper);
         if (!interruption.empty())
           return interruption;
       }
@@ -149,7 +128,7 @@ namespace Viscoplastic
     make_first_mesh<dim>(scene, triangulation, control, nullptr);
     begin_state();
     record_initial_state();
-    make_steps(nullptr);
+    make_steps();
     recorder.check_sizes(/* at_end = */ true);
     return recorder.summary();
   }
@@ -217,17 +196,9 @@ namespace Viscoplastic
   ViscoplasticContact<dim>::begin()
   {
     begin_state();
-    directories.begin();
-    output.emplace(scene, communicator);
-    if (pass.follows_another)
-      output->resume({});
-    lines.begin(output->directory());
-    directories.begin_checkpoints(pass.follows_another);
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      recorder.write_to(std::make_unique<Statistics>(
-        output->directory() + "statistics.csv", scene.parameters.units, dim));
+    files->begin();
     // First: the seconds that steps are expected to take begin with the record.
-    write_results(/* fields_are_due = */ true);
+    files->write({0, 0., 0., 0.});
     record_initial_state();
   }
 
@@ -269,7 +240,8 @@ namespace Viscoplastic
     announcer.warn_of_held_faces(*discretization);
     announcer.announce_solver(time_stepper->method().solver_name());
     recorder.set_mesh(*discretization);
-    lines.set_mesh(*discretization);
+    if (files)
+      files->set_mesh(*discretization);
   }
 
 
@@ -439,79 +411,10 @@ namespace Viscoplastic
 
 
   template <int dim>
-  std::string
-  ViscoplasticContact<dim>::keep_checkpoints(const SignalRequests &signals)
-  {
-    const State<dim> &state   = accepted.state;
-    const bool        is_last = is_finished();
-    auto              decision =
-      checkpoint_schedule.after_step(state.n, is_last, recorder.elapsed());
-    // Steps are the same on all ranks; the clock of one rank counts.
-    if (Utilities::MPI::this_mpi_process(communicator) != 0)
-      decision = {};
-    const SignalRequests::Request request =
-      signals.agree(communicator, decision.is_due, decision.is_late);
-    const std::string stop  = request.stop.empty() && request.is_late ?
-                                "'Checkpoint/Wall time limit'" :
-                                request.stop;
-    const bool        stops = !stop.empty() && !is_last;
-    if (!request.checkpoint && !stops)
-      return "";
-    write_checkpoint();
-    checkpoint_schedule.restart_clock(recorder.elapsed());
-    std::ostringstream text;
-    text << "step " << state.n << " (t = " << state.t
-         << scene.unit(Quantity::time) << "): '"
-         << directories.checkpoints.path(state.n) << "'";
-    if (!stops)
-      {
-        // Regular ones need no words.
-        if (!decision.is_due)
-          out << "Checkpoint of " << text.str() << std::endl;
-        return "";
-      }
-    std::ostringstream error;
-    if (const auto relative = recorder.relative_error(accepted.errors))
-      error << " The error up to there is estimated as " << std::setprecision(2)
-            << 100. * *relative << " %.";
-    const std::string interruption = stop +
-                                     " has ended the run after the checkpoint "
-                                     "of " +
-                                     text.str() + "; --restart goes on." +
-                                     error.str();
-    console.log() << interruption << std::endl;
-    return interruption;
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::write_checkpoint()
-  {
-    TimerOutput::Scope phase(timer, "checkpoint");
-    output->finish(); // it names the outputs
-    const PackedRun packed = pack_run(run_state,
-                                      triangulation,
-                                      *discretization,
-                                      *time_stepper,
-                                      output->output_times());
-    // Whose rows the checkpoint relies on.
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      {
-        recorder.synchronize();
-        lines.synchronize();
-      }
-    directories.write_checkpoint(packed.manifest, packed.files);
-  }
-
-
-
-  template <int dim>
   void
   ViscoplasticContact<dim>::resume(const CheckpointManifest &checkpoint)
   {
-    const CheckpointStore &store = directories.checkpoints;
+    const CheckpointStore &store = files->checkpoints();
     RunArchive<dim>        archive(store, checkpoint, run_state, triangulation);
     const State<dim>      &state       = accepted.state;
     const bool             is_solution = accepted.is_solution;
@@ -527,60 +430,13 @@ namespace Viscoplastic
                                       d.loads.assemble(state.t),
                                       state);
 
-    std::string failure;
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      {
-        try
-          {
-            recorder.write_to(std::make_unique<Statistics>(
-              results_directory(parameters) + "statistics.csv", state.n));
-          }
-        catch (const std::exception &exception)
-          {
-            failure = reason(exception);
-          }
-      }
-    failure = Utilities::MPI::broadcast(communicator, failure);
-    AssertThrow(failure.empty(), ExcMessage(failure));
-    output.emplace(scene, communicator);
-    output->resume(archive.output_times);
-    lines.resume(output->directory(), state.n);
-    // A run without checkpoints of its own keeps those that there are.
-    const unsigned int n_kept = checkpoint_schedule.is_regular() ?
-                                  parameters.checkpoint.keep :
-                                  std::numeric_limits<unsigned int>::max();
-    for (const std::string &remark :
-         store.remove_others(state.n, n_kept).remarks)
-      console.remark(remark);
-
+    files->resume(archive.output_times);
     out << "Restart after step " << state.n << " (t = " << state.t
         << parameters.units.suffix(Quantity::time, dim) << ") from '"
         << store.path(state.n) << "'" << std::endl;
     remark_on_changes(checkpoint, archive.changes, console);
 
     recorder.resume(state, archive.earlier_seconds);
-    checkpoint_schedule.restart_clock(recorder.elapsed());
-  }
-
-
-
-  template <int dim>
-  void
-  ViscoplasticContact<dim>::write_results(const bool fields_are_due)
-  {
-    TimerOutput::Scope    phase(timer, "output");
-    const Vector<double> &squared_indicators =
-      accepted.space_estimate.squared_indicators;
-    if (fields_are_due)
-      for (const std::string &remark : output->write_fields(
-             discretization->laws,
-             accepted.state,
-             discretization->face.get(),
-             squared_indicators.size() > 0 ? &squared_indicators : nullptr))
-        console.remark(remark);
-    else
-      output->report_failure();
-    lines.write(accepted.state, fields_are_due);
   }
 
 
@@ -589,31 +445,15 @@ namespace Viscoplastic
   void
   ViscoplasticContact<dim>::close(const RunSummary<dim> *coarser)
   {
-    {
-      TimerOutput::Scope phase(timer, "output");
-      output->finish();
-    }
     recorder.check_sizes(/* at_end = */ true);
     std::vector<std::string> remarks = console.remarks();
     for (const std::string &remark : recorder.remarks(accepted.state))
       remarks.push_back(remark);
     recorder.print(out, coarser);
-    if (coarser != nullptr &&
-        Utilities::MPI::this_mpi_process(communicator) == 0)
-      write_uncertainties(output->directory() + "uncertainty.csv",
-                          scene.parameters.units,
-                          recorder.summary(),
-                          *coarser);
-    output->record_end(recorder.summary(),
-                       {recorder.seconds(),
-                        recorder.bill().friction(),
-                        first_memory,
-                        memory_of_ranks(communicator).second,
-                        discretization->solver_demand()},
-                       remarks);
+    files->close(coarser, remarks);
     for (const std::string &remark : remarks)
       out << remark << '\n';
-    out << "Results in " << output->directory() << std::endl;
+    out << "Results in " << files->directory() << std::endl;
   }
 
 

@@ -21,7 +21,7 @@ namespace Viscoplastic
     void
     begin_steps(const double now)
     {
-      last_step = now;
+      last_checkpoint = last_step = now;
     }
 
     struct Decision
@@ -37,7 +37,7 @@ namespace Viscoplastic
     Decision
     after_step(const unsigned int n, const bool is_last_step, const double now);
 
-    /// A checkpoint has been written, or a run resumed from one.
+    /// A checkpoint has been written.
     void
     restart_clock(const double now)
     {

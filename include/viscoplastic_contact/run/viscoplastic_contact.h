@@ -7,19 +7,14 @@
 #include <deal.II/fe/fe_system.h>
 
 #include <viscoplastic_contact/base/console.h>
-#include <viscoplastic_contact/base/signals.h>
-#include <viscoplastic_contact/checkpoint/checkpoint_schedule.h>
-#include <viscoplastic_contact/checkpoint/run_archive.h>
 #include <viscoplastic_contact/error/error_budget.h>
 #include <viscoplastic_contact/error/known_solution.h>
 #include <viscoplastic_contact/error/mesh_controller.h>
-#include <viscoplastic_contact/results/line_output.h>
-#include <viscoplastic_contact/results/output.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/run/announcer.h>
 #include <viscoplastic_contact/run/command_line.h>
 #include <viscoplastic_contact/run/expectation.h>
-#include <viscoplastic_contact/run/run_directories.h>
+#include <viscoplastic_contact/run/run_files.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
 #include <memory>
@@ -96,10 +91,10 @@ namespace Viscoplastic
     void
     record_initial_state();
 
-    /// Make all steps up to the end. @p signals is null in a run without files.
-    /// Returns a sentence if a signal has ended the run early.
+    /// Make all steps up to the end. Returns a sentence if a signal has ended
+    /// the run early.
     std::string
-    make_steps(const SignalRequests *signals);
+    make_steps();
 
     /// Make everything that depends on the mesh.
     void
@@ -130,17 +125,6 @@ namespace Viscoplastic
     /// Go on from a checkpoint: what begin() does, and all steps up to there.
     void
     resume(const CheckpointManifest &checkpoint);
-    /// Write a checkpoint at the end of a step if it is time for it, or a
-    /// signal has asked for it. Returns a sentence if the run is to end.
-    std::string
-    keep_checkpoints(const SignalRequests &signals);
-    void
-    write_checkpoint();
-
-    /// Write the fields of the accepted state if they are due, and what is
-    /// recorded along lines.
-    void
-    write_results(const bool fields_are_due);
     /// The closing words.
     void
     close(const RunSummary<dim> *coarser);
@@ -170,20 +154,15 @@ namespace Viscoplastic
     /// The last state that will do, and the solve that has made the first one.
     EvaluatedState<dim> accepted;
     ContactReport       initial_report;
-    /// Memory of all ranks together in MB when the run began.
-    double first_memory = 0.;
 
     // What is said and kept.
-    Console                   &console;
-    std::ostream              &out; // of the console
-    Announcer<dim>             announcer;
-    TimerOutput                timer; // wall time by phase
-    KnownSolution<dim>         known_solution;
-    Recorder<dim>              recorder;
-    RunDirectories             directories;
-    std::optional<Output<dim>> output; // absent without files
-    LineOutput<dim>            lines;
-    RunState<dim>              run_state; // of a checkpoint
-    CheckpointSchedule         checkpoint_schedule;
+    Console                     &console;
+    std::ostream                &out; // of the console
+    Announcer<dim>               announcer;
+    TimerOutput                  timer; // wall time by phase
+    KnownSolution<dim>           known_solution;
+    Recorder<dim>                recorder;
+    RunState<dim>                run_state; // of a checkpoint
+    std::optional<RunFiles<dim>> files;     // absent in a run without
   };
 } // namespace Viscoplastic

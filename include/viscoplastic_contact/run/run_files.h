@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/timer.h>
+
+#include <viscoplastic_contact/base/console.h>
+#include <viscoplastic_contact/base/signals.h>
+#include <viscoplastic_contact/checkpoint/checkpoint_schedule.h>
+#include <viscoplastic_contact/checkpoint/run_archive.h>
+#include <viscoplastic_contact/results/line_output.h>
+#include <viscoplastic_contact/results/output.h>
+#include <viscoplastic_contact/run/run_directories.h>
+
+#include <optional>
+#include <string>
+
+namespace Viscoplastic
+{
+  /**
+   * The files of a run: fields, values along lines, statistics and the record
+   * of the run in the directory of the results, and checkpoints; and when they
+   * are written. Member functions are collective and throw ExcMessage with a
+   * sentence for the user, on all ranks.
+   */
+  template <int dim>
+  class RunFiles
+  {
+  public:
+    /// Locks the directories, as far as they exist. What is written is the
+    /// accepted state of @p run; all arguments stay in use.
+    RunFiles(RunState<dim> &run,
+             Console       &console,
+             TimerOutput   &timer,
+             const MPI_Comm communicator);
+
+    /// The checkpoint to go on from, if the run is to go on and there is one.
+    std::optional<CheckpointManifest>
+    find_checkpoint(const CommandLine::Restart restart)
+    {
+      return directories.find_checkpoint(restart);
+    }
+
+    const CheckpointStore &
+    checkpoints() const
+    {
+      return directories.checkpoints;
+    }
+
+    /// Where the results are; ends with a slash.
+    const std::string &
+    directory() const
+    {
+      return output->directory();
+    }
+
+    /// Begin all files anew.
+    void
+    begin();
+
+    /// Go on after the accepted state, with fields at @p output_times: what is
+    /// later than it goes.
+    void
+    resume(const std::vector<double> &output_times);
+
+    /// The next functions are about the accepted state on this mesh.
+    void
+    set_mesh(const Discretization<dim> &discretization);
+
+    /// From here on signals end the run after a checkpoint only.
+    void
+    begin_steps();
+
+    /// Write the fields, if they are due after @p step, and values along lines.
+    void
+    write(const TimeStep &step);
+
+    /// Write a checkpoint at the end of a step if it is time for it, or a
+    /// signal has asked for it. Returns a sentence if the run is to end.
+    std::string
+    keep_checkpoints(
+      const parallel::distributed::Triangulation<dim> &triangulation,
+      const TimeStepper<dim>                          &time_stepper);
+
+    /// Wait for files that are being written.
+    void
+    finish();
+
+    /// Add what is known at the end, the difference from @p coarser (may be
+    /// null), costs and remarks to the record of the run.
+    void
+    close(const RunSummary<dim>          *coarser,
+          const std::vector<std::string> &remarks);
+
+  private:
+    void
+    write_checkpoint(
+      const parallel::distributed::Triangulation<dim> &triangulation,
+      const TimeStepper<dim>                          &time_stepper);
+
+    RunState<dim>             &run;
+    const Parameters          &parameters;
+    Console                   &console;
+    TimerOutput               &timer;
+    const MPI_Comm             communicator;
+    const Discretization<dim> *discretization = nullptr;
+
+    RunDirectories                directories;
+    std::optional<Output<dim>>    output; // from begin() or resume() on
+    LineOutput<dim>               lines;
+    CheckpointSchedule            schedule;
+    std::optional<SignalRequests> signals; // while steps are made
+    /// Memory of all ranks together in MB when the run began.
+    const double first_memory;
+  };
+} // namespace Viscoplastic

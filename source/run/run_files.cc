@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/results/run_record.h>
+#include <viscoplastic_contact/run/run_files.h>
+
+#include <iomanip>
+#include <limits>
+#include <memory>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    /// The memory of all ranks together in MB, now and at the most.
+    std::pair<double, double>
+    memory_of_ranks(const MPI_Comm communicator)
+    {
+      Utilities::System::MemoryStats stats;
+      Utilities::System::get_memory_stats(stats); // kB
+      return {Utilities::MPI::sum(stats.VmRSS / 1024., communicator),
+              Utilities::MPI::sum(stats.VmHWM / 1024., communicator)};
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  RunFiles<dim>::RunFiles(RunState<dim> &run,
+                          Console       &console,
+                          TimerOutput   &timer,
+                          const MPI_Comm communicator)
+    : run(run)
+    , parameters(run.scene.parameters)
+    , console(console)
+    , timer(timer)
+    , communicator(communicator)
+    , directories(parameters, console, communicator)
+    , lines(run.scene)
+    , schedule(parameters.checkpoint)
+    , first_memory(memory_of_ranks(communicator).first)
+  {
+    directories.lock();
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::begin()
+  {
+    const bool follows_another = run.pass.follows_another;
+    directories.begin();
+    output.emplace(run.scene, communicator);
+    if (follows_another)
+      output->resume({});
+    lines.begin(directory());
+    directories.begin_checkpoints(follows_another);
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      run.recorder.write_to(std::make_unique<Statistics>(
+        directory() + "statistics.csv", parameters.units, dim));
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::resume(const std::vector<double> &output_times)
+  {
+    const unsigned int n = run.accepted.state.n;
+    fail_together(communicator, [&]() {
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        run.recorder.write_to(std::make_unique<Statistics>(
+          results_directory(parameters) + "statistics.csv", n));
+    });
+    output.emplace(run.scene, communicator);
+    output->resume(output_times);
+    lines.resume(directory(), n);
+    // A run without checkpoints of its own keeps those that there are.
+    const unsigned int n_kept = schedule.is_regular() ?
+                                  parameters.checkpoint.keep :
+                                  std::numeric_limits<unsigned int>::max();
+    for (const std::string &remark :
+         checkpoints().remove_others(n, n_kept).remarks)
+      console.remark(remark);
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::set_mesh(const Discretization<dim> &discretization)
+  {
+    this->discretization = &discretization;
+    lines.set_mesh(discretization);
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::begin_steps()
+  {
+    schedule.begin_steps(run.recorder.elapsed());
+    signals.emplace();
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::write(const TimeStep &step)
+  {
+    TimerOutput::Scope         phase(timer, "output");
+    const EvaluatedState<dim> &accepted = run.accepted;
+    const Vector<double>      &squared_indicators =
+      accepted.space_estimate.squared_indicators;
+    const bool is_due = output->is_due(step);
+    if (is_due)
+      for (const std::string &remark : output->write_fields(
+             discretization->laws,
+             accepted.state,
+             discretization->face.get(),
+             squared_indicators.size() > 0 ? &squared_indicators : nullptr))
+        console.remark(remark);
+    else
+      output->report_failure();
+    lines.write(accepted.state, is_due);
+  }
+
+
+
+  template <int dim>
+  std::string
+  RunFiles<dim>::keep_checkpoints(
+    const parallel::distributed::Triangulation<dim> &triangulation,
+    const TimeStepper<dim>                          &time_stepper)
+  {
+    const State<dim> &state   = run.accepted.state;
+    const bool        is_last = state.t >= run.scene.schedule.end_time();
+    auto              decision =
+      schedule.after_step(state.n, is_last, run.recorder.elapsed());
+    // Steps are the same on all ranks; the clock of one rank counts.
+    if (Utilities::MPI::this_mpi_process(communicator) != 0)
+      decision = {};
+    const SignalRequests::Request request =
+      signals->agree(communicator, decision.is_due, decision.is_late);
+    const std::string stop  = request.stop.empty() && request.is_late ?
+                                "'Checkpoint/Wall time limit'" :
+                                request.stop;
+    const bool        stops = !stop.empty() && !is_last;
+    if (!request.checkpoint && !stops)
+      return "";
+    write_checkpoint(triangulation, time_stepper);
+    schedule.restart_clock(run.recorder.elapsed());
+    std::ostringstream text;
+    text << "step " << state.n << " (t = " << state.t
+         << run.scene.unit(Quantity::time) << "): '"
+         << checkpoints().path(state.n) << "'";
+    if (!stops)
+      {
+        // Regular ones need no words.
+        if (!decision.is_due)
+          console.stream() << "Checkpoint of " << text.str() << std::endl;
+        return "";
+      }
+    std::ostringstream error;
+    if (const auto relative = run.recorder.relative_error(run.accepted.errors))
+      error << " The error up to there is estimated as " << std::setprecision(2)
+            << 100. * *relative << " %.";
+    const std::string interruption = stop +
+                                     " has ended the run after the checkpoint "
+                                     "of " +
+                                     text.str() + "; --restart goes on." +
+                                     error.str();
+    console.log() << interruption << std::endl;
+    return interruption;
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::write_checkpoint(
+    const parallel::distributed::Triangulation<dim> &triangulation,
+    const TimeStepper<dim>                          &time_stepper)
+  {
+    TimerOutput::Scope phase(timer, "checkpoint");
+    output->finish(); // it names the outputs
+    const PackedRun packed = pack_run(run,
+                                      triangulation,
+                                      *discretization,
+                                      time_stepper,
+                                      output->output_times());
+    // Whose rows the checkpoint relies on.
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        run.recorder.synchronize();
+        lines.synchronize();
+      }
+    directories.write_checkpoint(packed.manifest, packed.files);
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::finish()
+  {
+    TimerOutput::Scope phase(timer, "output");
+    output->finish();
+    signals.reset();
+  }
+
+
+
+  template <int dim>
+  void
+  RunFiles<dim>::close(const RunSummary<dim>          *coarser,
+                       const std::vector<std::string> &remarks)
+  {
+    const Recorder<dim> &recorder = run.recorder;
+    if (coarser != nullptr &&
+        Utilities::MPI::this_mpi_process(communicator) == 0)
+      write_uncertainties(directory() + "uncertainty.csv",
+                          parameters.units,
+                          recorder.summary(),
+                          *coarser);
+    output->record_end(recorder.summary(),
+                       {recorder.seconds(),
+                        recorder.bill().friction(),
+                        first_memory,
+                        memory_of_ranks(communicator).second,
+                        discretization->solver_demand()},
+                       remarks);
+  }
+
+
+
+  template class RunFiles<2>;
+  template class RunFiles<3>;
+} // namespace Viscoplastic

@@ -2,16 +2,13 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/lac/lapack_full_matrix.h>
 
 #include <viscoplastic_contact/discretization/admissible_space.h>
+#include <viscoplastic_contact/discretization/body_parts.h>
+#include <viscoplastic_contact/discretization/seen_motions.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iomanip>
-#include <numeric>
-#include <set>
 #include <sstream>
 
 // The rigid motions of a body: those that its conditions have to prevent, and
@@ -21,276 +18,7 @@ namespace Viscoplastic
 {
   namespace
   {
-    template <int dim>
-    constexpr unsigned int n_rigid_motions = dim == 2 ? 3 : 6;
-
     constexpr unsigned int all_parts = numbers::invalid_unsigned_int;
-
-
-
-    /// Of one part of the body after the other.
-    using RigidMotion = std::vector<double>;
-
-
-
-    /**
-     * What conditions see of the rigid motions, row by row, as the triangle R
-     * of rows = Q R. (R^T R would not tell the width of a thin sheet from
-     * rounding.)
-     */
-    class SeenMotions
-    {
-    public:
-      explicit SeenMotions(const unsigned int n)
-        : n(n)
-        , triangle(n, n)
-      {}
-
-      /// Givens rotations take a row into the triangle.
-      void
-      add(RigidMotion row)
-      {
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            const double length = std::hypot(triangle(i, i), row[i]);
-            if (row[i] == 0.)
-              continue;
-            const double c = triangle(i, i) / length, s = row[i] / length;
-            for (unsigned int j = i; j < n; ++j)
-              {
-                const double above = triangle(i, j);
-                triangle(i, j)     = c * above + s * row[j];
-                row[j]             = c * row[j] - s * above;
-              }
-          }
-      }
-
-      /// The rows of all ranks. Collective.
-      void
-      join(const MPI_Comm communicator)
-      {
-        std::vector<double> entries;
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            entries.push_back(triangle(i, j));
-        triangle = 0.;
-        for (const auto &of_rank :
-             Utilities::MPI::all_gather(communicator, entries))
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              RigidMotion row(n);
-              for (unsigned int j = 0; j < n; ++j)
-                row[j] = of_rank[i * n + j];
-              add(row);
-            }
-      }
-
-      /// An orthonormal basis of the motions that no row sees, but for what
-      /// coordinates in mesh files may miss.
-      std::vector<RigidMotion>
-      unseen() const
-      {
-        LAPACKFullMatrix<double> matrix(n, n);
-        matrix = triangle;
-        matrix.compute_svd();
-        const auto              &vt = matrix.get_svd_vt();
-        std::vector<RigidMotion> result;
-        for (unsigned int e = 0; e < n; ++e)
-          if (matrix.singular_value(e) <=
-              1e-9 * std::max(matrix.singular_value(0), 1e-300))
-            {
-              RigidMotion motion(n);
-              for (unsigned int a = 0; a < n; ++a)
-                motion[a] = vt(e, a);
-              result.push_back(motion);
-            }
-        return result;
-      }
-
-    private:
-      unsigned int       n;
-      FullMatrix<double> triangle;
-    };
-
-
-
-    /// Rigid motions in words; of several parts that of the one which moves
-    /// most.
-    template <int dim>
-    std::string
-    in_words(std::vector<RigidMotion> motions)
-    {
-      constexpr unsigned int n = n_rigid_motions<dim>;
-      for (RigidMotion &motion : motions)
-        {
-          RigidMotion most;
-          double      largest = -1.;
-          for (auto part = motion.begin(); part != motion.end(); part += n)
-            if (const double square =
-                  std::inner_product(part, part + n, part, 0.);
-                square > largest + 1e-8)
-              {
-                largest = square;
-                most.assign(part, part + n);
-              }
-          motion = most;
-        }
-      const auto is_translation = [](const RigidMotion &motion) {
-        for (unsigned int a = dim; a < n; ++a)
-          if (std::abs(motion[a]) > 1e-8)
-            return false;
-        return true;
-      };
-      const auto n_translations =
-        std::count_if(motions.begin(), motions.end(), is_translation);
-      std::string result;
-      for (const RigidMotion &motion : motions)
-        {
-          // Name it by its largest part.
-          unsigned int largest = 0;
-          for (unsigned int a = 1; a < n; ++a)
-            if (std::abs(motion[a]) > std::abs(motion[largest]) + 1e-8)
-              largest = a;
-          const std::string xyz = "xyz";
-          result += result.empty() ? "" : " and ";
-          // A single translation may have any direction; of several, the
-          // axes are a basis.
-          if (n_translations == 1 && is_translation(motion) &&
-              std::abs(motion[largest]) < 1. - 1e-8)
-            {
-              std::ostringstream direction;
-              direction << std::setprecision(3) << "translation along (";
-              const double sign = motion[largest] > 0. ? 1. : -1.;
-              for (unsigned int a = 0; a < dim; ++a)
-                direction << (a == 0 ? "" : ", ") << sign * motion[a];
-              result += direction.str() + ')';
-            }
-          else if (largest < dim)
-            result += std::string("translation along ") + xyz[largest];
-          else
-            result += std::string("rotation about ") +
-                      (dim == 2 ? 'z' : xyz[largest - dim]);
-        }
-      return result;
-    }
-
-
-
-    /// The displacement of a place, relative to the center of rotations, in
-    /// each of the rigid motions.
-    template <int dim>
-    std::array<Tensor<1, dim>, n_rigid_motions<dim>>
-    rigid_displacements(const Tensor<1, dim> &x)
-    {
-      std::array<Tensor<1, dim>, n_rigid_motions<dim>> result;
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d][d] = 1.;
-      if constexpr (dim == 2)
-        {
-          result[2][0] = -x[1];
-          result[2][1] = x[0];
-        }
-      else
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            Tensor<1, dim> axis;
-            axis[d]         = 1.;
-            result[dim + d] = cross_product_3d(axis, x);
-          }
-      return result;
-    }
-
-
-
-    template <int dim>
-    typename Triangulation<dim>::cell_iterator
-    coarse_cell_of(typename Triangulation<dim>::cell_iterator cell)
-    {
-      while (cell->level() > 0)
-        cell = cell->parent();
-      return cell;
-    }
-
-
-
-    /// The parts of the present body, joined by faces. Without stages and
-    /// contact between bodies it is one.
-    struct BodyParts
-    {
-      unsigned int n = 1;
-      /// The parts that each boundary node belongs to, by its position in the
-      /// list of boundary nodes.
-      std::vector<std::set<unsigned int>> of_node;
-      /// The part of each cell of the coarse mesh; empty where there is one.
-      std::vector<unsigned int> of_cell;
-    };
-
-
-
-    template <int dim>
-    BodyParts
-    find_parts(const AdmissibleSpace<dim> &space)
-    {
-      const auto &nodes = space.boundary_nodes();
-      BodyParts   result;
-      if (!space.scene.has_stages() && !space.scene.has_contact_pairs())
-        {
-          result.of_node.assign(nodes.size(), {0});
-          return result;
-        }
-      // All ranks have the coarse mesh, whose cells are present or absent as a
-      // whole.
-      const auto &triangulation = space.dof_handler.get_triangulation();
-      const auto  is_present    = [&space](const auto &cell) {
-        return space.scene.is_present(cell->material_id());
-      };
-      unsigned int              &n_parts      = result.n;
-      std::vector<unsigned int> &part_of_cell = result.of_cell;
-      n_parts                                 = 0;
-      part_of_cell.assign(triangulation.n_cells(0),
-                          numbers::invalid_unsigned_int);
-      for (const auto &first : triangulation.cell_iterators_on_level(0))
-        {
-          if (!is_present(first) ||
-              part_of_cell[first->index()] != numbers::invalid_unsigned_int)
-            continue;
-          std::vector<typename Triangulation<dim>::cell_iterator> open{first};
-          part_of_cell[first->index()] = n_parts;
-          while (!open.empty())
-            {
-              const auto cell = open.back();
-              open.pop_back();
-              for (const unsigned int f : cell->face_indices())
-                if (!cell->at_boundary(f))
-                  {
-                    const auto neighbor = cell->neighbor(f);
-                    if (!is_present(neighbor) ||
-                        part_of_cell[neighbor->index()] !=
-                          numbers::invalid_unsigned_int)
-                      continue;
-                    part_of_cell[neighbor->index()] = n_parts;
-                    open.push_back(neighbor);
-                  }
-            }
-          ++n_parts;
-        }
-
-      std::map<types::global_dof_index, std::size_t> number;
-      for (std::size_t i = 0; i < nodes.size(); ++i)
-        number[nodes[i].first_dof] = i;
-      result.of_node.resize(nodes.size());
-      for (const auto &cell : space.dof_handler.active_cell_iterators())
-        if (!cell->is_artificial() && is_present(cell))
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              const auto node = number.find(cell->vertex_dof_index(v, 0));
-              if (node == number.end())
-                continue;
-              result.of_node[node->second].insert(
-                part_of_cell[coarse_cell_of<dim>(cell)->index()]);
-            }
-      return result;
-    }
   } // namespace
 
 
@@ -320,7 +48,7 @@ namespace Viscoplastic
               if (const auto dof = cell->vertex_dof_index(v, 0);
                   owned.is_element(dof))
                 part_of_node[owned.index_within_set(dof) / dim] =
-                  parts.of_cell[coarse_cell_of<dim>(cell)->index()];
+                  parts.of_cell[cell->id().get_coarse_cell_id()];
       }
     DistributedVector part_numbers;
     if (are_coupled)
@@ -429,7 +157,7 @@ namespace Viscoplastic
                 const unsigned int part =
                   parts.of_cell.empty() ?
                     0 :
-                    parts.of_cell[coarse_cell_of<dim>(cell)->index()];
+                    parts.of_cell[cell->id().get_coarse_cell_id()];
                 face_values.reinit(cell, f);
                 for (const unsigned int q :
                      face_values.quadrature_point_indices())

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/linear_solvers/algebraic_coarse_solver.h>
 #include <viscoplastic_contact/linear_solvers/direct_coarse_solver.h>
 #include <viscoplastic_contact/linear_solvers/geometric_multigrid.h>
+#include <viscoplastic_contact/linear_solvers/level_interpolations.h>
 #include <viscoplastic_contact/linear_solvers/multigrid_level.h>
 
 #include <algorithm>
@@ -55,7 +56,6 @@ namespace Viscoplastic
     , face(restriction.face())
     , begins(1, 0)
     , masks(excluded, hierarchy, restriction)
-    , opposite(hierarchy.opposite)
     , has_direct_coarse_solver(rigid_body_modes.empty())
     , largest_shared_part(options.largest_shared_part)
   {
@@ -124,140 +124,6 @@ namespace Viscoplastic
 
 
   template <int dim>
-  Interpolation
-  GeometricMultigrid<dim>::make_interpolation(const unsigned int       level,
-                                              const std::vector<Node> &ghosts)
-  {
-    const unsigned int mesh         = first_mesh + level;
-    const auto         displacement = [&](const Node node) {
-      const std::size_t n = node - hierarchy.begin;
-      if (hierarchy.first_level[n] < mesh)
-        return Row{{node, 1.}};
-      return Row(hierarchy.parents.begin() + hierarchy.row_begin[n],
-                 hierarchy.parents.begin() + hierarchy.row_begin[n + 1]);
-    };
-    std::map<Node, Row> at_interfaces;
-    if (hierarchy.has_interfaces)
-      at_interfaces = pass_interfaces_on(level, displacement);
-    const auto row = [&](const Node node) {
-      const auto found = at_interfaces.find(node);
-      return found == at_interfaces.end() ? displacement(node) : found->second;
-    };
-    Interpolation result;
-    const auto    add = [&](const Row &parents) {
-      result.parents.insert(result.parents.end(),
-                            parents.begin(),
-                            parents.end());
-      result.begin.push_back(result.parents.size());
-    };
-    for (const Node node : levels[level]->nodes)
-      add(row(node));
-    if (begins.size() > 2)
-      for (const auto &parents : ask_owners(ghosts, begins, communicator, row))
-        add(parents);
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::map<NodeHierarchy::Node, std::vector<NodeHierarchy::Parent>>
-  GeometricMultigrid<dim>::pass_interfaces_on(
-    const unsigned int                    level,
-    const std::function<Row(const Node)> &displacement)
-  {
-    const auto is_owned = [this](const Node node) {
-      return node >= hierarchy.begin && node < hierarchy.end;
-    };
-    // Rows of nodes of other ranks.
-    const auto from_owners = [&](const std::set<Node> &foreign,
-                                 const auto           &row) {
-      const std::vector<Node> asked(foreign.begin(), foreign.end());
-      const auto answers = ask_owners(asked, begins, communicator, row);
-      std::map<Node, Row> result;
-      for (std::size_t i = 0; i < asked.size(); ++i)
-        result[asked[i]] = answers[i];
-      return result;
-    };
-    const auto add =
-      [](std::map<Node, double> &sums, const double factor, const Row &row) {
-        for (const auto &[node, weight] : row)
-          sums[node] += factor * weight;
-      };
-    const auto to_row = [](const std::map<Node, double> &sums) {
-      Row row;
-      for (const auto &[node, weight] : sums)
-        if (std::abs(weight) > 1e-12)
-          row.push_back({node, weight});
-      return row;
-    };
-    static const Row nothing;
-    const auto       row_of = [](const std::map<Node, Row> &rows,
-                           const Node                 node) -> const Row       &{
-      const auto found = rows.find(node);
-      return found == rows.end() ? nothing : found->second;
-    };
-
-    // What lies opposite, by nodes of the coarser mesh.
-    std::set<Node> others;
-    for (const auto &of_node : opposite)
-      for (const auto &other : of_node.second)
-        if (!is_owned(other.node))
-          others.insert(other.node);
-    const auto          of_others = from_owners(others, displacement);
-    std::map<Node, Row> by_coarse_nodes, coarse_opposite;
-    for (const auto &[node, row] : opposite)
-      {
-        std::map<Node, double> sums;
-        for (const auto &[other, weight] : row)
-          add(sums,
-              weight,
-              is_owned(other) ? displacement(other) : of_others.at(other));
-        by_coarse_nodes[node] = to_row(sums);
-        if (hierarchy.first_level[node - hierarchy.begin] < first_mesh + level)
-          coarse_opposite[node] = by_coarse_nodes[node];
-      }
-
-    // A displacement is that of its parents, and of what lies opposite to them;
-    // the unknown at an interface is what it differs by from the other side.
-    std::set<Node> foreign_parents;
-    if (begins.size() > 2)
-      for (const Node node : levels[level]->nodes)
-        for (const auto &parent : displacement(node))
-          if (!is_owned(parent.node))
-            foreign_parents.insert(parent.node);
-    const auto of_foreign_parents =
-      from_owners(foreign_parents, [&](const Node node) {
-        return row_of(coarse_opposite, node);
-      });
-    std::map<Node, Row> result;
-    for (const Node node : levels[level]->nodes)
-      {
-        const Row              row     = displacement(node);
-        const Row             &here    = row_of(by_coarse_nodes, node);
-        bool                   is_near = !here.empty();
-        std::map<Node, double> sums;
-        for (const auto &[parent, weight] : row)
-          {
-            const Row &across =
-              row_of(is_owned(parent) ? coarse_opposite : of_foreign_parents,
-                     parent);
-            is_near |= !across.empty();
-            add(sums, weight, across);
-          }
-        if (!is_near)
-          continue;
-        add(sums, 1., row);
-        add(sums, -1., here);
-        result[node] = to_row(sums);
-      }
-    opposite = coarse_opposite;
-    return result;
-  }
-
-
-
-  template <int dim>
   void
   GeometricMultigrid<dim>::fill()
   {
@@ -270,7 +136,8 @@ namespace Viscoplastic
       std::ldexp(1., std::ilogb(Utilities::MPI::max(largest, communicator)));
     BlockRows<dim> rows = cartesian_rows<dim>(
       matrix, excluded, hierarchy, levels.back()->nodes, unit);
-    std::vector<Node> others; // that the interpolation above needs
+    LevelInterpolations interpolations(hierarchy, begins, communicator);
+    std::vector<Node>   others; // that the interpolation above needs
     for (unsigned int l = levels.size(); l-- > 0;)
       {
         Level     &level      = *levels[l];
@@ -293,7 +160,8 @@ namespace Viscoplastic
               ghosts.insert(node);
         const std::vector<Node> ghost_list(ghosts.begin(), ghosts.end());
         if (is_new)
-          level.interpolation = make_interpolation(l, ghost_list);
+          level.interpolation =
+            interpolations.next(first_mesh + l, level.nodes, ghost_list);
         others.clear();
         for (std::size_t e = 0;
              e < level.interpolation.begin[level.nodes.size()];

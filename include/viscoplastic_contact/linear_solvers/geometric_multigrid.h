@@ -8,8 +8,6 @@
 #include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
 #include <viscoplastic_contact/linear_solvers/preconditioner.h>
 
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -89,22 +87,6 @@ namespace Viscoplastic
   private:
     struct Level;
     struct Operator;
-    using Row = std::vector<NodeHierarchy::Parent>;
-
-    /// Rows of the interpolation to a level: of its owned nodes and ghosts.
-    Interpolation
-    make_interpolation(const unsigned int                      level,
-                       const std::vector<NodeHierarchy::Node> &ghosts);
-
-    /// The rows of owned nodes that differ from the interpolation of
-    /// displacements (@p displacement: rows of owned nodes), since they or
-    /// their parents have jumps across an interface for unknowns. What lies
-    /// opposite to a coarse node is what lies there on the last mesh, so that
-    /// the spaces stay nested. Collective.
-    std::map<NodeHierarchy::Node, Row>
-    pass_interfaces_on(
-      const unsigned int                                   level,
-      const std::function<Row(const NodeHierarchy::Node)> &displacement);
 
     /// Give all levels the values of the present matrix.
     void
@@ -145,8 +127,6 @@ namespace Viscoplastic
     std::vector<std::pair<unsigned int, Tensor<2, dim>>> rotated_nodes;
     std::vector<std::unique_ptr<Level>>                  levels;
     LevelMasks<dim>                                      masks;
-    /// Of owned nodes of the level whose interpolation is made next.
-    std::map<NodeHierarchy::Node, Row> opposite;
     const bool                         has_direct_coarse_solver;
     std::vector<double>                coarse_modes;
     std::unique_ptr<CoarseSolver<dim>> coarse;

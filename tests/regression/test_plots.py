@@ -3,6 +3,7 @@
 
 import itertools
 import json
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -893,6 +894,19 @@ class Pictures(TestCase):
             self.assertClose(np.linalg.norm(of_cells), result[column][-1], 1e-6)
         quotient = result["estimate_recovery"].max() / result["error_energy"].max()
         self.assertClose(quotient, 1, absolute=0.2)
+
+    def test_python_without_packages(self):
+        """A sentence with the package to install, no traceback."""
+        for command in "plot", "report":
+            process = subprocess.run(
+                [sys.executable, "-S", SOURCE / "contrib" / command, "."],
+                capture_output=True,
+                text=True,
+            )
+            self.assertEqual(process.returncode, 1)
+            self.assertRegex(
+                process.stderr, r"^Error: \S+ has no \w+ \(Debian: python3-\w+\); .*\n$"
+            )
 
     def test_what_is_wrong(self):
         result = run("slab", {**SMALL_SLAB, "Output/Fields every": 0})

@@ -27,7 +27,9 @@ def percent(value):
 
 
 def with_chance(value, chance, unit, between=" +- "):
-    return f"{digits(value, 2)}{between}{digits(chance, 1)}{unit}"
+    """A difference and the scatter of two runs, or that alone where it is larger."""
+    known = f"{digits(value, 2)}{between}" if abs(value) > chance else between.strip()
+    return f"{known}{digits(chance, 1)}{unit}"
 
 
 def share_of_time(result, between=" +- "):
@@ -134,6 +136,11 @@ def effects_in_words(study):
         sentences.append(interaction_in_words(study.interaction))
     if study.left_out:
         sentences.append(study.left_out)
+    if any(share_of_time(r).startswith("-") for r in study.results if not r.failure):
+        sentences.append(
+            "Costs below zero: with the effect the scene takes less time than without. "
+            "Where there is a scatter alone, nothing larger was measured."
+        )
     lines = (line for sentence in sentences for line in lines_of(sentence, 96))
     return text + "".join(f"{line}\n" for line in lines)
 
@@ -146,8 +153,9 @@ def markdown(study, about):
         "is the difference to a run with twice the mesh width and time steps (in the "
         "energy norm: the error bar). Energy norm: of the difference of the "
         "displacements at the ends of the phases of time. Time and memory: what the "
-        "scene takes less what it takes without the effect, +- the difference between "
-        "two runs of the same.\n\n"
+        "scene takes less what it takes without the effect, so that what saves time is "
+        "below zero; +- the difference between two runs of the same, alone where nothing "
+        "larger was measured.\n\n"
     )
     if Path(study.directory, "effects.png").exists():
         text += "![What effects change and cost](effects.png)\n\n"

@@ -217,7 +217,9 @@ def draw_bound(axes, contact, line):
     bound = contact["bound"][line.nodes]
     # None where symmetry or another condition holds an end.
     for end, beside in ((0, 1), (-1, -2)):
-        if bound[end] == 0.0 and bound[beside] > 0.0:
+        node = line.nodes[end]
+        touches = not is_unilateral(contact) or contact["contact_pressure"][node] > 0.0
+        if touches and bound[end] == 0.0 and bound[beside] > 0.0:
             bound[end] = np.nan
     for sign in (1.0, -1.0):
         axes.plot(line.s, sign * bound, color="black", ls="--", lw=1.0)

@@ -243,7 +243,8 @@ def factor_of(kind, factors, dimension):
 def draw(results, options):
     others = [Results(directory) for directory in options.overlay]
     # Columns that are joined by + share a panel.
-    groups = [derived.split(group, "+") for group in options.columns or []]
+    named = (derived.by_numbers(group, results.names) for group in options.columns or [])
+    groups = [derived.split(group, "+") for group in named]
     for run in (results, *others):
         dimension = Units.of(run).dimension
         for name in sum(groups, []):

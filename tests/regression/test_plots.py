@@ -639,6 +639,16 @@ class Numbers(TestCase):
             with self.assertRaisesRegex(UserError, words):
                 derived.add(results, text, 3)
 
+    def test_columns_of_named_places(self):
+        names = {"boundary 3": "roof", "boundary 4": "roof (left)", "point 10": "crown"}
+        for text, expected in (
+            ("reaction_y of roof", "reaction_3_y"),
+            ("contact_force_x of roof (left)/reaction_x of roof", "contact_force_4_x/reaction_3_x"),
+            ("displacement_y of crown+point1_y", "point10_y+point1_y"),
+            ("reaction_y of roofing", "reaction_y of roofing"),
+        ):
+            self.assertEqual(derived.by_numbers(text, names), expected)
+
     def test_another_run_is_drawn_in_the_units_of_this_one(self):
         t, force = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 3.0])
         runs = [

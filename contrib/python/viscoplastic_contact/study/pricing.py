@@ -163,15 +163,14 @@ def stagnation(pilots, measure, eps):
     """In words, what halving h, k or both does to the error of pilots where it hardly
     falls and is not below eps yet: then no law of them reaches further. Empty where
     one does."""
-    initial = "estimate_initial"
-    parts = [("h and k", "error", lambda r: error_of(r, measure, None), 1.0)]
+    parts = [("h and k", "error", lambda r: error_of(r, measure, None), 0.0)]
     if measure == "estimate_total":
         # Each part falls by itself, and the smaller one may hide behind the other.
         parts += [
             (
                 "h",
                 "part of the mesh in the error",
-                lambda r: r.number("estimate_space") + r.number(initial),
+                lambda r: r.number("estimate_space") + r.number("estimate_initial"),
                 0.5,
             ),
             (
@@ -182,6 +181,8 @@ def stagnation(pilots, measure, eps):
             ),
         ]
     finest = min(pilots, key=lambda r: (r.number("h"), r.step_measure))
+    if error_of(finest, measure, None) <= eps:
+        return ""
     for halved, what, value, share in parts:
         level = [
             finest.key.mesh_level - ("h" in halved.split()),
@@ -199,10 +200,10 @@ def stagnation(pilots, measure, eps):
     return ""
 
 
-def refine_pilots(runs, pilots, measure, eps, console):
-    """Pilots on the next finer meshes where those that there are stagnate. Raises
-    UserError where they still do."""
-    scene, n_left = runs.scene, N_FINER
+def refine_pilots(runs, pilots, measure, eps, n_left, console):
+    """Pilots on the next finer meshes, so many times at most, where those that there are
+    stagnate. Raises UserError where they still do."""
+    scene = runs.scene
     while why := stagnation(pilots, measure, eps):
         finest = max(pilots, key=lambda r: (r.key.mesh_level, r.key.time_level))
         key = finest.key._replace(mesh_level=finest.key.mesh_level + 1)
@@ -268,12 +269,13 @@ def price_with_given_meshes(runs, eps, seconds, console):
         return seconds_for_timing(seconds_of(pilots), min(price, budget, seconds))
 
     if has_two_meshes:
-        pilots = refine_pilots(runs, pilots, measure, eps, console)
+        pilots = refine_pilots(runs, pilots, measure, eps, N_FINER, console)
     model = fit(pilots)
     if not has_two_meshes:
         wanted = cheapest(model, eps)
         if wanted:
             pilots += finer_pilot(runs, pilots, seconds_left(wanted.seconds), console)
+            refine_pilots(runs, pilots, measure, eps, 0, console)
             model = fit(pilots)
     console.say("Pilot runs:\n" + runs_in_words(pilots, measure), end="")
     if not has_two_meshes and len(pilots) == 2:

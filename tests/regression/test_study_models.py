@@ -28,6 +28,7 @@ from viscoplastic_contact.study.effects import (
     EffectsStudy,
     judge,
 )
+from viscoplastic_contact.study.effects_report import in_words, with_chance
 from viscoplastic_contact.study.fit import (
     Finer,
     Prior,
@@ -722,6 +723,22 @@ class Records(TestCase):
 
 
 class Effects(TestCase):
+    def test_quantities_by_the_names_of_places(self):
+        names = {"boundary 3": "roof", "point 10": "crown"}
+        for quantity, words in (
+            ("reaction_3", "reaction of roof"),
+            ("contact_force_3", "contact force on roof"),
+            ("reaction_4", "reaction_4"),
+            ("point10", "displacement of crown"),
+            ("contact_force", "contact_force"),
+        ):
+            self.assertEqual(in_words(quantity, names), words)
+
+    def test_costs_within_the_scatter_are_the_scatter(self):
+        self.assertEqual(with_chance(12.3, 4.0, " %"), "12 +- 4 %")
+        self.assertEqual(with_chance(-542.0, 48.0, " %", "+-"), "-542+-48 %")
+        self.assertEqual(with_chance(3.1, 93.0, " %", "+-"), "+-93 %")
+
     def test_what_excludes_what(self):
         elastic = EffectVariant("flow", "", ["Material/Law=elastic"])
         power = EffectVariant("power", "", ["Material/norton/Exponent=1"])

@@ -470,7 +470,10 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
         console.say(f"  --set '{entry}'")
     console.say("")
     # Beside what the scene itself may have computed.
-    place = [f"Output/Directory={directory}"]
+    place = [
+        f"Output/Directory={directory}",
+        f"Checkpoint/Directory={directory}checkpoint",
+    ]
     entries = set_options(runs.overrides + chosen.assignments + place)
     code, messages, _ = console.follow(
         lambda words, output: launch(

@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 from . import (
     animation,
     contact,
+    derived,
     effects,
     efficiency,
     errors,
@@ -114,6 +115,11 @@ def names(text):
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
+def columns(text):
+    """Names and expressions."""
+    return derived.split(text, ",")
+
+
 def units(text):
     """Length, time and stress, a dash for one without a unit, for argparse."""
     parts = names(text)
@@ -178,7 +184,9 @@ def parse(arguments):
     time.add_argument(
         "--step", type=int, metavar="N", help="output number N (default: the last)"
     )
-    time.add_argument("--time", type=finite, metavar="T", help="the output nearest to T")
+    time.add_argument(
+        "--time", type=finite, metavar="T", help="the output nearest to T"
+    )
     span = parser.add_argument_group("which times")
     span.add_argument(
         "--from",
@@ -189,13 +197,31 @@ def parse(arguments):
     )
     span.add_argument("--until", type=finite, metavar="T", help="and until T")
     span.add_argument(
+        "--log-time",
+        action="store_true",
+        help="history and errors over a logarithmic axis of time",
+    )
+    span.add_argument(
         "--animate",
         action="store_true",
         help="overview, contact and fields over all outputs, as a GIF",
     )
     what = parser.add_argument_group("what")
     what.add_argument(
-        "--columns", type=names, metavar="C,...", help="columns for history and lines"
+        "--columns",
+        type=columns,
+        metavar="C,...",
+        help="columns for history and lines; of history also expressions of them, "
+        "such as friction_force_x/contact_force_y",
+    )
+    what.add_argument(
+        "--overlay",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="OTHER",
+        help="another directory of results, drawn over the history in dashes; may be "
+        "repeated",
     )
     what.add_argument("--force", metavar="F", help="for hysteresis")
     what.add_argument("--displacement", metavar="U", help="for hysteresis")
@@ -282,7 +308,11 @@ def parse(arguments):
         parser.error("--output is for a single picture")
     if options.magnification is not None and not options.magnification > 0.0:
         parser.error("--magnification must be positive")
-    if options.columns and not options.pictures and not options.all:
+    if (
+        (options.columns or options.overlay)
+        and not options.pictures
+        and not options.all
+    ):
         options.pictures = ["history"]
     return options
 

@@ -74,9 +74,12 @@ class Scale:
         self.length = self.units.unit("length", np.concatenate(bodies))
         self.arrows = Arrows()
         self.largest = dict.fromkeys(self.KINDS, 0.0)
+        self.displacement = 0.0
         self.limits = {name: (0.0, 0.0) for name in self.largest}
         for index in indices:
             contact = required(results, index)
+            moved = sizes(contact["displacement"]).max(initial=0.0)
+            self.displacement = max(self.displacement, moved)
             for name in self.largest:
                 if name in contact:
                     size = sizes(contact[name]).max(initial=0.0)
@@ -86,8 +89,14 @@ class Scale:
             else:
                 self.arrows.extend(contact, results.body(index))
 
+    def has_gap(self):
+        """Whether there is one beside the rounding of displacements."""
+        return self.largest["gap"] > 1e-9 * self.displacement
+
     def unit(self, name):
-        return self.units.unit(self.KINDS[name], [*self.limits[name], self.largest[name]])
+        return self.units.unit(
+            self.KINDS[name], [*self.limits[name], self.largest[name]]
+        )
 
     def extend_limits(self, contact):
         for line in lines(contact):
@@ -118,13 +127,14 @@ def scale(results, indices, options):
 def draw(results, index, options, scale):
     contact = required(results, index)
     time = scale.time.value(results.solution[index][0])
-    what = "traction and slip of the contact face"
+    shown = ["pressure"] if is_unilateral(contact) else []
+    shown += ["gap"] if "gap" in contact and scale.has_gap() else []
+    shown += ["traction"] if "stick" in contact else []
+    what = "slip of the contact face"
+    if shown:
+        what = f"{', '.join(shown)} and {what}"
     if "stick" not in contact:
-        what = "slip of the contact face, which has no friction,"
-        if is_unilateral(contact):
-            what = "pressure, gap and slip of the contact face, which has no friction,"
-    elif is_unilateral(contact):
-        what = "pressure, gap, traction and slip of the contact face"
+        what += ", which has no friction,"
     heading = style.title(results.name, what, time)
     if contact.cells.shape[1] == 2:
         figure, left_out = draw_lines(contact, scale)
@@ -144,7 +154,8 @@ def draw_lines(contact, scale):
     shown = found[:MOST_PIECES]
     has_states = "traction" in contact or is_unilateral(contact)
     friction = "traction" in contact
-    names = ["contact_pressure", "gap"] if is_unilateral(contact) else []
+    names = ["contact_pressure"] if is_unilateral(contact) else []
+    names += ["gap"] if "gap" in contact and scale.has_gap() else []
     names += ["traction"] if friction else []
     names += ["slip", "slip_rate"]
     n_rows = len(names)
@@ -187,7 +198,9 @@ def draw_lines(contact, scale):
         if friction:
             handles[:0] = [
                 Line2D([], [], color=style.SERIES[0], label="traction on the body"),
-                Line2D([], [], color="black", ls="--", lw=1.0, label=r"bound $\pm\rho$"),
+                Line2D(
+                    [], [], color="black", ls="--", lw=1.0, label=r"bound $\pm\rho$"
+                ),
             ]
         panels[0, -1].legend(
             handles=handles,
@@ -202,6 +215,12 @@ def draw_lines(contact, scale):
 
 def draw_bound(axes, contact, line):
     bound = contact["bound"][line.nodes]
+    # None where symmetry or another condition holds an end.
+    for end, beside in ((0, 1), (-1, -2)):
+        node = line.nodes[end]
+        touches = not is_unilateral(contact) or contact["contact_pressure"][node] > 0.0
+        if touches and bound[end] == 0.0 and bound[beside] > 0.0:
+            bound[end] = np.nan
     for sign in (1.0, -1.0):
         axes.plot(line.s, sign * bound, color="black", ls="--", lw=1.0)
 

@@ -19,5 +19,5 @@ def draw(results, options):
     if not any(panel in (history.ERROR, history.QUANTITY) for panel, _ in panels):
         raise NoPicture("statistics.csv has no error estimate to draw")
     return history.draw_panels(
-        results, panels, statistics, "estimated error by its causes over time"
+        results, panels, statistics, "estimated error by its causes over time", options
     )

@@ -91,25 +91,10 @@ CONSTANTS = {"pi": np.pi, "Pi": np.pi, "_pi": np.pi, "_e": np.e}
 def evaluate(text, t, **places):
     """The values at the times t, and at places x, y, z of as many; UserError if it
     depends on more or is not finite."""
-    python = re.sub(r"\bif\s*\(", "if_(", text.replace("^", "**"))
-    python = python.replace("&&", " and ").replace("||", " or ").strip()
-    shown = text.strip() if len(text) <= 80 else f"{text.strip()[:77]}..."
-    names = {name: np.float64(value) for name, value in CONSTANTS.items()}
-    try:
-        tree = ast.parse(python, mode="eval")
-        with np.errstate(all="ignore"):
-            value = visit(tree.body, {"t": t, **places, **names})
-    except (RecursionError, MemoryError):  # the latter is that of the parser
-        raise UserError(
-            f'the expression "{shown}" cannot be drawn: it is nested too deeply, or '
-            "has too many terms"
-        ) from None
-    except (SyntaxError, KeyError, TypeError, ValueError, OverflowError) as error:
-        raise UserError(
-            f'the expression "{shown}" cannot be drawn: only expressions of t alone '
-            "are evaluated here"
-        ) from error
-    value = np.broadcast_to(np.asarray(value, dtype=float), t.shape)
+    shown = shortened(text)
+    value = values(
+        text, {"t": t, **places}, "only expressions of t alone are evaluated here"
+    )
     wrong = np.nonzero(~np.isfinite(value))[0]
     if len(wrong):
         raise UserError(
@@ -117,6 +102,42 @@ def evaluate(text, t, **places):
             f"{value[wrong[0]]:g} at t = {t[wrong[0]]:g}"
         )
     return value
+
+
+def of_columns(text, columns):
+    """The values of an expression of columns, row by row."""
+    return values(
+        text,
+        columns,
+        "it may have numbers, functions of parameter files and the columns that --list "
+        "names",
+    )
+
+
+def shortened(text):
+    return text.strip() if len(text) <= 80 else f"{text.strip()[:77]}..."
+
+
+def values(text, variables, allowed):
+    """An expression of arrays of one length, which has t."""
+    python = re.sub(r"\bif\s*\(", "if_(", text.replace("^", "**"))
+    python = python.replace("&&", " and ").replace("||", " or ").strip()
+    shown = shortened(text)
+    names = {name: np.float64(value) for name, value in CONSTANTS.items()}
+    try:
+        tree = ast.parse(python, mode="eval")
+        with np.errstate(all="ignore"):
+            value = visit(tree.body, {**names, **variables})
+    except (RecursionError, MemoryError):  # the latter is that of the parser
+        raise UserError(
+            f'the expression "{shown}" cannot be drawn: it is nested too deeply, or '
+            "has too many terms"
+        ) from None
+    except (SyntaxError, KeyError, TypeError, ValueError, OverflowError) as error:
+        raise UserError(
+            f'the expression "{shown}" cannot be drawn: {allowed}'
+        ) from error
+    return np.broadcast_to(np.asarray(value, dtype=float), np.shape(variables["t"]))
 
 
 def visit(node, names):

@@ -25,7 +25,23 @@ def friction_state(contact):
     if "stick" not in contact:
         return states
     slipping = contact["stick"] < 0.5
-    return np.where(contact["bound"] > 0.0, slipping.astype(int), states)
+    states = np.where(contact["bound"] > 0.0, slipping.astype(int), states)
+    return states if contact.cells.shape[1] != 2 else with_held_ends(contact, states)
+
+
+def with_held_ends(contact, states):
+    """The states in the plane, where an end of the face at which symmetry or another
+    condition holds the node, so that it has no friction, looks as the node beside it.
+    """
+    vertex = weld(contact.points, 1e-6 * contact.size)
+    first, second = contact.cells.T
+    ends = np.bincount(vertex[contact.cells].ravel()) == 1
+    result = states.copy()
+    for node, other in (first, second), (second, first):
+        held = ends[vertex[node]] & (states[node] == NO_FRICTION)
+        held &= contact["bound"][other] > 0.0
+        result[node[held]] = states[other[held]]
+    return result
 
 
 def is_unilateral(contact):
@@ -298,7 +314,9 @@ def planes(contact, body):
     parts = groups(normals, offsets)
     if is_unilateral(contact):
         parts = surfaces(contact, normals, polygons, parts)
-    found = [Plane(contact, contact.cells[members], normal) for normal, members in parts]
+    found = [
+        Plane(contact, contact.cells[members], normal) for normal, members in parts
+    ]
     return sorted(
         found,
         key=lambda plane: (
@@ -314,7 +332,8 @@ def surfaces(contact, normals, polygons, parts):
     vertex = weld(contact.points, 1e-6 * contact.size)
     corners = [vertex[contact.cells[members]] for _, members in parts]
     areas = np.linalg.norm(
-        np.cross(polygons[:, 2] - polygons[:, 0], polygons[:, 3] - polygons[:, 1]), axis=1
+        np.cross(polygons[:, 2] - polygons[:, 0], polygons[:, 3] - polygons[:, 1]),
+        axis=1,
     )
     found = []
     for together in smooth([normal for normal, _ in parts], corners):

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The main columns of the statistics over time."""
 
+import math
 import re
 import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from . import quantities, style
-from .results import NoPicture, UserError
-from .units import Unit, Units, show
+from . import derived, quantities, style
+from .results import NoPicture, Results, UserError
+from .units import Unit, Units, powers, show, si
 
 
 class Panel:
@@ -53,6 +54,8 @@ class Panel:
         largest = max(sizes.values(), default=0.0)
         if largest <= 0.0:
             return []
+        if self.columns == ["max_gap"] and is_rounding(largest, statistics):
+            return []
         if self.changing and not any(np.ptp(statistics[name]) for name in found):
             return []
         # Against rounding in components that vanish by symmetry.
@@ -61,6 +64,13 @@ class Panel:
             # What nobody could see in the picture.
             threshold = 1e-3 * largest
         return [name for name in found if sizes[name] > threshold]
+
+
+def is_rounding(gap, statistics):
+    """Whether a gap is nothing beside the displacements."""
+    return gap < 1e-9 * np.abs(
+        finite(statistics.get("max_displacement", np.zeros(1)))
+    ).max(initial=0.0)
 
 
 AREA = Panel(
@@ -85,8 +95,8 @@ QUANTITY = Panel(
 )
 
 PANELS = (
-    Panel("friction force\nexerted by the body", ["friction_force_[xyz]"]),
-    Panel("contact force\nexerted by the body", ["contact_force_[xyz]"]),
+    Panel("friction force\nexerted by the body", ["friction_force_(\\d+_)?[xyz]"]),
+    Panel("contact force\nexerted by the body", ["contact_force_(\\d+_)?[xyz]"]),
     Panel("reactions\non the body", ["reaction_(point|edge)?\\d+_[xyz]"]),
     Panel("loads on the body", ["load_[xyz]"]),
     AREA,
@@ -160,6 +170,10 @@ def label(name):
     match = re.fullmatch(r"(friction_force|contact_force|load)_([xyz])", name)
     if match:
         return f"${match.group(2)}$"
+    match = re.fullmatch(r"(?:friction|contact)_force_(\d+)_([xyz])", name)
+    if match:
+        where = quantities.place("boundary", match.group(1))
+        return f"on {where}, ${match.group(2)}$"
     match = re.fullmatch(r"reaction_(point|edge)(\d+)_([xyz])", name)
     if match:
         return f"support {match.group(1)} {match.group(2)}, ${match.group(3)}$"
@@ -183,6 +197,8 @@ def window(statistics, options):
         chosen &= t >= options.begin - slack
     if options.until is not None:
         chosen &= t <= options.until + slack
+    if options.log_time:
+        chosen &= t > 0.0
     if chosen.sum() < 2:
         raise NoPicture(
             "statistics.csv has fewer than two rows in that time: no history to draw"
@@ -190,13 +206,52 @@ def window(statistics, options):
     return {name: column[chosen] for name, column in statistics.items()}
 
 
+class Overlay:
+    """Another run over this one: its name and rows, in the units of this one."""
+
+    def __init__(self, results, options, of):
+        self.name = results.name
+        if results.name == of.name:
+            self.name = f"{results.directory.parent.name}/{results.name}"
+        mine, units = Units.of(of), Units.of(results)
+        factors = {}
+        for name in ("length", "time", "stress"):
+            here, there = (u.declared.get(name) for u in (mine, units))
+            both = [si(name, text) for text in (here, there) if text]
+            if (here is None) != (there is None) or None in both and here != there:
+                raise UserError(
+                    f"{of.name} and {results.name} have other units of {name}: one "
+                    "cannot be drawn over the other"
+                )
+            factors[name] = (
+                both[1] / both[0] if len(both) == 2 and here != there else 1.0
+            )
+        # The columns are scaled, expressions of them are not anymore.
+        self.statistics = {
+            name: values
+            * factor_of(quantities.column(name)[1], factors, mine.dimension)
+            for name, values in window(results.statistics, options).items()
+        }
+
+
+def factor_of(kind, factors, dimension):
+    exponents = powers(kind, dimension) if kind else (0, 0, 0)
+    sizes = [factors[name] for name in ("stress", "length", "time")]
+    return math.prod(size**power for size, power in zip(sizes, exponents))
+
+
 def draw(results, options):
-    statistics = window(results.statistics, options)
-    if options.columns:
-        # Columns that are joined by + share a panel.
-        groups = [group.split("+") for group in options.columns]
+    others = [Results(directory) for directory in options.overlay]
+    # Columns that are joined by + share a panel.
+    named = (derived.by_numbers(group, results.names) for group in options.columns or [])
+    groups = [derived.split(group, "+") for group in named]
+    for run in (results, *others):
+        dimension = Units.of(run).dimension
         for name in sum(groups, []):
-            results.column(name)
+            derived.add(run, name, dimension)
+    statistics = window(results.statistics, options)
+    others = [Overlay(run, options, results) for run in others]
+    if options.columns:
         panels = [
             (alone(group[0]), group) if len(group) == 1 else together(group)
             for group in groups
@@ -207,9 +262,10 @@ def draw(results, options):
         if len(sum(groups, [])) > len(names):
             one = panels[0][0].label if len(panels) == 1 else "some quantities"
             what = f"{one} over time"
-        return draw_panels(results, panels, statistics, what)
+        return draw_panels(results, panels, statistics, what, options, others)
     panels = those_with_something(PANELS, statistics)
-    return draw_panels(results, panels, statistics, "forces, energies, errors over time")
+    what = "forces, energies, errors over time"
+    return draw_panels(results, panels, statistics, what, options, others)
 
 
 def alone(name):
@@ -233,7 +289,7 @@ def those_with_something(panels, statistics):
     return [(panel, names) for panel, names in chosen if names]
 
 
-def draw_panels(results, panels, statistics, what):
+def draw_panels(results, panels, statistics, what, options, others=()):
     units = Units.of(results)
     time = units.unit("time", results.statistics["t"])
     columns = 1 if len(panels) < 4 else 2
@@ -247,11 +303,22 @@ def draw_panels(results, panels, statistics, what):
         row, column = divmod(i, columns)
         alone = i == len(panels) - 1 and column == 0  # takes the whole row
         axes = figure.add_subplot(grid[row, :] if alone else grid[row, column])
-        draw_panel(axes, panel, names, statistics, units)
+        runs = [("", statistics)]
+        if others:
+            runs = [(results.name, statistics)]
+            runs += [(other.name, other.statistics) for other in others]
+        draw_panel(axes, panel, names, runs, units)
         if panel is (QUANTITY if QUANTITY in [p for p, _ in panels] else ERROR):
             draw_tolerance(axes, results)
-        axes.set_xlim(*padded(statistics["t"]))
-        show(axes.xaxis, "time $t$", time)
+        ends = [run["t"] for _, run in runs]
+        if options.log_time:
+            axes.set_xscale("log")
+            axes.set_xlim(min(t.min() for t in ends), max(t.max() for t in ends))
+            style.numbers_on_logarithmic_axis(axes.xaxis, 1.0 / time.size)
+            axes.set_xlabel(time.label("time $t$"))
+        else:
+            axes.set_xlim(*padded(np.concatenate(ends)))
+            show(axes.xaxis, "time $t$", time)
         if row < rows - 1:
             axes.set_xlabel("")
         if row < rows - 1 and (row < rows - 2 or len(panels) % columns == 0):
@@ -274,7 +341,9 @@ def place_legend(axes, handles, labels):
 def draw_tolerance(axes, results):
     tolerance = float(results.data.get(("Error control", "Tolerance"), 0.0))
     if tolerance > 0.0:
-        axes.axhline(100.0 * tolerance, color="#222222", lw=1.0, ls=":", label="tolerance")
+        axes.axhline(
+            100.0 * tolerance, color="#222222", lw=1.0, ls=":", label="tolerance"
+        )
         handles, labels = axes.get_legend_handles_labels()
         if axes.get_legend():
             place_legend(axes, handles, labels)
@@ -302,37 +371,13 @@ def unit_of(panel, names, statistics, units):
     return units.unit(kind, values)
 
 
-def draw_panel(axes, panel, names, statistics, units):
-    t = statistics["t"]
-    few = len(t) < 12
-    scale = 1.0
-    if panel.share_of in statistics:
-        scale = 100.0 / max(finite(statistics[panel.share_of]).max(), 1e-300)
-    for i, name in enumerate(names):
-        values = scale * statistics[name].astype(float)
-        color, dashes = style.SERIES[i % 7], ("-", "--", ":", "-.")[i // 7 % 4]
-        if panel.logarithmic:
-            values = np.where(np.isfinite(values) & (values > 0.0), values, np.nan)
-        if name == "step_limit" and "k" in names:
-            # At first it may be that of nothing at all.
-            values = np.where(values < 1e3 * statistics["k"].max(), values, np.nan)
-        if name == "slip_area":
-            axes.fill_between(
-                t, values, step="pre", color=style.SLIP, alpha=0.2, lw=0
-            )
-            color = style.SLIP
-        if name == "stick_area":
-            color = style.OUTLINE
-        axes.plot(
-            t,
-            values,
-            color=color,
-            ls=dashes,
-            lw=1.4,
-            marker="." if few else None,
-            drawstyle="steps-pre" if panel.steps else "default",
-            label=label(name),
-        )
+def draw_panel(axes, panel, names, runs, units):
+    """Runs are (name, statistics), of which the first one says what is drawn, and
+    the others are dashed; without others it has no name."""
+    statistics = runs[0][1]
+    for number, (run, of_run) in enumerate(runs):
+        shown = [name for name in names if name in of_run]
+        draw_run(axes, panel, names, shown, of_run, run, number)
     unit = unit_of(panel, names, statistics, units)
     if panel.logarithmic:
         axes.set_yscale("log")
@@ -345,5 +390,46 @@ def draw_panel(axes, panel, names, statistics, units):
         else:
             axes.axhline(0.0, color="#aaaaaa", lw=0.6, zorder=0)
         show(axes.yaxis, panel.label, unit, integer=counted)
-    if len(names) > 1 or panel.columns != names:
+    if len(names) > 1 or panel.columns != names or len(runs) > 1:
         place_legend(axes, *axes.get_legend_handles_labels())
+
+
+def draw_run(axes, panel, names, shown, statistics, run, number):
+    """The lines of one run; with a name they are the run's."""
+    t = statistics["t"]
+    few = len(t) < 12
+    scale = 1.0
+    if panel.share_of in statistics:
+        scale = 100.0 / max(finite(statistics[panel.share_of]).max(), 1e-300)
+    for name in shown:
+        i = names.index(name)
+        values = scale * statistics[name].astype(float)
+        dashes = ("-", "--", ":", "-.")[(i // 7 + number) % 4]
+        color = style.SERIES[i % 7]
+        if panel.logarithmic:
+            values = np.where(np.isfinite(values) & (values > 0.0), values, np.nan)
+        if name == "step_limit" and "k" in names:
+            # At first it may be that of nothing at all.
+            values = np.where(values < 1e3 * statistics["k"].max(), values, np.nan)
+        if name == "slip_area" and number == 0:
+            axes.fill_between(t, values, step="pre", color=style.SLIP, alpha=0.2, lw=0)
+        if name == "slip_area":
+            color = style.SLIP
+        if name == "stick_area":
+            color = style.OUTLINE
+        axes.plot(
+            t,
+            values,
+            color=color,
+            ls=dashes,
+            lw=1.4,
+            marker="." if few else None,
+            drawstyle="steps-pre" if panel.steps else "default",
+            label=(
+                quantities.plain(run)
+                if run and len(names) == 1
+                else f"{label(name)}, {quantities.plain(run)}"
+                if run
+                else label(name)
+            ),
+        )

@@ -64,7 +64,10 @@ def displacements(results, statistics):
         if (role, key[1]) == ("displacement", "Displacement"):
             name, symbol = f"boundary{match.group(1)}", "displacement of {}"
         elif (role, key[1]) == ("contact", "Foundation motion"):
-            name, symbol = f"foundation{match.group(1)}", "motion of the foundation at {}"
+            name, symbol = (
+                f"foundation{match.group(1)}",
+                "motion of the foundation at {}",
+            )
         else:
             continue
         for axis, component in zip("xyz", text.split(";")):
@@ -93,6 +96,12 @@ def forces(statistics):
         if match:
             found[name] = values, (
                 f"{match.group(1)} force exerted by the body, $F_{match.group(2)}$"
+            )
+        match = re.fullmatch(r"(friction|contact)_force_(\d+)_([xyz])", name)
+        if match:
+            found[name] = values, (
+                f"{match.group(1)} force on {place('boundary', match.group(2))}, "
+                f"$F_{match.group(3)}$"
             )
         match = re.fullmatch(r"reaction_(\d+)_([xyz])", name)
         if match:
@@ -167,9 +176,14 @@ def draw(results, options):
     )
     if displacement is None:
         raise NoPicture("no displacement changes in that time: no loop to draw")
-    for name, found in ((force, possible_forces), (displacement, possible_displacements)):
+    for name, found in (
+        (force, possible_forces),
+        (displacement, possible_displacements),
+    ):
         if not np.isfinite(found[name][0]).all():
-            raise NoPicture(f"{name} is not finite at all of that time: no loop to draw")
+            raise NoPicture(
+                f"{name} is not finite at all of that time: no loop to draw"
+            )
     return draw_loop(
         results,
         statistics["t"],

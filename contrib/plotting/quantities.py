@@ -45,6 +45,11 @@ COLUMNS = [
     ("contact_area", "part of the face that touches", "area"),
     ("friction_force_([xyz])", "friction force exerted by the body, ${0}$", "force"),
     ("contact_force_([xyz])", "contact force exerted by the body, ${0}$", "force"),
+    (
+        r"(friction|contact)_force_(\d+)_([xyz])",
+        "{0} force of the body on {boundary}, ${2}$",
+        "force",
+    ),
     ("max_pressure", "largest contact pressure", "stress"),
     ("max_gap", "largest gap", "length"),
     (r"reaction_(\d+)_([xyz])", "reaction of {boundary} on the body, ${1}$", "force"),
@@ -56,7 +61,7 @@ COLUMNS = [
     ("load_([xyz])", "load on the body, ${0}$", "force"),
     (r"point(\d+)_([xyz])", "displacement of {point}, ${1}$", "length"),
     ("max_displacement", "largest displacement", "length"),
-    ("max_stick_slip", None, "length"),
+    ("max_stick_slip|max_slip", None, "length"),
     ("critical_cell_[xyz]", None, "length"),
     ("max_von_mises", "largest von Mises stress", "stress"),
     ("mean_von_mises", "mean von Mises stress", "stress"),
@@ -70,6 +75,8 @@ COLUMNS = [
     (r"integral_boundary_\d+_traction_[xyz]", None, "force"),
     (r"integral_boundary_\d+_displacement_[xyz]", None, "volume"),
     (r"integral_(?:body|material_\d+)_stress_\w+", None, "energy"),
+    ("stress_norm", None, "stress norm"),
+    ("velocity_variation", None, "rate norm"),
     (r"estimate_\w+|estimator|energy_norm|error_energy", None, "energy norm"),
     ("exact_energy|error_memory|time_indicator", None, "energy norm"),
 ]
@@ -111,8 +118,15 @@ def field(name):
     return plain(name), None
 
 
+# The kinds of units of expressions of columns, see derived.py.
+derived = {}
+
+
 def column(name):
     """(label, kind of unit) of a column of statistics.csv."""
+    if name in derived:
+        words = name.replace("_", " ").replace("/", " / ").replace("*", " · ")
+        return plain(words), derived[name]
     if re.fullmatch("wall_.*", name):
         return plain(f"seconds, {name[5:]}"), None
     words = plain(re.sub("^max_", "largest ", name).replace("_", " "))
@@ -120,7 +134,7 @@ def column(name):
         match = re.fullmatch(pattern, name)
         if match:
             places = {
-                kind: place(kind, match.group(1))
+                kind: place(kind, next(filter(str.isdigit, match.groups())))
                 for kind in ("boundary", "point")
                 if f"{{{kind}}}" in (template or "")
             }

@@ -30,8 +30,18 @@ DERIVED = {
 }
 
 
+# Kinds whose units have names; those of others are written as products of powers.
+KINDS = (
+    *("stress", "length", "time", "area", "volume", "force", "energy"),
+    *("surface energy", "force density", "energy norm", "velocity", "rate"),
+)
+
+
 def powers(kind, dimension):
-    """Of stress, length and time in the unit of a kind of quantity."""
+    """Of stress, length and time in the unit of a kind of quantity, or of these
+    powers themselves."""
+    if isinstance(kind, tuple):
+        return kind
     return {
         "stress": (1, 0, 0),
         "length": (0, 1, 0),
@@ -43,6 +53,8 @@ def powers(kind, dimension):
         "surface energy": (1, 1, 0),
         "force density": (1, -1, 0),
         "energy norm": (0.5, 0.5 * dimension, 0),
+        "stress norm": (1, 0.5 * dimension, 0),
+        "rate norm": (0.5, 0.5 * dimension, -0.5),
         "velocity": (0, 1, -1),
         "rate": (0, 0, -1),
     }[kind]
@@ -127,7 +139,7 @@ class Units:
             return Unit(10.0**power, ten(power))
         if kind in self.declared and (largest == 0.0 or 1.0 <= largest < 1e4):
             return Unit(1.0, self.declared[kind])
-        if all(name in self.known for name in needed):
+        if kind in KINDS and all(name in self.known for name in needed):
             return self.multiple(kind, largest)
         return Unit(10.0**power, ten(power, self.composed(kind)))
 

@@ -53,7 +53,8 @@ def main(arguments=None):
     style.set_up()
     try:
         kind = written.kind_of(options.results)
-        page = (written if kind else run).page(options.results)
+        is_written = kind and not written.has_run(options.results)
+        page = (written if is_written else run).page(options.results)
         directory = options.results.resolve()
         path = options.output or directory / f"{kind or directory.name}.html"
         path.write_text(page.html(), encoding="utf-8")

@@ -40,6 +40,24 @@
     return found;
   }
 
+  // Numbers on a logarithmic axis of time, from and to powers of ten.
+  function timesBetween(low, high) {
+    const steps = high - low < 2.5 ? [1, 2, 5] : [1];
+    const found = [];
+    for (let i = Math.floor(low); i <= high; ++i)
+      for (const s of steps) {
+        const power = i + Math.log10(s);
+        if (power >= low - 1e-9 && power <= high + 1e-9) found.push(power);
+      }
+    const every = Math.ceil(found.length / 8);
+    return found.filter((_, i) => i % every === 0);
+  }
+
+  let isLogarithmicInTime = false;
+  const firstTime = times.find((t) => t > 0);
+  const place = (t) => (isLogarithmicInTime ? Math.log10(Math.max(t, firstTime)) : t);
+  const timeAt = (x) => (isLogarithmicInTime ? 10 ** x : x);
+
   function decades(low, high) {
     const found = [];
     const every = Math.max(1, Math.ceil((high - low) / 5));
@@ -102,9 +120,9 @@
       const width = this.svg.clientWidth, height = this.svg.clientHeight;
       if (!width || !height) return;
       const { lines, logarithmic, steps, limit } = this.about;
-      const first = times[0], last = times[times.length - 1];
+      const first = place(times[0]), last = place(times[times.length - 1]);
       const [low, high] = this.range();
-      this.x = (t) => LEFT + ((width - LEFT - RIGHT) * (t - first)) / (last - first || 1);
+      this.x = (t) => LEFT + ((width - LEFT - RIGHT) * (place(t) - first)) / (last - first || 1);
       const y = (v) => TOP + ((height - TOP - BOTTOM) * (high - v)) / (high - low);
       this.svg.replaceChildren();
       this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -114,7 +132,8 @@
         const text = make(this.svg, "text", { x: LEFT - 5, y: y(v) + 4, "text-anchor": "end" });
         text.textContent = logarithmic ? written(10 ** v) : written(v);
       }
-      for (const t of roundNumbers(first, last, Math.max(2, width / 90))) {
+      const inTime = isLogarithmicInTime ? timesBetween(first, last) : roundNumbers(first, last, Math.max(2, width / 90));
+      for (const t of inTime.map(timeAt)) {
         make(this.svg, "line", { class: "grid", x1: this.x(t), x2: this.x(t), y1: height - BOTTOM, y2: height - BOTTOM + 4 });
         const text = make(this.svg, "text", { x: this.x(t), y: height - BOTTOM + 16, "text-anchor": this.x(t) > width - 24 ? "end" : "middle" });
         text.textContent = written(t);
@@ -123,7 +142,7 @@
         if (this.hidden.has(i)) return;
         let path = "", pen = false;
         line.values.forEach((value, row) => {
-          if (value === null) { pen = false; return; }
+          if (value === null || (isLogarithmicInTime && times[row] <= 0)) { pen = false; return; }
           const at = y(logarithmic ? Math.log10(value) : value).toFixed(1);
           const t = this.x(times[row]).toFixed(1);
           // The value of a step is that since the end of the one before.
@@ -141,8 +160,8 @@
     point(event) {
       const box = this.svg.getBoundingClientRect();
       const share = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
-      const t = times[0] + share * (times[times.length - 1] - times[0]);
-      show(t);
+      const first = place(times[0]), last = place(times[times.length - 1]);
+      show(timeAt(first + share * (last - first)));
     }
 
     mark(row) {
@@ -166,6 +185,18 @@
     for (const panel of panels) panel.mark(current);
   }
 
+  // Where times are of several orders of magnitude.
+  if (times[times.length - 1] > 20 * firstTime) {
+    const label = html(document.getElementById("panels"), "label", "", "wide");
+    const check = html(label, "input");
+    check.type = "checkbox";
+    check.id = "logarithmic-time";
+    html(label, "span", " logarithmic axis of time");
+    check.addEventListener("change", () => {
+      isLogarithmicInTime = check.checked;
+      for (const panel of panels) panel.draw();
+    });
+  }
   const panels = data.panels.map((about) => new Panel(document.getElementById("panels"), about));
   document.addEventListener("time-of-body", (event) => show(event.detail / data.time.size));
 })();

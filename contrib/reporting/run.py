@@ -25,7 +25,7 @@ def page(directory):
     results = Results(directory)
     quantities.names_of_places = results.names
     about, units = info(results), Units.of(results)
-    found = Page(results.name)
+    found = Page(name_of(results))
     found.add(summary(results, about, units))
     found.add(remarks(results, about))
     found.add(view(results, found))
@@ -37,9 +37,19 @@ def page(directory):
     found.add(again(results, about))
     for name, title in written.TITLES.items():
         inner = results.directory / name
+        if written.has_run(results.directory):
+            inner = results.directory
         if (inner / f"{name}.md").exists():
             found.add(section(name, title, folded_up("Show", written.content(inner))))
     return found
+
+
+def name_of(results):
+    """The run of a price is in a directory below that of its scene."""
+    directory = results.directory
+    if written.has_run(directory):
+        return f"{directory.parent.name}: {directory.name}"
+    return results.name
 
 
 def summary(results, about, units):

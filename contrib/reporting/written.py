@@ -32,6 +32,12 @@ def kind_of(directory):
     return None
 
 
+def has_run(directory):
+    """Whether the directory of a price has the run, too, for which that has been paid."""
+    price = directory / "price.md"
+    return price.exists() and "The prediction:" in price.read_text(encoding="utf-8")
+
+
 def page(directory):
     kind = kind_of(directory)
     found = Page(f"{directory.resolve().parent.name}: {kind}")

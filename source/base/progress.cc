@@ -30,7 +30,8 @@ namespace Viscoplastic
           "  contact iterations " + std::to_string(*step.contact_iterations);
       if (step.slipping)
         text += "  slipping " +
-                std::to_string(std::lround(100. * *step.slipping)) + " %";
+                std::to_string(std::lround(100. * *step.slipping)) + " %" +
+                (step.slip_rate.empty() ? "" : " at " + step.slip_rate);
       if (step.error_estimate)
         text += "  error estimate " + number(*step.error_estimate, 3);
       if (step.relative_error)

@@ -38,6 +38,7 @@ namespace Viscoplastic
       }
     if (any_gives_way)
       make_compliance();
+    make_area_shares();
   }
 
 
@@ -269,6 +270,37 @@ namespace Viscoplastic
             face_restriction.add_compliance(p,
                                             stiffness[p],
                                             condition.compliance_exponent);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ContactFace<dim>::make_area_shares()
+  {
+    for (const auto &[id, condition] : space.scene.boundary)
+      if (condition.has_contact_points())
+        area_shares[id];
+    if (area_shares.size() < 2)
+      area_shares.clear();
+    for (auto &[id, part] : area_shares)
+      {
+        const BoundaryCondition<dim> *const condition =
+          &space.scene.boundary.at(id);
+        const auto is_here = [condition](const Sample &sample) {
+          return sample.condition == condition ? 1. : 0.;
+        };
+        part = sum_shares(is_here);
+        part.resize(point_weights.size());
+        const std::vector<double> of_obstacles =
+          any_obstacles ? sum_shares(is_here, true) : part;
+        for (unsigned int p = 0; p < part.size(); ++p)
+          {
+            if (layout().points[p].is_obstacle)
+              part[p] = of_obstacles[p];
+            part[p] = point_weights[p] > 0. ? part[p] / point_weights[p] : 0.;
+          }
       }
   }
 

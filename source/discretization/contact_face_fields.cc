@@ -41,6 +41,29 @@ namespace Viscoplastic
 
 
   template <int dim>
+  std::map<types::boundary_id, typename ContactFace<dim>::BoundaryForces>
+  ContactFace<dim>::forces_by_boundary(const ContactState &state) const
+  {
+    std::map<types::boundary_id, BoundaryForces> result;
+    for (const auto &[id, part] : area_shares)
+      {
+        BoundaryForces &forces = result[id];
+        for (unsigned int p = 0; p < part.size(); ++p)
+          if (part[p] != 0.)
+            (layout().points[p].is_obstacle ? forces.contact :
+                                              forces.friction) +=
+              part[p] * cartesian(p, state.multiplier[p]);
+        forces.friction =
+          Utilities::MPI::sum(forces.friction, space.communicator);
+        forces.contact =
+          Utilities::MPI::sum(forces.contact, space.communicator);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
   Tensor<1, dim>
   ContactFace<dim>::resultant_on_foundations(const ContactState &state) const
   {
@@ -230,6 +253,9 @@ namespace Viscoplastic
     const;                                                                   \
   template Tensor<1, dim> ContactFace<dim>::resultant(const ContactState &,  \
                                                       const bool) const;     \
+  template std::map<types::boundary_id,                                      \
+                    typename ContactFace<dim>::BoundaryForces>               \
+  ContactFace<dim>::forces_by_boundary(const ContactState &) const;          \
   template Tensor<1, dim> ContactFace<dim>::resultant_on_foundations(        \
     const ContactState &) const;                                             \
   template std::vector<Tensor<1, 2>> ContactFace<dim>::slips(                \

@@ -195,6 +195,7 @@ namespace Viscoplastic
         else
           {
             result.slip_area += weight;
+            result.max_slip = std::max(result.max_slip, size);
             // Below this, the direction is rounding.
             if (state.bound[p] > 0. && size > 1e-7 * max_displacement)
               result.slip_misalignment =
@@ -213,7 +214,8 @@ namespace Viscoplastic
       *sum = Utilities::MPI::sum(*sum, communicator);
     for (double *const maximum : {&result.max_utilization,
                                   &result.max_stick_slip,
-                                  &result.slip_misalignment})
+                                  &result.slip_misalignment,
+                                  &result.max_slip})
       *maximum = Utilities::MPI::max(*maximum, communicator);
     return result;
   }

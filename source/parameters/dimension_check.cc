@@ -387,7 +387,11 @@ namespace Viscoplastic
           if (dimension && wanted && !(*dimension == *wanted))
             return "'" + excerpt(Utilities::trim(part)) + "' is " +
                    in_words(*dimension) + ", but it must be " +
-                   in_words(*wanted);
+                   in_words(*wanted) +
+                   (dimension->length == wanted->length &&
+                        dimension->stress == wanted->stress ?
+                      "; t has a unit here, t/(1 h) has none" :
+                      "");
         }
       catch (const Contradiction &contradiction)
         {

@@ -135,13 +135,15 @@ namespace Viscoplastic
                           const std::vector<std::string> &remarks) const
   {
     fail_together(communicator, [&]() {
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        write_record(scene,
-                     path,
-                     Utilities::MPI::n_mpi_processes(communicator),
-                     &summary,
-                     &costs,
-                     remarks);
+      if (Utilities::MPI::this_mpi_process(communicator) != 0)
+        return;
+      write_record(scene,
+                   path,
+                   Utilities::MPI::n_mpi_processes(communicator),
+                   &summary,
+                   &costs,
+                   remarks);
+      remove_files_of_earlier_run();
     });
   }
 
@@ -158,33 +160,62 @@ namespace Viscoplastic
     for (const std::string &name : names)
       {
         write_pvd(name);
-        remove_later(name);
+        remove_others(name, times.size());
       }
   }
 
 
 
   template <int dim>
-  void
-  Output<dim>::remove_later(const std::string &name) const
+  std::size_t
+  Output<dim>::remove_others(const std::string &name,
+                             const std::size_t  n_outputs) const
   {
     if (Utilities::MPI::this_mpi_process(communicator) != 0)
-      return;
+      return 0;
     namespace fs = std::filesystem;
-    const std::regex      piece(name +
+    const std::regex piece(name +
                            "_([0-9]{5,9})[.](pvtu|[0-9]+[.]vtu)([.]part)?");
-    std::vector<fs::path> later;
+    // Earlier parts of a run may have had other ranks, and so other pieces.
+    const auto is_listed = [&](const std::string &record,
+                               const std::string &file) {
+      std::ifstream     list(path + record + ".pvtu");
+      std::stringstream text;
+      text << list.rdbuf();
+      return text.str().find('"' + file + '"') != std::string::npos;
+    };
+    std::vector<fs::path> others;
     std::error_code       error;
     for (const auto &entry : fs::directory_iterator(path, error))
       {
         const std::string file = entry.path().filename().string();
         std::smatch       parts;
-        if (std::regex_match(file, parts, piece) &&
-            std::stoul(parts[1]) >= times.size())
-          later.push_back(entry.path());
+        if (!std::regex_match(file, parts, piece))
+          continue;
+        const auto n = static_cast<unsigned int>(std::stoul(parts[1]));
+        if (n >= n_outputs ||
+            (parts[2] != "pvtu" && !is_listed(record_name(name, n), file)))
+          others.push_back(entry.path());
       }
-    for (const fs::path &file : later)
+    for (const fs::path &file : others)
       fs::remove(file, error);
+    return others.size();
+  }
+
+
+
+  template <int dim>
+  void
+  Output<dim>::remove_files_of_earlier_run() const
+  {
+    for (const auto &[name, n_outputs] :
+         {std::make_pair("solution", times.size()),
+          std::make_pair("boundary", std::min<std::size_t>(1, times.size())),
+          std::make_pair("contact", scene.has_contact() ? times.size() : 0)})
+      if (std::error_code none;
+          remove_others(name, n_outputs) > 0 && n_outputs == 0)
+        std::filesystem::remove(path + name + ".pvd", none);
+    remove_other_lines(path, scene.output_lines.size());
   }
 
 

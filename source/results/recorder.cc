@@ -160,6 +160,8 @@ namespace Viscoplastic
             run.slip_area.value == 0.)
           run.friction_area = friction.slip_area + friction.stick_area;
         run.slip_area.update(friction.slip_area, t);
+        if (step.time_step.k > 0.)
+          run.slip_rate.update(friction.max_slip / step.time_step.k, t);
         run.utilization.update(friction.max_utilization, t);
       }
     if (scene.is_adaptive() && !has_error_estimate)
@@ -223,6 +225,13 @@ namespace Viscoplastic
         present.contact_iterations = step.report.iterations;
         if (area > 0.)
           present.slipping = friction.slip_area / area;
+        if (friction.max_slip > 0.)
+          {
+            std::ostringstream rate;
+            rate << std::setprecision(2) << friction.max_slip / time_step.k
+                 << scene.unit(Quantity::velocity);
+            present.slip_rate = rate.str();
+          }
       }
     if (scene.is_adaptive() && !has_error_estimate)
       present.error_estimate = quantities.refinement_estimate;

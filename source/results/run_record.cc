@@ -78,6 +78,27 @@ namespace Viscoplastic
           return line.substr(colon + 2);
       return "unknown";
     }
+
+
+
+    constexpr const char *beginning_of_lines = "step,t,s,x,y,";
+
+
+
+    /// Whether a file begins as one of this program does.
+    bool
+    is_own(const std::string &name, const std::string &beginning)
+    {
+      std::ifstream file(name, std::ios::binary);
+      std::string   text(200, ' ');
+      file.read(text.data(), static_cast<std::streamsize>(text.size()));
+      text.resize(file.gcount());
+      // Columns may have units.
+      static const std::regex label(" \\[[^\\]\n]*\\]?");
+      text = std::regex_replace(text, label, "").substr(0, beginning.size());
+      // It may be cut short.
+      return file.is_open() && beginning.compare(0, text.size(), text) == 0;
+    }
   } // namespace
 
 
@@ -90,26 +111,31 @@ namespace Viscoplastic
       {"run.json", "{\n  \"program\": \"viscoplastic_contact\""},
       {"statistics.csv", "step,t,k,"}};
     for (std::size_t i = 0; i < n_lines; ++i)
-      own.emplace_back(line_file_name(i), "step,t,s,x,y,");
+      own.emplace_back(line_file_name(i), beginning_of_lines);
     for (const auto &[name, beginning] : own)
       {
         std::error_code none;
         if (!std::filesystem::is_regular_file(path + name, none))
           continue;
-        std::ifstream file(path + name, std::ios::binary);
-        std::string   text(200, ' ');
-        file.read(text.data(), static_cast<std::streamsize>(text.size()));
-        text.resize(file.gcount());
-        // Columns may have units.
-        static const std::regex label(" \\[[^\\]\n]*\\]?");
-        text = std::regex_replace(text, label, "").substr(0, beginning.size());
-        // It may be cut short.
-        AssertThrow(file.is_open() &&
-                      beginning.compare(0, text.size(), text) == 0,
+        AssertThrow(is_own(path + name, beginning),
                     ExcMessage("The results would overwrite '" + path + name +
                                "', which this program has not written; "
                                "choose another 'Output/Directory'."));
       }
+  }
+
+
+
+  void
+  remove_other_lines(const std::string &path, std::size_t n_lines)
+  {
+    std::error_code none;
+    for (std::string name; name = path + line_file_name(n_lines),
+                           std::filesystem::is_regular_file(name, none) &&
+                             is_own(name, beginning_of_lines) &&
+                             std::filesystem::remove(name, none);
+         ++n_lines)
+      {}
   }
 
 

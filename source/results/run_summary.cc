@@ -126,6 +126,10 @@ namespace Viscoplastic
                     number(run.friction_area) +
                     units.suffix(Quantity::area, dim) +
                     " at t = " + with.time(run.slip_area.t));
+      if (run.slip_rate.value > 0.)
+        print_row(out,
+                  "slip rate",
+                  with.at_time(run.slip_rate, Quantity::velocity));
       if (run.capped_volume.value > 0.)
         print_row(out,
                   "volume beyond the cap",

@@ -167,6 +167,22 @@ namespace Viscoplastic
                         0.);
           }
       }
+    for (const auto &[id, forces] : quantities.contact_forces)
+      {
+        const BoundaryCondition<dim> &condition = scene.boundary.at(id);
+        if (condition.has_friction())
+          row.add_vector("friction_force_" + std::to_string(id),
+                         forces.friction,
+                         dim,
+                         Quantity::force,
+                         AtEnd::printed);
+        if (condition.is_unilateral())
+          row.add_vector("contact_force_" + std::to_string(id),
+                         forces.contact,
+                         dim,
+                         Quantity::force,
+                         AtEnd::printed);
+      }
     for (const auto &[id, force] : quantities.reactions)
       row.add_vector("reaction_" + name_in_columns(id),
                      force,
@@ -179,6 +195,7 @@ namespace Viscoplastic
       {
         row.add("max_utilisation", friction.max_utilization);
         row.add("max_stick_slip", friction.max_stick_slip, Quantity::length);
+        row.add("max_slip", friction.max_slip, Quantity::length);
         row.add("slip_misalignment", friction.slip_misalignment);
       }
     row.add("stored_energy",

@@ -119,6 +119,7 @@ namespace Viscoplastic
                                          change,
                                          result.max_displacement);
         result.friction_force = d.face->resultant(state.contact);
+        result.contact_forces = d.face->forces_by_boundary(state.contact);
         if (d.face->has_obstacles())
           result.contact = summarize_contact(*d.face,
                                              old.state.contact,

@@ -202,13 +202,17 @@ namespace Viscoplastic
   PlaceNames::words(const std::string &column) const
   {
     static const std::regex reaction("reaction_(\\d+)"), point("point(\\d+)"),
-      field("point(\\d+)_(.*)"), other_reaction("reaction_(.*)");
+      field("point(\\d+)_(.*)"), other_reaction("reaction_(.*)"),
+      foundation("(friction|contact)_force_(\\d+)");
     std::smatch match;
     const auto  place = [&](const std::string &kind) {
       return of(kind, static_cast<unsigned int>(std::stoul(match[1])));
     };
     if (std::regex_match(column, match, reaction))
       return "reaction of " + place("boundary");
+    if (std::regex_match(column, match, foundation))
+      return match[1].str() + " force on " +
+             of("boundary", static_cast<unsigned int>(std::stoul(match[2])));
     if (std::regex_match(column, match, point))
       return "displacement of " + place("point");
     std::string text = column;

@@ -326,19 +326,8 @@ namespace Viscoplastic
                                       "elasticity (axisymmetric)" :
                                     dim == 2 ? "elasticity (plane strain)" :
                                                "elasticity (3D)"};
-    // Of scenes that are older than a default and leave it to the program.
-    const auto earlier = [&](const std::string &entry,
-                             const std::string &choice) {
-      return parameters.origin_of(entry).empty() ?
-               " (default; '" + entry + "' = " + choice +
-                 " in earlier versions)" :
-               "";
-    };
-    const std::string history =
-                        name_of(parameters.stress.stress_history) +
-                        earlier("Material/Stress history", "cell means"),
-                      pressure = "the computed pressure" +
-                                 earlier("Solver/Coulomb pressure", "lagged");
+    const std::string history  = name_of(parameters.stress.stress_history),
+                      pressure = "the computed pressure";
     for (const auto &material : materials)
       {
         const std::string of =
@@ -461,6 +450,33 @@ namespace Viscoplastic
     else if (is_adaptive())
       result.push_back("adaptive mesh (" +
                        name_of(parameters.refinement.strategy) + " estimator)");
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  Scene<dim>::changed_defaults() const
+  {
+    std::vector<std::string> result;
+    const auto               add = [&](const std::string &entry,
+                         const std::string &present,
+                         const std::string &earlier) {
+      if (parameters.origin_of(entry).empty())
+        result.push_back("'" + entry + "' = " + present + " (was " + earlier +
+                         ")");
+    };
+    if (has_viscosity())
+      add("Material/Stress history",
+          name_of(parameters.stress.stress_history),
+          "cell means");
+    if (std::any_of(boundary.begin(), boundary.end(), [](const auto &pair) {
+          return pair.second.has_computed_pressure();
+        }))
+      add("Solver/Coulomb pressure",
+          name_of(parameters.solver.coulomb_pressure),
+          "lagged");
     return result;
   }
 

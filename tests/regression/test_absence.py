@@ -14,6 +14,7 @@ FRICTION = {
     "friction_force_x",
     "max_utilisation",
     "max_stick_slip",
+    "max_slip",
     "slip_misalignment",
     "friction_dissipation",
 }

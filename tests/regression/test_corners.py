@@ -259,6 +259,16 @@ class Corners(TestCase):
                 for name in "contact_force_x", "contact_force_y":
                     # side x = 1 is held in x, on y = 0, too
                     self.assertClose(result[name], pressed, relative=1e-7, what=name)
+                # Each foundation has the force along its own normal.
+                for boundary, axis in ((0, 0), (2, 1)):
+                    force = result.vector(f"contact_force_{boundary}")
+                    expected = np.outer(pressed, np.eye(3)[axis])
+                    self.assertClose(force, expected, absolute=1e-9)
+                parts = [result.vector(f"friction_force_{i}") for i in (0, 2)]
+                self.assertClose(parts[0][:, 2], -0.5 * pressed, absolute=1e-9)
+                self.assertClose(
+                    sum(parts), result.vector("friction_force"), absolute=1e-12
+                )
                 self.check_identities(result)
                 self.assertLess(result["contact_iterations"].max(), 8)
                 self.assertEqual(result["bound_iterations"].max(), 0)

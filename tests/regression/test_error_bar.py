@@ -123,8 +123,8 @@ class LongCreep(TestCase):
     def test_quadrature_points_by_default(self):
         result, effectivity = self.compared(2)
         self.assertIn(
-            "history at quadrature points (default; 'Material/Stress history' = cell "
-            "means in earlier versions)",
+            "Changed defaults: 'Material/Stress history' = quadrature points (was cell "
+            "means)\n",
             result.stdout,
         )
         self.assertNotIn("estimate_history", result.statistics)
@@ -146,7 +146,7 @@ class LongCreep(TestCase):
         self.assertGreater(record["history"], record["space"])
         self.assertIn("mesh, in the history", result.stdout)
         # a scene that says what it wants is told nothing
-        self.assertNotIn("earlier versions", result.stdout)
+        self.assertNotIn("Changed defaults", result.stdout)
 
     def test_quantity_to_a_tolerance(self):
         """A point remembers what rates have been wrong by."""

@@ -223,7 +223,8 @@ class Voice(Manners):
         self.assertNotIn("\r", text)
         self.assertNotIn("\033", text)
         steps = re.findall(r"^Step (\d+)/4  t = \S+  k = 0\.25  cells 8  contact "
-                           r"iterations \d+  slipping \d+ %  error estimate \S+ %  "
+                           r"iterations \d+  slipping \d+ %(?: at \S+)?  error estimate "
+                           r"\S+ %  "
                            r"elapsed \S+ s  left", text, re.M)
         self.assertEqual(steps, ["1", "2", "3", "4"])
 
@@ -343,6 +344,9 @@ class Voice(Manners):
                 relative=1e-4,
                 what=name,
             )
+        slips = zip(self.column(results, "max_slip"), self.column(results, "k"))
+        fastest = max(slip / k for slip, k in slips if k > 0)
+        self.assertClose(float(words("slip rate").split()[0]), fastest, relative=1e-4)
         # The loaded side moves most.
         self.assertRegex(words("displacement"), r"at t = 1, x = \(0 0\.5\)$")
         self.assertRegex(words("von Mises stress"), r"at t = 1, x = \(\S+ \S+\)$")

@@ -40,6 +40,7 @@ STATISTICS_2D = [
     "force_balance_defect",
     "max_utilisation",
     "max_stick_slip",
+    "max_slip",
     "slip_misalignment",
     "stored_energy",
     "strain_energy",
@@ -313,6 +314,53 @@ class Choices(TestCase):
         # the third is glued
         self.assertClose(result.vector("point2"), 0, absolute=1e-15)
         self.assertGreater(abs(result["point1_x"]).max(), 0)
+
+    def test_forces_on_two_parts_of_a_plane(self):
+        """The node between them counts by halves: all slips, at one bound."""
+        bound, scene = 1e-3, {**self.SMALL, "Boundary 2/Friction bound": 1e-3}
+        scene["Geometry/Boundary ids"] = "if(id == 2 && x > 0.5, 4, id)"
+        scene["Boundary 4/Role"] = "contact"
+        scene["Boundary 4/Friction law"] = "tresca"
+        scene["Boundary 4/Friction bound"] = bound
+        for ranks in 1, 3:
+            result = run("slab", scene, ranks)
+            (row,) = np.flatnonzero(np.isclose(result["t"], 1))
+            self.assertEqual(result["stick_area"][row], 0)
+            for boundary, length in ((2, 0.5), (4, 1.5)):
+                force = result[f"friction_force_{boundary}_x"][row]
+                self.assertClose(force, bound * length, relative=1e-12)
+            self.assertGreater(result["max_slip"][row], 0)
+            self.assertNotIn("contact_force_2_x", result.statistics)
+
+    def test_nothing_is_left_of_an_earlier_run(self):
+        """Outputs that are more, or of more ranks, or of contact, or of lines, go; what
+        somebody else has put there stays."""
+        with tempfile.TemporaryDirectory() as place:
+            scene = {**self.SMALL, "Output/Directory": place}
+            lines = "0, 0 : 2, 0 : 3; 0, 1 : 2, 1 : 3; 1, 0 : 1, 1 : 3"
+
+            def files(ranks=1, **more):
+                run("slab", {**scene, **more}, ranks)
+                return {path.name for path in Path(place).iterdir()}
+
+            before = files(3, **{"Output/Fields every": 1, "Output/Lines": lines})
+            self.assertLessEqual({"solution_00032.2.vtu", "line_2.csv"}, before)
+            foreign = {"solution_of_mine.vtu", "line_4.csv", "contact_1.pvtu"}
+            for name in foreign:
+                (Path(place) / name).write_text("mine\n")
+            after = files(**{"Output/Fields every": 16, "Output/Lines": lines[:15]})
+            self.assertLessEqual(foreign, after)
+            expected = {"parameters.prm", "run.json", "statistics.csv", "line_0.csv"}
+            expected |= {"boundary_00000.0.vtu", "boundary_00000.pvtu"}
+            for series in "solution", "contact":
+                expected.add(f"{series}.pvd")
+                for n in range(3):
+                    expected |= {f"{series}_{n:05}.{e}" for e in ("pvtu", "0.vtu")}
+            self.assertEqual(after - foreign, expected)
+            roles = {f"Boundary {i}/Role": "clamped" for i in range(4)}
+            run("square", {"Output/Directory": place, **roles}, text="")
+            free = [path.name for path in Path(place).glob("contact*")]
+            self.assertEqual(free, ["contact_1.pvtu"])
 
     def test_default_directory_is_named_after_the_scene(self):
         result = run("slab", {**self.SMALL, "Output/Directory": ""})

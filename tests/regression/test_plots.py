@@ -2,6 +2,8 @@
 """contrib/plot: its numbers on made-up data, its pictures on real results."""
 
 import itertools
+import json
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -23,13 +25,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from plotting import (
     contact,
+    derived,
     efficiency,
     errors,
+    faces,
     fields,
     geometry,
     history,
     hysteresis,
     overview,
+    quantities,
     stick_slip,
     style,
 )
@@ -591,10 +596,100 @@ class Numbers(TestCase):
             names, ["estimate_space", "estimate_time", "estimate_total"]
         )
         figure, axes = plt.subplots()
-        history.draw_panel(axes, panel, names, statistics, Units())
+        history.draw_panel(axes, panel, names, [("", statistics)], Units())
         tops = [line.get_ydata().max() for line in axes.get_lines()[:3]]
         self.assertClose(np.array(tops), np.array([3.0, 1.0, 4.0]), 1e-12)
         plt.close(figure)
+
+    def with_columns(self, **columns):
+        """Results that have nothing but these columns."""
+        text = ",".join(columns) + "\n"
+        text += "".join(",".join(map(str, row)) + "\n" for row in zip(*columns.values()))
+        return Results(self.folder(statistics_csv=text))
+
+    def test_expressions_of_columns(self):
+        """Values, and the units that follow: of forces, of energies over volumes."""
+        results = self.with_columns(
+            t=[0, 1, 2],
+            friction_force_x=[0, 1, 3],
+            contact_force_y=[0, -2, -4],
+            stored_energy=[0, 1, 2],
+            volume_body=[4, 4, 4],
+            point0_x=[0, 0.5, 0.5],
+        )
+        for text, kind, last in (
+            ("friction_force_x/contact_force_y", None, -0.75),
+            ("abs(friction_force_x + contact_force_y)", "force", 1.0),
+            ("stored_energy/volume_body", "stress", 0.5),
+            ("friction_force_x*point0_x", "energy", 1.5),
+            ("point0_x/t", "velocity", 0.25),
+            ("sqrt(stored_energy)", "energy norm", 2**0.5),
+        ):
+            derived.add(results, text, 3)
+            self.assertEqual(quantities.column(text)[1], kind, text)
+            self.assertClose(results[text][-1], last, relative=1e-12)
+        self.assertTrue(np.isnan(results["point0_x/t"][0]))
+        results.units = {"length": "m"}
+        self.assertEqual(derived.split("a+(b+c)/d+e", "+"), ["a", "(b+c)/d", "e"])
+        for text, words in (
+            ("friction_force_x - stored_energy", "terms of different units"),
+            ("friction_force_z", 'no column "friction_force_z"'),
+            ("friction_force_x/nothing", "the columns that --list"),
+        ):
+            with self.assertRaisesRegex(UserError, words):
+                derived.add(results, text, 3)
+
+    def test_columns_of_named_places(self):
+        names = {"boundary 3": "roof", "boundary 4": "roof (left)", "point 10": "crown"}
+        for text, expected in (
+            ("reaction_y of roof", "reaction_3_y"),
+            ("contact_force_x of roof (left)/reaction_x of roof", "contact_force_4_x/reaction_3_x"),
+            ("displacement_y of crown+point1_y", "point10_y+point1_y"),
+            ("reaction_y of roofing", "reaction_y of roofing"),
+        ):
+            self.assertEqual(derived.by_numbers(text, names), expected)
+
+    def test_another_run_is_drawn_in_the_units_of_this_one(self):
+        t, force = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 3.0])
+        runs = [
+            self.with_columns(t=t, friction_force_x=force),
+            self.with_columns(t=60 * t, friction_force_x=1000 * force),
+        ]
+        options = SimpleNamespace(
+            columns=["friction_force_x"],
+            overlay=[runs[1].directory],
+            log_time=True,
+            begin=None,
+            until=None,
+        )
+        units = [("mm", "min", "MPa"), ("mm", "s", "kPa")]
+        for run, (length, time, stress) in zip(runs, units):
+            about = {"units": {"length": length, "time": time, "stress": stress}}
+            (run.directory / "run.json").write_text(json.dumps(about))
+        figure = history.draw(runs[0], options)
+        first, other = figure.axes[0].get_lines()[:2]
+        self.assertEqual(figure.axes[0].get_xscale(), "log")
+        self.assertClose(first.get_xdata(), t[1:], absolute=0)
+        self.assertClose(other.get_xdata(), t[1:], relative=1e-12)
+        self.assertClose(other.get_ydata(), first.get_ydata(), relative=1e-12)
+        labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+        self.assertEqual(labels, [run.name for run in runs])
+        plt.close(figure)
+        (runs[1].directory / "run.json").write_text("{}")
+        with self.assertRaisesRegex(UserError, "have other units of length"):
+            history.draw(runs[0], options)
+
+    def test_ends_that_other_conditions_hold_look_as_the_face_beside_them(self):
+        face = Mesh(
+            [(0, 0, 0), (1, 0, 0), (1, 0, 0), (2, 0, 0)],
+            [(0, 1), (2, 3)],
+            stick=[1, 1, 1, 1],
+            bound=[0, 1, 1, 1],
+        )
+        self.assertEqual(list(faces.friction_state(face)), [style.STICKING] * 4)
+        face.data["bound"][1:3] = 0.0  # in the middle it is what it says
+        expected = [style.NO_FRICTION] * 3 + [style.STICKING]
+        self.assertEqual(list(faces.friction_state(face)), expected)
 
     def test_magnification(self):
         for largest, expected in ((0.0, 1), (0.5, 1), (1e-3, 50), (4e-6, 1e4),
@@ -809,6 +904,19 @@ class Pictures(TestCase):
             self.assertClose(np.linalg.norm(of_cells), result[column][-1], 1e-6)
         quotient = result["estimate_recovery"].max() / result["error_energy"].max()
         self.assertClose(quotient, 1, absolute=0.2)
+
+    def test_python_without_packages(self):
+        """A sentence with the package to install, no traceback."""
+        for command in "plot", "report":
+            process = subprocess.run(
+                [sys.executable, "-S", SOURCE / "contrib" / command, "."],
+                capture_output=True,
+                text=True,
+            )
+            self.assertEqual(process.returncode, 1)
+            self.assertRegex(
+                process.stderr, r"^Error: \S+ has no \w+ \(Debian: python3-\w+\); .*\n$"
+            )
 
     def test_what_is_wrong(self):
         result = run("slab", {**SMALL_SLAB, "Output/Fields every": 0})

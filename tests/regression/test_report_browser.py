@@ -5,6 +5,7 @@ network, draw, and do what their controls say.
 Skipped (exit code 77) without Chromium.
 """
 
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -122,6 +123,18 @@ class Pages(TestCase):
         self.assertGreater(n_lines, 10)
         self.browser.run("document.querySelector('.panel input').click()")
         self.assertEqual(self.browser.run(count), n_lines - 1)
+        # The beginning takes more room on a logarithmic axis of time.
+        self.browser.run("document.querySelector('.panel input').click()")
+        line = "document.querySelector('.panel path').getAttribute('d')"
+        linear = self.browser.run(line)
+        self.browser.run("document.getElementById('logarithmic-time').click()")
+        self.assertEqual(self.browser.run(count), n_lines)
+        second = r"M\S+ \S+ L(\S+)|M\S+ \S+L(\S+)|M\S+ [^H]+H(\S+)"
+        places = [
+            float(next(filter(None, re.search(second, text).groups())).split("V")[0])
+            for text in (linear, self.browser.run(line))
+        ]
+        self.assertGreater(places[1], places[0] + 50)
         self.browser.size(380, 700)
         self.browser.wait("document.documentElement.clientWidth === 380")
         self.assertLessEqual(

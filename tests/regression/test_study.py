@@ -388,12 +388,12 @@ class Ladders(TestCase):
         with Folder(
             VERIFICATION / "slab.prm",
             Geometry__Arguments="4, 2 : 0, 0 : 2, 1 : true",
-            Geometry__Global_refinements=0,
-            Time__Phases="1: 1, 2: 1",
-            Study__Levels=8,
-            Study__Ladders="both",
-            Study__Target_errors=1,  # nothing to be timed
-            Study__Budget=20,
+            Time__Phases="1: 16",
+            Boundary_0__Role="contact",
+            Boundary_0__Traction="",
+            Boundary_0__Contact_law="unilateral",
+            Boundary_3__Role="displacement",
+            Boundary_3__Displacement="-0.1*t; 0",
         ) as folder:
             process = folder.run("study")
             self.assertEqual(process.returncode, 0, process.stderr)
@@ -589,7 +589,7 @@ class Price(TestCase):
             process = folder.run("price", "0.05", "--check")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertRegex(process.stdout, r"Error 0\.05: h = .* steps, .* MB")
-            self.assertFalse((folder.results / "statistics.csv").exists())
+            self.assertFalse((folder.results / "price" / "statistics.csv").exists())
             pilots = folder.finished()
             self.assertEqual(len(pilots), 4)
             # The same again needs no pilots.
@@ -605,12 +605,14 @@ class Price(TestCase):
             self.assertLessEqual(predicted, 0.0501)
             self.assertLess(max(predicted / actual, actual / predicted), 2)
             self.assertRegex(process.stdout, r"seconds +\S+ predicted, \S+ found")
-            self.assertTrue((folder.results / "statistics.csv").exists())
+            self.assertTrue((folder.results / "price" / "statistics.csv").exists())
             # It is in the report of the run, and a page by itself.
-            page = report_of_run.page(folder.results).html()
+            page = report_of_run.page(folder.results / "price").html()
             self.assertIn("Price: what an error costs", page)
             self.assertIn(found.group(0).replace("error    ", "error "), page)
             self.assertIn("Pilot runs:", written.page(folder.results / "price").html())
+            # What the scene itself has computed stays as it is.
+            self.assertFalse((folder.results / "statistics.csv").exists())
 
     def test_of_steps_that_their_error_chooses(self):
         with Folder(
@@ -651,6 +653,27 @@ class Price(TestCase):
             message = "taken to be of first order in h"
             self.assertEqual(message in process.stdout, not finer, process.stdout)
 
+    def test_of_pilots_that_stagnate(self):
+        """Data that contradict each other at a corner: no price is better than one that
+        is wrong by powers of ten."""
+        with Folder(
+            VERIFICATION / "slab.prm",
+            Geometry__Arguments="4, 2 : 0, 0 : 2, 1 : true",
+            Time__Phases="1: 16",
+            Boundary_0__Role="displacement",
+            Boundary_0__Displacement="0.1*t; 0",
+            Boundary_3__Role="displacement",
+            Boundary_3__Displacement="-0.1*t; 0",
+        ) as folder:
+            process = folder.run("price", "0.02", "--check")
+            self.assertEqual(process.returncode, 1, process.stdout)
+            self.assertEqual(process.stdout.count("The pilots stagnate: where h and k"), 2)
+            self.assertRegex(
+                process.stderr,
+                r"cannot be predicted: where h .* takes more than the .* of the finest",
+            )
+            self.assertNotIn("Error 0.02: h", process.stdout)
+
     def test_of_a_tolerance_beside_one_mesh(self):
         with Folder(
             MANUFACTURED / "tresca_2d.prm", Error_control__Tolerance=0.1, **self.SCENE
@@ -661,7 +684,7 @@ class Price(TestCase):
             self.assertRegex(
                 process.stdout, r"With one uniform mesh and equal steps, .* times as long"
             )
-            table = read_statistics(folder.results / "statistics.csv")
+            table = read_statistics(folder.results / "price" / "statistics.csv")
             error = table["error_energy"].max() / table["exact_energy"].max()
             print("error asked for and found: 0.06", error)
             self.assertLess(error, 1.2 * 0.06)
@@ -681,7 +704,7 @@ class Price(TestCase):
             process = folder.run("price", "0.01")
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertIn("estimated error of the quantity of interest", process.stdout)
-            table = read_statistics(folder.results / "statistics.csv")
+            table = read_statistics(folder.results / "price" / "statistics.csv")
             self.assertLess(
                 table["quantity_total"].max(),
                 0.01 * np.abs(table["point0_x"]).max(),

@@ -2,6 +2,7 @@
 """Fits to made-up errors and costs whose coefficients are known, the prices that
 follow from them, and records of finished runs; all without the program."""
 
+import itertools
 import math
 import sys
 import tempfile
@@ -27,6 +28,7 @@ from viscoplastic_contact.study.effects import (
     EffectsStudy,
     judge,
 )
+from viscoplastic_contact.study.effects_report import in_words, with_chance
 from viscoplastic_contact.study.fit import (
     Finer,
     Prior,
@@ -56,6 +58,7 @@ from viscoplastic_contact.study.price import (
     predict,
     price_in_words,
 )
+from viscoplastic_contact.study.pricing import stagnation
 from viscoplastic_contact.study.record import (
     NO_COST,
     PHASES,
@@ -504,6 +507,54 @@ def ladder(finest, n, exponent=2.5):
     return [sample(finest * 2.0 ** (n - 1 - i), exponent) for i in range(n)]
 
 
+class Stagnation(TestCase):
+    """Pilots from whose errors no law follows."""
+
+    def pilots(self, space, time, initial=0.0):
+        """On two meshes with two steps; parts of the error as functions of h and k."""
+        result = []
+        for mesh_level, time_level in itertools.product((0, 1), (-1, 0)):
+            h, k = 0.5**mesh_level, 0.5**time_level
+            numbers = {
+                "h": h,
+                "k": k,
+                "estimate_space": space(h),
+                "estimate_time": time(k),
+                "estimate_initial": initial,
+                "estimate_total": space(h) + time(k) + initial,
+            }
+            key = RunKey(MethodVariant("uniform", "Heun", "x"), mesh_level, time_level)
+            result.append(RunRecord(key, numbers=numbers))
+        return result
+
+    def words(self, eps, *parts):
+        return stagnation(self.pilots(*parts), "estimate_total", eps)
+
+    def test_errors_that_fall(self):
+        for order in 0.5, 1.0, 2.0:
+            parts = lambda h: h**order, lambda k: 0.1 * k
+            self.assertEqual(self.words(1e-3, *parts), "")
+
+    def test_errors_that_hardly_fall(self):
+        self.assertIn(
+            "where h and k are halved, the error goes from 0.3 to 0.28",
+            self.words(0.05, lambda h: 0.3 * h**0.1, lambda k: 0.0),
+        )
+        # Good enough already.
+        self.assertEqual(self.words(0.3, lambda h: 0.3 * h**0.1, lambda k: 0.0), "")
+
+    def test_a_part_that_hides_behind_the_other(self):
+        """What stays when steps no longer count is more than half of the error asked."""
+        parts = lambda h: 0.04 * h**0.1, lambda k: 0.5 * k
+        self.assertIn("where h is halved, the part of the mesh", self.words(0.05, *parts))
+        self.assertEqual(self.words(0.2, *parts), "")
+        parts = lambda h: 0.5 * h, lambda k: 0.04 * k**0.1
+        self.assertIn("where k is halved, the part of the steps", self.words(0.05, *parts))
+
+    def test_initial_data_stay_as_they_are(self):
+        self.assertIn("of the mesh", self.words(0.05, lambda h: 0.01 * h, lambda k: k, 0.1))
+
+
 class Tolerances(TestCase):
     def test_known_laws(self):
         model = fit_tolerance(ladder(0.01, 5), 2, 2)
@@ -672,6 +723,22 @@ class Records(TestCase):
 
 
 class Effects(TestCase):
+    def test_quantities_by_the_names_of_places(self):
+        names = {"boundary 3": "roof", "point 10": "crown"}
+        for quantity, words in (
+            ("reaction_3", "reaction of roof"),
+            ("contact_force_3", "contact force on roof"),
+            ("reaction_4", "reaction_4"),
+            ("point10", "displacement of crown"),
+            ("contact_force", "contact_force"),
+        ):
+            self.assertEqual(in_words(quantity, names), words)
+
+    def test_costs_within_the_scatter_are_the_scatter(self):
+        self.assertEqual(with_chance(12.3, 4.0, " %"), "12 +- 4 %")
+        self.assertEqual(with_chance(-542.0, 48.0, " %", "+-"), "-542+-48 %")
+        self.assertEqual(with_chance(3.1, 93.0, " %", "+-"), "+-93 %")
+
     def test_what_excludes_what(self):
         elastic = EffectVariant("flow", "", ["Material/Law=elastic"])
         power = EffectVariant("power", "", ["Material/norton/Exponent=1"])

@@ -85,6 +85,8 @@ namespace
     EXPECT_EQ(names.words("reaction_point0"), "reaction at point0");
     EXPECT_EQ(names.words("point0"), "displacement of crown");
     EXPECT_EQ(names.words("point1_stress_xx"), "stress xx at point 1");
+    EXPECT_EQ(names.words("contact_force_3"), "contact force on roof");
+    EXPECT_EQ(names.words("contact_force"), "contact force");
     EXPECT_EQ(names.words("slip_area"), "slipping area");
     EXPECT_EQ(names.words("max_pressure"), "largest pressure");
     EXPECT_EQ(names.words("stored_energy"), "stored energy");

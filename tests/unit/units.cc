@@ -174,6 +174,8 @@ namespace
            {std::string(20000, '-') + "1 MPa", "nested more than 1000 deep"},
            {std::string(20000, '(') + "1 MPa", "nested more than 1000 deep"},
            {"1 MPa" + chain, "nested more than 1000 deep"},
+           {"2 MPa*min(t, 1)",
+            "must be a stress; t has a unit here, t/(1 h) has"},
            {"50/2 GPa", "stress^-1, but it must be a stress"},
            {"1e-4*(15 MPa)^5", "stress^5, but it must be"},
            {"2200*9.81 m/s^2", "but it must be a stress"},

@@ -92,6 +92,8 @@ namespace Viscoplastic
     /// scenes with friction.
     std::optional<unsigned int> contact_iterations = {};
     std::optional<double>       slipping           = {};
+    /// How fast that slips at most, with its unit.
+    std::string slip_rate = {};
     /// The estimate by which an adaptive scene without error estimate refines.
     std::optional<double> error_estimate = {};
     /// The total error estimate over the energy norm of the solution; in scenes

@@ -9,6 +9,7 @@
 #include <viscoplastic_contact/linear_solvers/face_restriction.h>
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -176,6 +177,18 @@ namespace Viscoplastic
     Tensor<1, dim>
     resultant(const ContactState &state, const bool of_obstacles = false) const;
 
+    /// The two on the foundation of one boundary.
+    struct BoundaryForces
+    {
+      Tensor<1, dim> friction, contact;
+    };
+
+    /// Those of each boundary with contact points, where there are several. The
+    /// force of a point that is on several boundaries is split by its area on
+    /// each. Collective.
+    std::map<types::boundary_id, BoundaryForces>
+    forces_by_boundary(const ContactState &state) const;
+
     /// The sum of all of them that act on rigid foundations, not on other
     /// bodies. Collective.
     Tensor<1, dim>
@@ -254,6 +267,8 @@ namespace Viscoplastic
     make_shares();
     void
     make_compliance();
+    void
+    make_area_shares();
 
     /// Sums of the shares of each point of friction, each times factor(sample)
     /// and what its slip rate does (null: nothing; empty: zero), or of
@@ -268,8 +283,11 @@ namespace Viscoplastic
     std::vector<Node>           nodes;
     /// Boundary ids of each point.
     std::vector<std::vector<types::boundary_id>> boundary_ids;
-    std::vector<Sample>                          samples;
-    std::vector<Share>                           shares;
+    /// Of each boundary, which part of the area of each point is on it; empty
+    /// where there are no two of them.
+    std::map<types::boundary_id, std::vector<double>> area_shares;
+    std::vector<Sample>                               samples;
+    std::vector<Share>                                shares;
     /// The points of this rank, and of others that get shares here; none where
     /// no rank has points.
     std::shared_ptr<const Utilities::MPI::Partitioner> numbers;

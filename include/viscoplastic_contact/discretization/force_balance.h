@@ -78,6 +78,8 @@ namespace Viscoplastic
     double max_stick_slip = 0.;
     /// max |lambda_c - rho_c s_c/|s_c||/rho_c where slipping.
     double slip_misalignment = 0.;
+    /// max |s_c| where slipping.
+    double max_slip = 0.;
     /// Areas of sticking and slipping points.
     double stick_area = 0., slip_area = 0.;
     /// sum_c lambda_c . s_c of the step.

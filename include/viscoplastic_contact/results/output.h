@@ -114,9 +114,13 @@ namespace Viscoplastic
     write_in_background();
     void
     write_pvd(const std::string &name) const;
-    /// Remove pieces of outputs that do not count, on rank 0.
+    /// Remove pieces of outputs that do not count, on rank 0: those behind the
+    /// last one, and those that no record lists any more. Returns how many.
+    std::size_t
+    remove_others(const std::string &name, const std::size_t n_outputs) const;
+    /// Remove what an earlier run has left in the directory, on rank 0.
     void
-    remove_later(const std::string &name) const;
+    remove_files_of_earlier_run() const;
 
     const Scene<dim>   &scene;
     const MPI_Comm      communicator;

@@ -267,6 +267,7 @@ namespace Viscoplastic
                              &run.strain,
                              &run.von_mises,
                              &run.slip_area,
+                             &run.slip_rate,
                              &run.capped_volume,
                              &run.tension_share,
                              &run.slide,

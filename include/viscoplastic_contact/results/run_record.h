@@ -25,6 +25,11 @@ namespace Viscoplastic
   void
   refuse_foreign_files(const std::string &path, const std::size_t n_lines);
 
+  /// Remove the files of lines that an earlier run has left behind the first
+  /// @p n_lines.
+  void
+  remove_other_lines(const std::string &path, std::size_t n_lines);
+
   /// What a run has cost: studies read it in run.json.
   struct RunCosts
   {

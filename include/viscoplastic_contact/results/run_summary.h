@@ -69,8 +69,8 @@ namespace Viscoplastic
       return quantity.empty() ? *errors : quantity_errors;
     }
 
-    Largest displacement, strain, von_mises, slip_area, capped_volume,
-      utilization;
+    Largest displacement, strain, von_mises, slip_area, slip_rate,
+      capped_volume, utilization;
     /// The part of the faces in bilateral contact on which the foundation
     /// pulls.
     Largest tension_share;

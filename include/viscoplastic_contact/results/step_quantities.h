@@ -26,6 +26,9 @@ namespace Viscoplastic
     Tensor<1, dim>     friction_force;
     /// What contact that opens and closes does; zero without.
     NormalContact<dim> contact;
+    /// ContactFace::forces_by_boundary().
+    std::map<types::boundary_id, typename ContactFace<dim>::BoundaryForces>
+      contact_forces;
     /// The reaction on each boundary and support with prescribed
     /// displacements, and of springs.
     std::map<types::boundary_id, Tensor<1, dim>> reactions;

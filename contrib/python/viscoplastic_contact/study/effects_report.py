@@ -2,6 +2,7 @@
 """What the study of effects writes: effects.csv, a row for each quantity of each
 simplification; effects.json; effects.md, the same for people."""
 
+import re
 from math import isfinite
 from pathlib import Path
 
@@ -22,12 +23,31 @@ IN_SHORT = {
 }
 
 
+def in_words(quantity, names):
+    """A quantity with the name that the scene gives its place: "reaction of roof"; those
+    of other places as their columns are called."""
+    match = re.fullmatch(r"(reaction|friction_force|contact_force)_(\d+)", quantity)
+    place = f"boundary {match[2]}" if match else quantity.replace("point", "point ")
+    if place not in names:
+        return quantity
+    if not match:
+        return f"displacement of {names[place]}"
+    where = "of" if match[1] == "reaction" else "on"
+    return f"{match[1].replace('_', ' ')} {where} {names[place]}"
+
+
+def names_of(study):
+    return study.scene.about.get("names", {})
+
+
 def percent(value):
     return f"{digits(100.0 * value, 2)} %" if isfinite(value) else "-"
 
 
 def with_chance(value, chance, unit, between=" +- "):
-    return f"{digits(value, 2)}{between}{digits(chance, 1)}{unit}"
+    """A difference and the scatter of two runs, or that alone where it is larger."""
+    known = f"{digits(value, 2)}{between}" if abs(value) > chance else between.strip()
+    return f"{known}{digits(chance, 1)}{unit}"
 
 
 def share_of_time(result, between=" +- "):
@@ -46,7 +66,7 @@ def has_changes(result):
     return not result.failure and result.verdict not in ("never acted", "only watches")
 
 
-def cells_of(result):
+def cells_of(result, names):
     variant, decisive = result.variant, result.decisive
     cells = [variant.effect, variant.instead, result.verdict]
     if result.failure:
@@ -54,7 +74,7 @@ def cells_of(result):
     full, without, tells = result.with_it, result.without, has_changes(result)
     return [
         *cells,
-        decisive.quantity if tells else "nothing",
+        in_words(decisive.quantity, names) if tells else "nothing",
         percent(decisive.change) if tells else "",
         percent(decisive.error) if tells else "",
         percent(result.change_of("energy_norm")),
@@ -91,13 +111,13 @@ def print_cells(cells):
     return "".join(f"{line}\n" for line in lines)
 
 
-def print_row(result):
+def print_row(result, names):
     tells, decisive = has_changes(result), result.decisive
     return print_cells(
         [
             f"{result.variant.effect}: {result.variant.instead}",
             IN_SHORT.get(result.verdict, result.verdict),
-            decisive.quantity if tells else "",
+            in_words(decisive.quantity, names) if tells else "",
             percent(decisive.change) if tells else "",
             percent(decisive.error) if tells else "",
             "" if result.failure else share_of_time(result, "+-"),
@@ -109,7 +129,7 @@ def without(result):
     return f"Without {result.variant.effect} ({result.variant.instead})"
 
 
-def interaction_in_words(interaction):
+def interaction_in_words(interaction, names):
     """Whether two effects interact, in numbers."""
     quantity, largest = interaction.largest.quantity, interaction.largest
     first, second = interaction.first, interaction.second
@@ -117,7 +137,7 @@ def interaction_in_words(interaction):
     if interaction.is_clear:
         verdict = "interact."
     return (
-        f"{without(first)} {quantity} changes by {percent(first.change_of(quantity))}, "
+        f"{without(first)} {in_words(quantity, names)} changes by {percent(first.change_of(quantity))}, "
         f"w{without(second)[1:]} by {percent(second.change_of(quantity))}, without both "
         f"by {percent(interaction.joint.change_of(quantity))}. This differs from the sum "
         f"of both changes by up to {percent(largest.change)}, where the error of this "
@@ -128,12 +148,18 @@ def interaction_in_words(interaction):
 def effects_in_words(study):
     """The table for the console."""
     head = ["without: instead", "", "changes most", "by", "error", "costs"]
-    text = print_cells(head) + "".join(map(print_row, study.results))
+    names = names_of(study)
+    text = print_cells(head) + "".join(print_row(r, names) for r in study.results)
     sentences = [f"{without(r)}: {r.failure}" for r in study.results if r.failure]
     if study.interaction:
-        sentences.append(interaction_in_words(study.interaction))
+        sentences.append(interaction_in_words(study.interaction, names))
     if study.left_out:
         sentences.append(study.left_out)
+    if any(share_of_time(r).startswith("-") for r in study.results if not r.failure):
+        sentences.append(
+            "Costs below zero: with the effect the scene takes less time than without. "
+            "Where there is a scatter alone, nothing larger was measured."
+        )
     lines = (line for sentence in sentences for line in lines_of(sentence, 96))
     return text + "".join(f"{line}\n" for line in lines)
 
@@ -146,8 +172,9 @@ def markdown(study, about):
         "is the difference to a run with twice the mesh width and time steps (in the "
         "energy norm: the error bar). Energy norm: of the difference of the "
         "displacements at the ends of the phases of time. Time and memory: what the "
-        "scene takes less what it takes without the effect, +- the difference between "
-        "two runs of the same.\n\n"
+        "scene takes less what it takes without the effect, so that what saves time is "
+        "below zero; +- the difference between two runs of the same, alone where nothing "
+        "larger was measured.\n\n"
     )
     if Path(study.directory, "effects.png").exists():
         text += "![What effects change and cost](effects.png)\n\n"
@@ -157,12 +184,12 @@ def markdown(study, about):
             text += "\n" if kind else ""
             kind = result.variant.kind
             text += f"## Of the {kind}\n\n{table_head(HEADER)}"
-        text += table_row(cells_of(result))
+        text += table_row(cells_of(result, names_of(study)))
     for result in study.results:
         if result.failure:
             text += f"\n{without(result)}: {result.failure}\n"
     if study.interaction:
-        words = interaction_in_words(study.interaction)
+        words = interaction_in_words(study.interaction, names_of(study))
         text += f"\n## The two largest at once\n\n{words}\n"
     if study.left_out:
         text += f"\n{study.left_out}\n"
@@ -237,7 +264,7 @@ def write_effects(study, is_finished):
             "interaction": pair.largest.change,
             "error": pair.largest.error,
             "interact": pair.is_clear,
-            "words": interaction_in_words(pair),
+            "words": interaction_in_words(pair, names_of(study)),
         }
     make_directory(study.directory)
     replace_file(study.directory + "effects.csv", csv(study))

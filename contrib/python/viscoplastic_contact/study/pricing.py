@@ -28,7 +28,7 @@ from .price import (
     next_refinement,
     price_in_words,
 )
-from .price_report import write_price
+from .price_report import directory_of, write_price
 from .record import RunKey
 from .runs import Interrupted, launch, set_options
 from .scene import LARGEST_TOLERANCE
@@ -42,6 +42,10 @@ SMALL_MESH = 1500
 # there are at least, and how many count: coarser ones are too coarse to say how the
 # finest go on.
 PILOT_FACTOR, N_PILOTS, N_FITTED = 1.4, 2, 4
+# Errors that fall by less where h or k is halved, an order of 1/3, obey no law yet.
+STAGNANT = 0.8
+# How often finer pilots are tried then, and for how many times what they have taken.
+N_FINER, FINER_SHARE = 2, 4.0
 
 NO_ERROR = (
     "A price needs an error to go by, but the pilot runs know none: neither an error bar "
@@ -155,6 +159,78 @@ def finer_pilot(runs, pilots, seconds, console):
         return []
 
 
+def stagnation(pilots, measure, eps):
+    """In words, what halving h, k or both does to the error of pilots where it hardly
+    falls and is not below eps yet: then no law of them reaches further. Empty where
+    one does."""
+    parts = [("h and k", "error", lambda r: error_of(r, measure, None), 0.0)]
+    if measure == "estimate_total":
+        # Each part falls by itself, and the smaller one may hide behind the other.
+        parts += [
+            (
+                "h",
+                "part of the mesh in the error",
+                lambda r: r.number("estimate_space") + r.number("estimate_initial"),
+                0.5,
+            ),
+            (
+                "k",
+                "part of the steps in the error",
+                lambda r: r.number("estimate_time"),
+                0.5,
+            ),
+        ]
+    finest = min(pilots, key=lambda r: (r.number("h"), r.step_measure))
+    if error_of(finest, measure, None) <= eps:
+        return ""
+    for halved, what, value, share in parts:
+        level = [
+            finest.key.mesh_level - ("h" in halved.split()),
+            finest.key.time_level - ("k" in halved.split()),
+        ]
+        before = [r for r in pilots if [r.key.mesh_level, r.key.time_level] == level]
+        if not before:
+            continue
+        old, new = value(before[0]), value(finest)
+        if new > max(STAGNANT * old, share * eps):
+            return (
+                f"where {halved} {'are' if ' ' in halved else 'is'} halved, the {what} "
+                f"goes from {digits(old)} to {digits(new)}"
+            )
+    return ""
+
+
+def refine_pilots(runs, pilots, measure, eps, n_left, console):
+    """Pilots on the next finer meshes, so many times at most, where those that there are
+    stagnate. Raises UserError where they still do."""
+    scene = runs.scene
+    while why := stagnation(pilots, measure, eps):
+        finest = max(pilots, key=lambda r: (r.key.mesh_level, r.key.time_level))
+        key = finest.key._replace(mesh_level=finest.key.mesh_level + 1)
+        steps = expected_steps(scene, pilots, key)
+        strategy = key.variant.strategy
+        n_set_ups = scene.n_set_ups(strategy, steps, scene.planned_steps(key))
+        dofs = 2.0**scene.dimension * finest.number("dofs")
+        cost = cost_of(pilots)
+        affordable = seconds_for_timing(FINER_SHARE * seconds_of(pilots), 0.0)
+        if (
+            n_left == 0
+            or cost.seconds(dofs, steps, n_set_ups) > affordable
+            or cost.memory(dofs, steps, n_set_ups) > affordable_memory()
+        ):
+            raise UserError(
+                f"The price cannot be predicted: {why}, which says nothing of finer "
+                f"runs. An error of {digits(eps)} takes more than the "
+                f"{seconds_in_words(finest.number('seconds_total'))} of the finest "
+                f"pilot ({finest.name}); begin with a finer mesh or shorter steps, or "
+                "let 'Error control/Tolerance' choose them."
+            )
+        n_left -= 1
+        console.say(f"The pilots stagnate: {why}; finer ones follow.")
+        pilots = make_pilots(runs, key, True, console)
+    return pilots
+
+
 def price_with_given_meshes(runs, eps, seconds, console):
     """The price of the error eps of the scene with given meshes and steps, by its own
     strategy for meshes, from pilot runs: on coarser meshes with longer steps, or,
@@ -192,11 +268,14 @@ def price_with_given_meshes(runs, eps, seconds, console):
     def seconds_left(price):
         return seconds_for_timing(seconds_of(pilots), min(price, budget, seconds))
 
+    if has_two_meshes:
+        pilots = refine_pilots(runs, pilots, measure, eps, N_FINER, console)
     model = fit(pilots)
     if not has_two_meshes:
         wanted = cheapest(model, eps)
         if wanted:
             pilots += finer_pilot(runs, pilots, seconds_left(wanted.seconds), console)
+            refine_pilots(runs, pilots, measure, eps, 0, console)
             model = fit(pilots)
     console.say("Pilot runs:\n" + runs_in_words(pilots, measure), end="")
     if not has_two_meshes and len(pilots) == 2:
@@ -325,7 +404,8 @@ def choose_tolerance(runs, eps, console):
         if other:
             text += (
                 f"would take about {seconds_in_words(other.seconds)}, "
-                f"{digits(other.seconds / run.seconds, 2)} times as long."
+                f"{digits(other.seconds / run.seconds, 2)} times as long"
+                + (", far beyond what was measured." if other.is_far else ".")
             )
         else:
             text += "is out of reach."
@@ -365,6 +445,8 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
     the program go to the run. Raises Interrupted, and UserError."""
     scene = runs.scene
 
+    directory = directory_of(scene)
+
     def report():
         write_price(scene, eps, "".join(console.said), runs.program.origin())
 
@@ -387,7 +469,12 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
     for entry in chosen.assignments:
         console.say(f"  --set '{entry}'")
     console.say("")
-    entries = set_options(runs.overrides + chosen.assignments)
+    # Beside what the scene itself may have computed.
+    place = [
+        f"Output/Directory={directory}",
+        f"Checkpoint/Directory={directory}checkpoint",
+    ]
+    entries = set_options(runs.overrides + chosen.assignments + place)
     code, messages, _ = console.follow(
         lambda words, output: launch(
             runs.program, [*options, *words, *runs.files, *entries], output
@@ -397,7 +484,7 @@ def run_at_price(runs, eps, console, only_price=False, options=()):
         raise Interrupted(sentence(messages, code))
     if code != 0:
         raise RunError(sentence(messages, code), code)
-    result = runs.record_of(chosen.key, Path(scene.directory))
+    result = runs.record_of(chosen.key, Path(directory))
     if result is None:
         return  # there was nothing left to compute
     found = {

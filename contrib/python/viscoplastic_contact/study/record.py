@@ -129,7 +129,7 @@ def is_quantity(column):
         "stored_energy",
     ) or any(
         name.startswith(prefix) and name[len(prefix) :].isdigit()
-        for prefix in ("reaction_", "point")
+        for prefix in ("friction_force_", "contact_force_", "reaction_", "point")
     )
 
 

@@ -36,28 +36,51 @@ namespace Viscoplastic
   namespace
   {
     template <int dim>
+    AffineConstraints<double>
+    hanging_nodes_of(const DoFHandler<dim> &dof_handler)
+    {
+      AffineConstraints<double> result(
+        DoFTools::extract_locally_relevant_dofs(dof_handler));
+      DoFTools::make_hanging_node_constraints(dof_handler, result);
+      result.close();
+      return result;
+    }
+
+
+
+    template <int dim>
+    std::unique_ptr<const SurfaceNormals<dim>>
+    make_surface_normals(const DoFHandler<dim> &dof_handler,
+                         const Scene<dim>      &scene)
+    {
+      const bool any = std::any_of(scene.boundary.begin(),
+                                   scene.boundary.end(),
+                                   [](const auto &entry) {
+                                     return entry.second.normal_varies;
+                                   });
+      return any ? std::make_unique<const SurfaceNormals<dim>>(
+                     dof_handler, hanging_nodes_of(dof_handler), scene) :
+                   nullptr;
+    }
+
+
+
+    template <int dim>
     std::map<types::boundary_id, MortarRows>
-    make_mortar_rows(const DoFHandler<dim> &dof_handler,
-                     const Scene<dim>      &scene)
+    make_mortar_rows(const AdmissibleSpace<dim> &space)
     {
       std::map<types::boundary_id, MortarRows> result;
+      const DoFHandler<dim>                   &dof_handler = space.dof_handler;
       AffineConstraints<double>                hanging_nodes;
-      for (const auto &[id, condition] : scene.boundary)
+      for (const auto &[id, condition] : space.scene.boundary)
         if (condition.against)
           {
             if (result.empty())
-              {
-                hanging_nodes.reinit(
-                  DoFTools::extract_locally_relevant_dofs(dof_handler));
-                DoFTools::make_hanging_node_constraints(dof_handler,
-                                                        hanging_nodes);
-                hanging_nodes.close();
-              }
-            result[id] = mortar_interpolation<dim>(dof_handler,
-                                                   hanging_nodes,
-                                                   {id,
-                                                    *condition.against,
-                                                    condition.normal});
+              hanging_nodes = hanging_nodes_of(dof_handler);
+            result[id] =
+              mortar_interpolation<dim>(dof_handler,
+                                        hanging_nodes,
+                                        space.contact_pair(condition));
             AssertThrow(Utilities::MPI::max(result[id].size(),
                                             dof_handler.get_communicator()) > 0,
                         ExcMessage("Nothing of boundary " +
@@ -80,7 +103,7 @@ namespace Viscoplastic
       IndexSet result = DoFTools::extract_locally_relevant_dofs(dof_handler);
       for (const auto &of_boundary : mortar_rows)
         for (const auto &[node, row] : of_boundary.second)
-          for (const auto &other : row)
+          for (const auto &other : row.nodes)
             result.add_range(other.node * dim, (other.node + 1) * dim);
       result.compress();
       return result;
@@ -96,7 +119,8 @@ namespace Viscoplastic
     , scene(scene)
     , communicator(dof_handler.get_communicator())
     , mapping(mapping_of<dim>(scene.plane_model()))
-    , mortar_rows(make_mortar_rows(dof_handler, scene))
+    , surface_normals(make_surface_normals(dof_handler, scene))
+    , mortar_rows(make_mortar_rows(*this))
     , owned(dof_handler.locally_owned_dofs())
     , relevant(relevant_dofs(dof_handler, mortar_rows))
     , cells(owned_cells(dof_handler))
@@ -155,10 +179,10 @@ namespace Viscoplastic
   void
   AdmissibleSpace<dim>::make_frames()
   {
-    // A node's frame is a function of the boundary ids that meet there, and
-    // each id has one normal. Owners know all ids at their nodes, since every
-    // neighbor of an owned cell is at least a ghost; as a bit mask in a vector
-    // the ids travel to the other ranks.
+    // A node's frame is a function of the boundary ids that meet there, as long
+    // as each id has one normal. Owners know all ids at their nodes, since
+    // every neighbor of an owned cell is at least a ghost; as a bit mask in a
+    // vector the ids travel to the other ranks.
     std::vector<const BoundaryCondition<dim> *> listed;
     for (const auto &pair : scene.boundary)
       if (pair.second.constrains() || pair.second.has_contact_points())
@@ -246,18 +270,26 @@ namespace Viscoplastic
     frames.assign(1, make_nodal_frame<dim>({}));
     std::map<std::uint64_t, unsigned int> frame_of_mask{{0, 0}};
     frame_of_node.assign(relevant.n_elements() / dim, 0);
+    std::uint64_t curved = 0;
+    for (unsigned int i = 0; i < n_boundaries; ++i)
+      if (listed[i]->normal_varies)
+        curved |= std::uint64_t(1) << i;
     for (std::size_t n = 0; n < frame_of_node.size(); ++n)
       {
         const auto bits =
           static_cast<std::uint64_t>(ghosted_masks.begin()[n * dim]);
-        if (frame_of_mask.count(bits) == 0)
+        if (frame_of_mask.count(bits) == 0 || (bits & curved) != 0)
           {
             std::vector<const BoundaryCondition<dim> *> here;
             for (unsigned int i = 0; i < listed.size(); ++i)
               if (bits & (std::uint64_t(1) << i))
                 here.push_back(listed[i]);
             frame_of_mask[bits] = frames.size();
-            frames.push_back(make_nodal_frame<dim>(here));
+            frames.push_back(make_nodal_frame<dim>(
+              here,
+              (bits & curved) != 0 ?
+                surface_normals->at(relevant.nth_index_in_set(n * dim)) :
+                Tensor<1, dim>()));
           }
         frame_of_node[n] = frame_of_mask[bits];
         if (!frames[frame_of_node[n]].is_cartesian)
@@ -271,7 +303,9 @@ namespace Viscoplastic
         if (mask[n] != 0)
           {
             nodes.push_back(
-              {first_dof, node_position[n], frame_of_mask[mask[n]]});
+              {first_dof,
+               node_position[n],
+               frame_of_node[relevant.index_within_set(first_dof) / dim]});
             const NodalFrame<dim> &frame = frames[nodes.back().frame];
             for (unsigned int i = 0; i < frame.n_fixed; ++i)
               is_excluded[n * dim + frame.fixed[i]] = true;
@@ -585,6 +619,8 @@ namespace Viscoplastic
             else if (condition.is_glued())
               datum[i] =
                 condition.glued_displacement(node.position,
+                                             normal_at(node.first_dof,
+                                                       condition),
                                              t)[frame.condition_component[i]];
             else if (condition.foundation_displacement)
               datum[i] =

@@ -69,8 +69,8 @@ namespace Viscoplastic
                const double                  t)
     {
       std::vector<std::pair<Tensor<1, dim>, double>> result;
-      if (condition.is_glued() && condition.against)
-        return result;
+      if (condition.against)
+        return result; // it prescribes a jump
       const bool is_normal =
         !condition.is_glued() && (condition.role == BoundaryRole::symmetry ||
                                   condition.role == BoundaryRole::contact);
@@ -86,7 +86,8 @@ namespace Viscoplastic
           if (condition.role == BoundaryRole::clamped)
             result.emplace_back(axis, 0.);
           else if (condition.is_glued())
-            result.emplace_back(axis, condition.glued_displacement(x, t)[d]);
+            result.emplace_back(
+              axis, condition.glued_displacement(x, condition.normal, t)[d]);
           else if (condition.displacement[d])
             result.emplace_back(axis, condition.displacement[d]->value(x, t));
         }

@@ -17,8 +17,10 @@ namespace Viscoplastic
   ContactFace<dim>::initial_distance(const Node           &node,
                                      const Tensor<1, dim> &normal) const
   {
-    const Point<dim> &opposite = space.coupling_at(node.first_dof).opposite;
-    const double      distance = (opposite - node.position) * normal;
+    const auto       &coupling = space.coupling_at(node.first_dof);
+    const Point<dim> &opposite = coupling.opposite;
+    const double      distance =
+      (opposite - node.position) * normal + coupling.bulge;
     // Bodies that touch do so but for rounding of coordinates.
     return std::abs(distance) >
                1e-12 * (opposite.norm() + node.position.norm()) ?
@@ -58,7 +60,9 @@ namespace Viscoplastic
                 const auto &condition = space.scene.boundary.at(id);
                 double      gap       = condition.gap(node.position, t);
                 if (condition.against)
-                  gap += initial_distance(node, condition.normal);
+                  gap += initial_distance(node,
+                                          space.normal_at(node.first_dof,
+                                                          condition));
                 result[p] = std::min(result[p], gap);
               }
           }

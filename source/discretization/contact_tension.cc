@@ -25,9 +25,13 @@ namespace Viscoplastic
               if (condition.role != BoundaryRole::contact ||
                   !condition.is_bilateral() || condition.is_glued())
                 continue;
+              Tensor<1, dim> normal;
+              for (const unsigned int v : cell->face(f)->vertex_indices())
+                normal += space.normal_at(cell->face(f)->vertex_dof_index(v, 0),
+                                          condition);
               faces.push_back(
                 {index,
-                 condition.normal,
+                 normal / normal.norm(),
                  cell->face(f)->measure() *
                    extent(space.scene.plane_model(), cell->face(f)->center())});
               total_area += faces.back().area;

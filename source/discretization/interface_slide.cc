@@ -15,9 +15,9 @@ namespace Viscoplastic
   {
     for (const auto &[id, rows] : space.mortar_rows)
       {
-        const auto            weights   = boundary_weights(space, {id});
-        const Tensor<1, dim> &normal    = space.scene.boundary.at(id).normal;
-        double                uncovered = 0., whole = 0.;
+        const auto  weights   = boundary_weights(space, {id});
+        const auto &condition = space.scene.boundary.at(id);
+        double      uncovered = 0., whole = 0.;
         for (std::size_t i = 0; i < space.owned.n_elements(); i += dim)
           if (const double area = weights.local_element(i); area > 0.)
             {
@@ -27,7 +27,7 @@ namespace Viscoplastic
                 uncovered += area;
               else
                 nodes.push_back({space.relevant.index_within_set(dof),
-                                 normal,
+                                 space.normal_at(dof, condition),
                                  std::pow(area, 1. / (dim - 1))});
             }
         shares[id] = Utilities::MPI::sum(uncovered, space.communicator) /

@@ -24,10 +24,13 @@ namespace Viscoplastic
           for (unsigned int i = 0; i < frame.n_fixed; ++i)
             if (frame.condition_boundary[i] != id)
               {
-                const auto e = column(frame.directions, frame.fixed[i]);
-                coupling.projector -= outer_product(e, e);
+                // What the conditions before have left of it.
+                const Tensor<1, dim> e =
+                  coupling.projector * frame.condition_direction[i];
+                coupling.projector -= outer_product(e, e) / e.norm_square();
               }
-          for (const auto &other : row)
+          coupling.bulge = row.bulge;
+          for (const auto &other : row.nodes)
             coupling.others.emplace_back(relevant.index_within_set(other.node *
                                                                    dim),
                                          other.weight);

@@ -25,27 +25,29 @@ namespace Viscoplastic
     using Node = NodeHierarchy::Node;
     using Row  = std::vector<NodeHierarchy::Parent>;
 
-    /// A part of a row that is not covered from the other side, or rounding.
-    constexpr double coverage_tolerance = 1e-6;
+    /// A part of a face that is not covered from the other side, or rounding;
+    /// where sides are curved, they are not seen exactly from each other.
+    constexpr double coverage_tolerance = 1e-6, curved_tolerance = 0.05;
+
+    /// MortarRow::bulge among the entries of a row, for the way over ranks and
+    /// hanging nodes.
+    constexpr Node bulge_entry = numbers::invalid_dof_index;
 
 
 
     /// A face of the primary side, for other ranks; each of its vertices is an
     /// independent node, or what it hangs on.
     template <int dim>
-    struct PrimaryFace
+    struct PrimaryFace : SurfaceFace<dim>
     {
-      static constexpr unsigned int n = GeometryInfo<dim>::vertices_per_face;
-
-      std::array<Point<dim>, n> vertices;
-      std::array<Row, n>        nodes;
-      double                    softness = 0.;
+      std::array<Row, SurfaceFace<dim>::n> nodes;
+      double                               softness = 0.;
 
       template <class Archive>
       void
       serialize(Archive &archive, const unsigned int)
       {
-        archive &vertices &nodes &softness;
+        archive &this->vertices &this->normals &this->lifts &nodes &softness;
       }
     };
 
@@ -93,7 +95,8 @@ namespace Viscoplastic
         : dof_handler(dof_handler)
         , hanging(hanging)
         , pair(pair)
-        , project(pair.normal)
+        , project(pair.normals != nullptr ? Point<dim>::unit_vector(0) :
+                                            pair.normal)
         , communicator(dof_handler.get_communicator())
         , owned(dof_handler.locally_owned_dofs())
       {
@@ -121,14 +124,21 @@ namespace Viscoplastic
         MortarRows result;
         for (auto &[node, row] : rows)
           {
-            double sum = 0.;
+            double    sum = 0.;
+            MortarRow split;
             for (const auto &parent : row)
-              sum += parent.weight;
+              if (parent.node == bulge_entry)
+                split.bulge = parent.weight;
+              else
+                {
+                  split.nodes.push_back(parent);
+                  sum += parent.weight;
+                }
             if (hangs(node) || std::abs(sum - 1.) > coverage_tolerance)
               continue;
-            for (auto &parent : row)
+            for (auto &parent : split.nodes)
               parent.weight /= sum;
-            result[node] = row;
+            result[node] = split;
           }
 
         std::vector<Node> others;
@@ -144,43 +154,46 @@ namespace Viscoplastic
         const std::vector<Row> answers =
           ask_owners(others, begins, communicator, [&](const Node node) {
             const auto row = result.find(node);
-            return row != result.end() ? row->second : Row();
+            return row != result.end() ? row->second.nodes : Row();
           });
         for (std::size_t i = 0; i < others.size(); ++i)
           if (!answers[i].empty())
-            result[others[i]] = answers[i];
+            result[others[i]].nodes = answers[i];
         return result;
       }
 
       template <typename Softness>
       std::vector<PlaceOpposite<dim>>
-      opposite(const std::vector<Point<dim>> &places,
-               const Softness                &softness) const
+      opposite(const std::vector<InterfacePlace<dim>> &places,
+               const Softness                         &softness) const
       {
-        const std::vector<PrimaryFace<dim>> primary  = primary_faces(softness);
-        const std::vector<PlaneFace<d>>     in_plane = projected(primary);
-        const auto                          tree     = tree_of(in_plane);
+        const std::vector<PrimaryFace<dim>> primary = primary_faces(softness);
+        const auto                          tree    = tree_of(primary);
         std::vector<PlaceOpposite<dim>>     result;
-        for (const Point<dim> &place : places)
+        for (const InterfacePlace<dim> &place : places)
           {
             result.emplace_back();
-            const Point<d> x = project(place);
+            const Projection<dim> along(place.normal);
+            const Point<d>        x = along(place.position);
             for (const auto &[box, i] :
-                 tree | boost::geometry::index::adaptors::queried(
-                          boost::geometry::index::intersects(x)))
-              if (contains(in_plane[i], x))
+                 tree |
+                   boost::geometry::index::adaptors::queried(
+                     boost::geometry::index::intersects(
+                       box_before(place.position, place.normal, place.reach))))
+              if (const PlaneFace<d> seen = primary[i].seen(along);
+                  faces(place.normal, primary[i]) && contains(seen, x))
                 {
-                  const Point<d> xi = reference_position<d>(in_plane[i], x);
+                  const Point<d> xi = reference_position<d>(seen, x);
                   Integrals      sum;
                   for (unsigned int v = 0; v < n; ++v)
-                    {
-                      const double phi =
-                        GeometryInfo<d>::d_linear_shape_function(xi, v);
-                      sum.add(phi, primary[i].nodes[v]);
-                      result.back().position += phi * primary[i].vertices[v];
-                    }
+                    sum.add(GeometryInfo<d>::d_linear_shape_function(xi, v),
+                            primary[i].nodes[v]);
                   for (const auto &[node, weight] : sum.products)
                     result.back().nodes.push_back({node, weight});
+                  result.back().distance =
+                    primary[i].position(xi) - place.position;
+                  if (pair.normals != nullptr)
+                    result.back().distance += primary[i].bulge(xi);
                   result.back().softness = primary[i].softness;
                   break;
                 }
@@ -193,7 +206,7 @@ namespace Viscoplastic
       static constexpr unsigned int n = GeometryInfo<dim>::vertices_per_face;
 
       /// Call @p act (cell, face) for the faces with an id, on owned cells and
-      /// ghosts, that look along @p sign times the normal.
+      /// ghosts; of flat sides those that look along @p sign times the normal.
       template <typename Action>
       void
       for_each_face(const types::boundary_id id,
@@ -204,9 +217,10 @@ namespace Viscoplastic
           if (!cell->is_artificial())
             for (const unsigned int f : cell->face_indices())
               if (cell->at_boundary(f) && cell->face(f)->boundary_id() == id &&
-                  sign * ((cell->face(f)->center() - cell->center()) *
-                          pair.normal) >
-                    0.)
+                  (pair.normals != nullptr ||
+                   sign * ((cell->face(f)->center() - cell->center()) *
+                           pair.normal) >
+                     0.))
                 act(cell, f);
       }
 
@@ -251,13 +265,72 @@ namespace Viscoplastic
       }
 
       template <typename Cell>
-      PlaneFace<d>
-      plane_face(const Cell &cell, const unsigned int f) const
+      SurfaceFace<dim>
+      surface_face(const Cell &cell, const unsigned int f) const
       {
-        PlaneFace<d> result;
+        if (pair.normals != nullptr)
+          return pair.normals->face(cell, f);
+        SurfaceFace<dim> result;
         for (unsigned int v = 0; v < n; ++v)
-          result[v] = project(cell->face(f)->vertex(v));
+          result.vertices[v] = cell->face(f)->vertex(v);
+        result.normals.fill(pair.normal);
         return result;
+      }
+
+      /// Where to look for faces: of flat sides in the plane across the normal,
+      /// at any distance.
+      Point<dim>
+      place_of(const Point<dim> &x) const
+      {
+        if (pair.normals != nullptr)
+          return x;
+        Point<dim>     result;
+        const Point<d> in_plane = project(x);
+        for (unsigned int i = 0; i < d; ++i)
+          result[i] = in_plane[i];
+        return result;
+      }
+
+      BoundingBox<dim>
+      box_before(const Point<dim>     &x,
+                 const Tensor<1, dim> &normal,
+                 const double          reach) const
+      {
+        return BoundingBox<dim>(
+          std::vector<Point<dim>>{place_of(x - reach * normal),
+                                  place_of(x + reach * normal)});
+      }
+
+      BoundingBox<dim>
+      box_before(const SurfaceFace<dim> &face) const
+      {
+        const double reach =
+          pair.normals != nullptr ? SurfaceNormals<dim>::reach(face) : 0.;
+        BoundingBox<dim> result =
+          box_before(face.vertices[0], face.normals[0], reach);
+        for (unsigned int v = 1; v < n; ++v)
+          result.merge_with(
+            box_before(face.vertices[v], face.normals[v], reach));
+        return result;
+      }
+
+      BoundingBox<dim>
+      box_of(const SurfaceFace<dim> &face) const
+      {
+        std::vector<Point<dim>> places;
+        for (const Point<dim> &x : face.vertices)
+          places.push_back(place_of(x));
+        return BoundingBox<dim>(places);
+      }
+
+      /// Whether a face of the other side looks towards a place with this
+      /// normal, and is not seen from behind or edgeways.
+      bool
+      faces(const Tensor<1, dim> &normal, const SurfaceFace<dim> &other) const
+      {
+        if (pair.normals == nullptr)
+          return true;
+        return normal * other.normal(reference_center<d>()) < -0.2;
       }
 
       /// The faces of the primary side that may lie opposite to owned faces of
@@ -266,35 +339,39 @@ namespace Viscoplastic
       std::vector<PrimaryFace<dim>>
       primary_faces(const Softness &softness) const
       {
-        std::vector<Point<d>> places;
+        std::vector<BoundingBox<dim>> here;
         for_each_face(pair.secondary,
                       1.,
                       [&](const auto &cell, const unsigned int f) {
-                        if (cell->is_locally_owned())
-                          for (const Point<d> &x : plane_face(cell, f))
-                            places.push_back(x);
+                        if (!cell->is_locally_owned())
+                          return;
+                        const auto box = box_before(surface_face(cell, f));
+                        if (here.empty())
+                          here.push_back(box);
+                        else
+                          here[0].merge_with(box);
                       });
-        const auto boxes = Utilities::MPI::all_gather(
-          communicator,
-          places.empty() ? std::vector<BoundingBox<d>>() :
-                           std::vector<BoundingBox<d>>{BoundingBox<d>(places)});
+        const auto boxes = Utilities::MPI::all_gather(communicator, here);
 
         std::map<unsigned int, std::vector<PrimaryFace<dim>>> to_send;
         for_each_face(
           pair.primary, -1., [&](const auto &cell, const unsigned int f) {
             if (!cell->is_locally_owned())
               return;
-            const BoundingBox<d> box = box_of<d>(plane_face(cell, f));
+            PrimaryFace<dim> face;
+            static_cast<SurfaceFace<dim> &>(face) = surface_face(cell, f);
+            const BoundingBox<dim> box            = box_of(face);
+            bool                   is_complete    = false;
             for (unsigned int rank = 0; rank < boxes.size(); ++rank)
               if (!boxes[rank].empty() && boxes[rank][0].get_neighbor_type(
                                             box) != NeighborType::not_neighbors)
                 {
-                  PrimaryFace<dim> face;
-                  face.softness = softness(cell, f);
-                  for (unsigned int v = 0; v < n; ++v)
+                  if (!is_complete)
                     {
-                      face.vertices[v] = cell->face(f)->vertex(v);
-                      face.nodes[v]    = resolve(node_at(cell, f, v));
+                      face.softness = softness(cell, f);
+                      for (unsigned int v = 0; v < n; ++v)
+                        face.nodes[v] = resolve(node_at(cell, f, v));
+                      is_complete = true;
                     }
                   to_send[rank].push_back(face);
                 }
@@ -308,27 +385,84 @@ namespace Viscoplastic
         return result;
       }
 
-      std::vector<PlaneFace<d>>
-      projected(const std::vector<PrimaryFace<dim>> &faces) const
+      auto
+      tree_of(const std::vector<PrimaryFace<dim>> &faces) const
       {
-        std::vector<PlaneFace<d>> result(faces.size());
-        for (std::size_t i = 0; i < faces.size(); ++i)
-          for (unsigned int v = 0; v < n; ++v)
-            result[i][v] = project(faces[i].vertices[v]);
-        return result;
-      }
-
-      static auto
-      tree_of(const std::vector<PlaneFace<d>> &faces)
-      {
-        std::vector<std::pair<BoundingBox<d>, std::size_t>> boxes;
+        std::vector<std::pair<BoundingBox<dim>, std::size_t>> boxes;
         for (std::size_t i = 0; i < faces.size(); ++i)
           {
-            BoundingBox<d> box = box_of<d>(faces[i]);
+            BoundingBox<dim> box = box_of(faces[i]);
             box.extend(1e-10 * box.side_length(0)); // see contains()
             boxes.emplace_back(box, i);
           }
         return pack_rtree(boxes);
+      }
+
+      /// A face of the primary side in the plane of one of the secondary side.
+      PlaneFace<d>
+      in_plane_of(const SurfaceFace<dim> &here,
+                  const Tensor<1, dim>   &normal,
+                  const PlaneFace<d>     &in_plane,
+                  const PrimaryFace<dim> &other) const
+      {
+        if (pair.normals == nullptr)
+          return other.seen(project);
+        PlaneFace<d> result;
+        for (unsigned int v = 0; v < n; ++v)
+          result[v] = here.foot_of(other.vertices[v], normal, in_plane);
+        return result;
+      }
+
+      /// A quadrature point of what two faces have in common.
+      struct Sample
+      {
+        const PrimaryFace<dim> *other;
+        Point<d>                here, there;
+        double                  JxW, bulge;
+      };
+
+      /// The measure of what they have in common.
+      double
+      add_samples(const SurfaceFace<dim> &here,
+                  const Tensor<1, dim>   &normal,
+                  const PlaneFace<d>     &face,
+                  const PrimaryFace<dim> &other,
+                  std::vector<Sample>    &samples) const
+      {
+        const QGaussSimplex<d> quadrature(3);
+        const PlaneFace<d>     window = in_plane_of(here, normal, face, other);
+        double                 result = 0.;
+        for (const Simplex<d> &part : intersection(face, window))
+          {
+            result += measure(part);
+            for (unsigned int q = 0; q < quadrature.size(); ++q)
+              {
+                const Point<d> &eta = quadrature.point(q);
+                Point<d>        x   = part[0];
+                for (unsigned int k = 0; k < d; ++k)
+                  x += eta[k] * (part[k + 1] - part[0]);
+                Sample sample{&other,
+                              reference_position<d>(face, x),
+                              {},
+                              measure(part) * quadrature.weight(q) *
+                                (d == 2 ? 2. : 1.),
+                              0.};
+                if (pair.normals == nullptr)
+                  sample.there = reference_position<d>(window, x);
+                else
+                  {
+                    const Tensor<1, dim>  n_x = here.normal(sample.here);
+                    const Projection<dim> along(n_x);
+                    sample.there =
+                      reference_position<d>(other.seen(along),
+                                            along(here.position(sample.here)));
+                    sample.bulge = n_x * (other.bulge(sample.there) -
+                                          here.bulge(sample.here));
+                  }
+                samples.push_back(sample);
+              }
+          }
+        return result;
       }
 
       /// Over owned faces, for nodes of any rank. Collective.
@@ -337,49 +471,54 @@ namespace Viscoplastic
       {
         const std::vector<PrimaryFace<dim>> primary =
           primary_faces([](const auto &, const unsigned int) { return 0.; });
-        const std::vector<PlaneFace<d>> in_plane = projected(primary);
-        const auto                      tree     = tree_of(in_plane);
-        const QGaussSimplex<d>          quadrature(3);
-        std::map<Node, Integrals>       result;
+        const auto                tree = tree_of(primary);
+        std::map<Node, Integrals> result;
         for_each_face(
           pair.secondary, 1., [&](const auto &cell, const unsigned int f) {
             if (!cell->is_locally_owned())
               return;
-            const PlaneFace<d>         face = plane_face(cell, f);
-            const DualBasis<d>         dual(face);
+            const SurfaceFace<dim> here   = surface_face(cell, f);
+            const Tensor<1, dim>   normal = here.normal(reference_center<d>());
+            const PlaneFace<d>     face   = here.seen(
+              pair.normals != nullptr ? Projection<dim>(normal) : project);
             std::array<Integrals *, n> at;
             for (unsigned int v = 0; v < n; ++v)
-              {
-                at[v] = &result[node_at(cell, f, v)];
-                at[v]->weight += dual.integrals[v];
-              }
+              at[v] = &result[node_at(cell, f, v)];
+            std::vector<Sample> samples;
+            double              covered = 0.;
             for (const auto &[box, i] :
                  tree | boost::geometry::index::adaptors::queried(
-                          boost::geometry::index::intersects(box_of<d>(face))))
+                          boost::geometry::index::intersects(box_before(here))))
+              if (faces(normal, primary[i]))
+                covered += add_samples(here, normal, face, primary[i], samples);
+            if (const double area = measure(face);
+                std::abs(covered - area) > (pair.normals != nullptr ?
+                                              curved_tolerance :
+                                              coverage_tolerance) *
+                                             area)
               {
-                FullMatrix<double> products(n, n);
-                for (const Simplex<d> &part : intersection(face, in_plane[i]))
-                  for (unsigned int q = 0; q < quadrature.size(); ++q)
-                    {
-                      const Point<d> &eta = quadrature.point(q);
-                      Point<d>        x   = part[0];
-                      for (unsigned int k = 0; k < d; ++k)
-                        x += eta[k] * (part[k + 1] - part[0]);
-                      const double JxW = measure(part) * quadrature.weight(q) *
-                                         (d == 2 ? 2. : 1.);
-                      const Point<d> here = reference_position<d>(face, x),
-                                     there =
-                                       reference_position<d>(in_plane[i], x);
-                      for (unsigned int v = 0; v < n; ++v)
-                        for (unsigned int w = 0; w < n; ++w)
-                          products(v, w) +=
-                            dual.value(v, here) *
-                            GeometryInfo<d>::d_linear_shape_function(there, w) *
-                            JxW;
-                    }
-                for (unsigned int v = 0; v < n; ++v)
-                  for (unsigned int w = 0; w < n; ++w)
-                    at[v]->add(products(v, w), primary[i].nodes[w]);
+                // Its part of the sums of rows is missing.
+                for (Integrals *const of_node : at)
+                  of_node->weight += area / n;
+                return;
+              }
+            const DualBasis<d> dual([&](const auto &visit) {
+              for (const Sample &sample : samples)
+                visit(sample.here, sample.JxW);
+            });
+            for (unsigned int v = 0; v < n; ++v)
+              {
+                at[v]->weight += dual.integrals[v];
+                for (const Sample &sample : samples)
+                  {
+                    const double psi = dual.value(v, sample.here) * sample.JxW;
+                    for (unsigned int w = 0; w < n; ++w)
+                      at[v]->add(psi * GeometryInfo<d>::d_linear_shape_function(
+                                         sample.there, w),
+                                 sample.other->nodes[w]);
+                    if (pair.normals != nullptr)
+                      at[v]->products[bulge_entry] += psi * sample.bulge;
+                  }
               }
           });
         return result;
@@ -511,13 +650,13 @@ namespace Viscoplastic
 
   template <int dim>
   std::vector<PlaceOpposite<dim>>
-  places_opposite(const DoFHandler<dim>           &dof_handler,
-                  const AffineConstraints<double> &hanging_nodes,
-                  const ContactPair<dim>          &pair,
-                  const std::vector<Point<dim>>   &places,
+  places_opposite(const DoFHandler<dim>                  &dof_handler,
+                  const AffineConstraints<double>        &hanging_nodes,
+                  const ContactPair<dim>                 &pair,
+                  const std::vector<InterfacePlace<dim>> &places,
                   const std::function<double(
                     const typename DoFHandler<dim>::active_cell_iterator &,
-                    const unsigned int)>          &softness)
+                    const unsigned int)>                 &softness)
   {
     return Sides<dim>(dof_handler, hanging_nodes, pair)
       .opposite(places, softness);
@@ -533,7 +672,7 @@ namespace Viscoplastic
     const DoFHandler<dim> &,                                                  \
     const AffineConstraints<double> &,                                        \
     const ContactPair<dim> &,                                                 \
-    const std::vector<Point<dim>> &,                                          \
+    const std::vector<InterfacePlace<dim>> &,                                 \
     const std::function<                                                      \
       double(const typename DoFHandler<dim>::active_cell_iterator &,          \
              const unsigned int)> &);

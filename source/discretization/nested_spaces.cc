@@ -265,7 +265,7 @@ namespace Viscoplastic
     for (const auto &of_boundary : space.mortar_rows)
       for (const auto &[node, row] : of_boundary.second)
         if (node >= hierarchy.begin && node < hierarchy.end)
-          hierarchy.opposite[node] = row;
+          hierarchy.opposite[node] = row.nodes;
     space.for_each_rotated_node(
       [&](const Node first_dof, const Tensor<2, dim> &directions) {
         Tensor<2, 3> padded;

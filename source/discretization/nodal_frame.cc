@@ -160,8 +160,12 @@ namespace Viscoplastic
   template <int dim>
   NodalFrame<dim>
   make_nodal_frame(
-    const std::vector<const BoundaryCondition<dim> *> &conditions)
+    const std::vector<const BoundaryCondition<dim> *> &conditions,
+    const Tensor<1, dim>                              &varying_normal)
   {
+    const auto normal_of = [&](const BoundaryCondition<dim> &condition) {
+      return condition.normal_varies ? varying_normal : condition.normal;
+    };
     NodalFrame<dim> frame;
     Basis<dim>      basis;
     const auto      require = [&](const Tensor<1, dim>    &direction,
@@ -201,7 +205,7 @@ namespace Viscoplastic
       for (const auto *condition : conditions)
         if (condition->role == role && condition->is_bilateral() &&
             !condition->is_glued())
-          require(condition->normal,
+          require(normal_of(*condition),
                   condition->id,
                   numbers::invalid_unsigned_int);
     for (const auto *condition : conditions)
@@ -218,8 +222,8 @@ namespace Viscoplastic
     for (const auto *condition : conditions)
       if (condition->has_contact_points())
         {
-          all_axes &= is_axis(condition->normal);
-          basis.add(condition->normal);
+          all_axes &= is_axis(normal_of(*condition));
+          basis.add(normal_of(*condition));
         }
 
     if (all_axes || frame.n_fixed == dim)
@@ -270,7 +274,7 @@ namespace Viscoplastic
         {
           SymmetricTensor<2, dim>  form;
           const FrictionPlane<dim> plane =
-            make_plane(frame, condition->normal, condition->id, form);
+            make_plane(frame, normal_of(*condition), condition->id, form);
           if (plane.n_tangents == 0)
             continue;
           // Pieces with the same slip share one point, if it is slip against
@@ -293,7 +297,7 @@ namespace Viscoplastic
     for (const auto *condition : conditions)
       if (condition->is_unilateral())
         {
-          Obstacle<dim> obstacle = make_obstacle(frame, condition->normal);
+          Obstacle<dim> obstacle = make_obstacle(frame, normal_of(*condition));
           if (obstacle.map.norm() < parallel_tolerance)
             continue; // other conditions hold it
           obstacle.gives_way = condition->gives_way();
@@ -326,9 +330,11 @@ namespace Viscoplastic
 
 
   template NodalFrame<2>
-  make_nodal_frame<2>(const std::vector<const BoundaryCondition<2> *> &);
+  make_nodal_frame<2>(const std::vector<const BoundaryCondition<2> *> &,
+                      const Tensor<1, 2> &);
   template NodalFrame<3>
-  make_nodal_frame<3>(const std::vector<const BoundaryCondition<3> *> &);
+  make_nodal_frame<3>(const std::vector<const BoundaryCondition<3> *> &,
+                      const Tensor<1, 3> &);
   template Tensor<2, 2>
   condition_matrix<2>(const NodalFrame<2> &);
   template Tensor<2, 3>

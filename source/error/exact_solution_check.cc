@@ -67,7 +67,8 @@ namespace Viscoplastic
         }
       if (condition.is_glued())
         {
-          const Tensor<1, dim> given = condition.glued_displacement(x, t);
+          const Tensor<1, dim> given =
+            condition.glued_displacement(x, condition.normal, t);
           if (prescribes(given))
             text << "prescribes the displacement " << given << ", not " << u;
           return text.str();

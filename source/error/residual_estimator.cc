@@ -208,21 +208,21 @@ namespace Viscoplastic
         jump[d] -= weight * fields.u.begin()[node + d];
     const double         k     = 1. / opposite.softness;
     const Tensor<1, dim> delta = jump - relative_u;
-    const double         along = delta * condition.normal,
-                 across        = tangential(delta, condition.normal).norm();
+    const double         along = delta * opposite.normal,
+                 across        = tangential(delta, opposite.normal).norm();
     if (condition.is_glued())
       return k * delta.norm();
     const double of_slip =
-      std::min(k * across, tangential(density, condition.normal).norm());
+      std::min(k * across, tangential(density, opposite.normal).norm());
     return std::hypot(of_slip,
                       condition.is_bilateral() ?
                         k * along :
                         off_the_law(face,
                                     q,
                                     k,
-                                    jump * condition.normal -
-                                      opposite.distance - gap,
-                                    std::max(0., density * condition.normal)));
+                                    jump * opposite.normal - opposite.distance -
+                                      gap,
+                                    std::max(0., density * opposite.normal)));
   }
 
 
@@ -263,6 +263,8 @@ namespace Viscoplastic
         // Where pieces meet, the field has the pressure of all of them.
         if (opens && !condition.has_friction() && !condition.against)
           density = (density * condition.normal) * condition.normal;
+        const Tensor<1, dim> &normal =
+          face.opposite.empty() ? condition.normal : face.opposite[q].normal;
         if (fields.t)
           {
             given =
@@ -274,7 +276,7 @@ namespace Viscoplastic
             if (has_bound)
               result[n_face_points + q][0] =
                 std::max(0.,
-                         tangential(density, condition.normal).norm() -
+                         tangential(density, normal).norm() -
                            (bounds_vary ?
                               condition.bound(face.positions[q], *fields.t) :
                               face.bounds[q]));

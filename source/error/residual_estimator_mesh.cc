@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/discretization/plane_faces.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
@@ -232,30 +233,43 @@ namespace Viscoplastic
       {
         const BoundaryCondition<dim> &condition =
           space.scene.boundary.at(of_boundary.first);
-        std::vector<BoundaryFace *> faces;
-        std::vector<Point<dim>>     places;
+        std::vector<BoundaryFace *>      faces;
+        std::vector<InterfacePlace<dim>> places;
         for (BoundaryFace &face : boundary_faces)
           if (face.condition == &condition)
             {
               faces.push_back(&face);
-              places.insert(places.end(),
-                            face.positions.begin(),
-                            face.positions.end());
+              for (const Point<dim> &x : face.positions)
+                places.push_back({x, condition.normal, 0.});
+              if (!condition.normal_varies)
+                continue;
+              const SurfaceFace<dim> surface =
+                space.surface_normals->face(space.cells[face.cell], face.face);
+              const QGauss<dim - 1> points(2);
+              for (unsigned int q = 0; q < n_face_points; ++q)
+                {
+                  InterfacePlace<dim> &place =
+                    places[places.size() - n_face_points + q];
+                  place.position += surface.bulge(points.point(q));
+                  place.normal = surface.normal(points.point(q));
+                  place.reach  = SurfaceNormals<dim>::reach(surface);
+                }
             }
         auto found = places_opposite<dim>(space.dof_handler,
                                           space.cartesian_hanging_nodes(),
-                                          {condition.id,
-                                           *condition.against,
-                                           condition.normal},
+                                          space.contact_pair(condition),
                                           places,
                                           softness);
         auto there = found.begin();
+        auto place = places.begin();
         for (BoundaryFace *const face : faces)
-          for (const Point<dim> &x : face->positions)
+          for (unsigned int q = 0; q < n_face_points; ++q)
             {
+              const Tensor<1, dim>           &normal = (place++)->normal;
               typename BoundaryFace::Opposite opposite{
                 {},
-                (there->position - x) * condition.normal,
+                normal,
+                there->distance * normal,
                 there->softness +
                   face->diameter /
                     cells[face->cell]

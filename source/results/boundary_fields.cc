@@ -117,15 +117,18 @@ namespace Viscoplastic
   BoundaryFields<dim>::values(const std::size_t     c,
                               const unsigned int    f,
                               const unsigned int    v,
-                              const Tensor<1, dim> &normal) const
+                              const Tensor<1, dim> &normal_of_face) const
   {
     const AdmissibleSpace<dim>   &space = stress_space.space;
     const auto                   &cell  = space.cells[c];
     const BoundaryCondition<dim> &condition =
       space.scene.boundary.at(cell->face(f)->boundary_id());
-    const auto node =
-      space.relevant.index_within_set(cell->vertex_dof_index(v, 0));
-    const auto vector = [&](const DistributedVector &field) {
+    const auto           first_dof = cell->vertex_dof_index(v, 0);
+    const auto           node      = space.relevant.index_within_set(first_dof);
+    const Tensor<1, dim> normal    = condition.normal_varies ?
+                                       space.normal_at(first_dof, condition) :
+                                       normal_of_face;
+    const auto           vector    = [&](const DistributedVector &field) {
       Tensor<1, dim> value;
       for (unsigned int d = 0; d < dim; ++d)
         value[d] = field.begin()[node + d];
@@ -176,7 +179,8 @@ namespace Viscoplastic
           case RecordedField::traction:
             // On the body: minus the multiplier.
             append(condition.has_friction() && density.size() > 0 ?
-                     -1. * tangential(vector(density), condition.normal) :
+                     -1. * tangential(vector(density),
+                                      space.normal_at(first_dof, condition)) :
                      Tensor<1, dim>());
             break;
           case RecordedField::bound:

@@ -179,12 +179,14 @@ namespace Viscoplastic
 
   template <int dim>
   Tensor<1, dim>
-  BoundaryCondition<dim>::glued_displacement(const Point<dim> &x,
-                                             const double      t) const
+  BoundaryCondition<dim>::glued_displacement(
+    const Point<dim>     &x,
+    const Tensor<1, dim> &outward_normal,
+    const double          t) const
   {
     Tensor<1, dim> u = sliding(x, t);
     if (foundation_displacement)
-      u += foundation_displacement->value(x, t) * normal;
+      u += foundation_displacement->value(x, t) * outward_normal;
     return u;
   }
 

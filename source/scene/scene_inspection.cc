@@ -214,6 +214,10 @@ namespace Viscoplastic
               continue;
             }
           condition.normal = piece.normal;
+          condition.normal_varies =
+            condition.against.has_value() && piece.deviation > tolerance;
+          if (condition.normal_varies)
+            continue;
           std::ostringstream message;
           message << "Boundary " << id << " has the role "
                   << (condition.role == BoundaryRole::contact ? "contact" :

@@ -70,6 +70,9 @@ SCENES = {
         # loads that do not cancel
         "verification/springs_strip_2d": Scene({"Boundary 3/Pressure": "t*x"}),
         "verification/two_blocks_2d": Scene({"Boundary 23/Pressure": "0.01*t*x"}),
+        "verification/shrink_fit_2d": Scene(
+            {"Boundary 21/Role": "traction", "Boundary 21/Pressure": "1e-4*t*x"}
+        ),
     },
     "corners": {
         "verification/corner_coulomb_90_2d": Scene(),

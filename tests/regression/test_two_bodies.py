@@ -104,6 +104,36 @@ class Blocks(TestCase):
             self.assertGreater(result["max_displacement"][-1], straight)
             self.assertLess(result["estimate_space"][-1], 1e-12)
 
+    def test_turned_by_a_right_angle(self):
+        """What the supports prescribe beside bilateral contact is not coupled,
+        whatever direction that has."""
+        result = run(
+            "two_blocks_2d",
+            {
+                **TIGHT,
+                "Geometry/Rotation angle": 90,
+                "Boundary 3/Contact law": "bilateral",
+                "Output/Points": "-2, 1; -1, 0.5",
+            },
+        )
+        self.assertClose(result["point0_x"][-1], 0.0139, absolute=1e-12)
+
+    def test_distorted_faces(self):
+        """Quadrilaterals whose sides are not parallel: linear functions pass exactly,
+        pressures to the error of quadrature."""
+        result = run(
+            "two_blocks_3d",
+            {
+                **TIGHT,
+                "Geometry/Coordinates": "x + 0.4*x*(1 - x)*y; y + 0.4*y*(1 - y)*x; z",
+            },
+        )
+        self.assertNotIn("has nothing opposite", result.stdout)
+        self.assertClose(result["contact_force_z"][-1], 0.01, absolute=1e-11)
+        # measured: 2e-5
+        self.assertClose(result["max_pressure"][-1], 0.01, 1e-3)
+        self.assertClose(result["point0_z"][-1], -0.015, 1e-3)
+
 
 GLUED = {
     "Boundary 3/Contact law": "bilateral",

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,8 @@ namespace Viscoplastic
     const MPI_Comm         communicator;
     /// With it, FEValues have the weights of integrals over the body.
     const Mapping<dim> &mapping;
+    /// Of curved boundaries in contact with another body, or null.
+    const std::unique_ptr<const SurfaceNormals<dim>> surface_normals;
     /// Of each boundary in contact with another body; see
     /// mortar_interpolation().
     const std::map<types::boundary_id, MortarRows> mortar_rows;
@@ -159,8 +162,9 @@ namespace Viscoplastic
       std::size_t                                 node;
       Tensor<2, dim>                              projector; // C_p
       std::vector<std::pair<std::size_t, double>> others;
-      /// The place opposite, by the same interpolation.
+      /// The place opposite, by the same interpolation, and MortarRow::bulge.
       Point<dim> opposite;
+      double     bulge;
     };
 
     /// That of an independent node of a secondary side.
@@ -169,6 +173,25 @@ namespace Viscoplastic
     {
       return couplings
         [couplings_of_node.at(relevant.index_within_set(first_dof))[0].first];
+    }
+
+    /// The normal of a boundary in contact at a locally relevant node.
+    Tensor<1, dim>
+    normal_at(const types::global_dof_index first_dof,
+              const BoundaryCondition<dim> &condition) const
+    {
+      return condition.normal_varies ? surface_normals->at(first_dof) :
+                                       condition.normal;
+    }
+
+    /// The pair of boundaries of which a condition makes the secondary one.
+    ContactPair<dim>
+    contact_pair(const BoundaryCondition<dim> &condition) const
+    {
+      return {condition.id,
+              *condition.against,
+              condition.normal,
+              condition.normal_varies ? surface_normals.get() : nullptr};
     }
 
     /// Write the prescribed values at time t into a vector in frames.

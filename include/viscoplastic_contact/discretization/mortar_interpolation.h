@@ -5,6 +5,7 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/affine_constraints.h>
 
+#include <viscoplastic_contact/discretization/surface_normals.h>
 #include <viscoplastic_contact/linear_solvers/node_hierarchy.h>
 
 #include <functional>
@@ -14,20 +15,28 @@
 namespace Viscoplastic
 {
   /// Two boundaries in contact with each other. Multipliers belong to the nodes
-  /// of the secondary one, whose outward normal this is.
+  /// of the secondary one, whose outward normal this is; where it is curved,
+  /// there are normals at the nodes of both instead.
   template <int dim>
   struct ContactPair
   {
-    types::boundary_id secondary, primary;
-    Tensor<1, dim>     normal;
+    types::boundary_id         secondary, primary;
+    Tensor<1, dim>             normal;
+    const SurfaceNormals<dim> *normals = nullptr;
   };
 
 
-  /// For nodes of the secondary boundary the nodes of the primary one, and the
+  /// Of a node of the secondary boundary the nodes of the primary one, and the
   /// weights, of which the displacement opposite is the sum. Nodes have the
   /// numbers of NodeHierarchy.
-  using MortarRows =
-    std::map<NodeHierarchy::Node, std::vector<NodeHierarchy::Parent>>;
+  struct MortarRow
+  {
+    std::vector<NodeHierarchy::Parent> nodes;
+    /// By how much more curved surfaces are apart there than their faces.
+    double bulge = 0.;
+  };
+
+  using MortarRows = std::map<NodeHierarchy::Node, MortarRow>;
 
 
   /**
@@ -38,9 +47,10 @@ namespace Viscoplastic
    *     (Q v)_p = sum_e int_e psi_p v / int phi_p,
    *     int_e psi_p phi_q = delta_pq int_e phi_p
    *
-   * (Wohlmuth, SIAM J. Numer. Anal. 38, 2000). Sides are projected along the
-   * normal; integrals are exact for faces that are parallelograms. With a
-   * hanging node h between a and b, (Q v)_a becomes
+   * (Wohlmuth, SIAM J. Numer. Anal. 38, 2000). v is taken where the normal at
+   * a place of e meets the primary side, whose vertices cut e; integrals are
+   * exact for flat faces that are parallelograms. With a hanging node h between
+   * a and b, (Q v)_a becomes
    *
    *     (Q v)_a + sum_h c_h ((Q v)_h - (Q v)_a/2 - (Q v)_b/2),
    *     c_h = D_h/(D_a + D_b),
@@ -61,15 +71,26 @@ namespace Viscoplastic
                        const ContactPair<dim>          &pair);
 
 
+  /// A place on a face of the secondary boundary, the normal there, and how far
+  /// along it the other side may be; see SurfaceNormals.
+  template <int dim>
+  struct InterfacePlace
+  {
+    Point<dim>     position;
+    Tensor<1, dim> normal;
+    double         reach;
+  };
+
+
   /// What lies opposite to a place of the secondary boundary along the normal:
   /// a place of the primary one, where the displacement is the sum of those of
-  /// nodes with weights, and what softness() has for the face there.
+  /// nodes with weights, the way there, and what softness() has for the face.
   template <int dim>
   struct PlaceOpposite
   {
     /// None where nothing lies opposite.
     std::vector<NodeHierarchy::Parent> nodes;
-    Point<dim>                         position;
+    Tensor<1, dim>                     distance;
     double                             softness = 0.;
   };
 
@@ -77,11 +98,11 @@ namespace Viscoplastic
   /// @p softness is asked for owned faces of the primary one. Collective.
   template <int dim>
   std::vector<PlaceOpposite<dim>>
-  places_opposite(const DoFHandler<dim>           &dof_handler,
-                  const AffineConstraints<double> &hanging_nodes,
-                  const ContactPair<dim>          &pair,
-                  const std::vector<Point<dim>>   &places,
+  places_opposite(const DoFHandler<dim>                  &dof_handler,
+                  const AffineConstraints<double>        &hanging_nodes,
+                  const ContactPair<dim>                 &pair,
+                  const std::vector<InterfacePlace<dim>> &places,
                   const std::function<double(
                     const typename DoFHandler<dim>::active_cell_iterator &,
-                    const unsigned int)>          &softness);
+                    const unsigned int)>                 &softness);
 } // namespace Viscoplastic

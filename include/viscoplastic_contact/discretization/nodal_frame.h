@@ -80,12 +80,14 @@ namespace Viscoplastic
    * The frame of a node where @p conditions meet (in the order of their ids).
    * Where conditions compete, those that fix more come first: clamped, given
    * components, glued, symmetry, bilateral contact, supports; a condition whose
-   * direction depends on the others is dropped.
+   * direction depends on the others is dropped. Conditions on curved boundaries
+   * have the normal @p varying_normal here.
    */
   template <int dim>
   NodalFrame<dim>
   make_nodal_frame(
-    const std::vector<const BoundaryCondition<dim> *> &conditions);
+    const std::vector<const BoundaryCondition<dim> *> &conditions,
+    const Tensor<1, dim>                              &varying_normal = {});
 
 
   /**

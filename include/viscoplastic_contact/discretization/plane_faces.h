@@ -13,7 +13,8 @@
 #include <vector>
 
 // Faces of two bodies in the plane across a normal: where they are, what they
-// have in common, and the dual basis functions on them.
+// have in common, and the dual basis functions on them; and faces of curved
+// surfaces.
 
 namespace Viscoplastic
 {
@@ -64,6 +65,82 @@ namespace Viscoplastic
 
 
 
+  /// A face of a surface with a normal at each vertex, which varies between
+  /// them as positions do.
+  template <int dim>
+  struct SurfaceFace
+  {
+    static constexpr unsigned int n = GeometryInfo<dim>::vertices_per_face;
+
+    std::array<Point<dim>, n>     vertices;
+    std::array<Tensor<1, dim>, n> normals;
+    /// From the vertices to the surface: not zero where they are hanging nodes,
+    /// which are in the middle of an edge.
+    std::array<Tensor<1, dim>, n> lifts;
+
+    Point<dim>
+    position(const Point<dim - 1> &xi) const
+    {
+      Point<dim> x;
+      for (unsigned int v = 0; v < n; ++v)
+        x += phi(v, xi) * vertices[v];
+      return x;
+    }
+
+    Tensor<1, dim>
+    normal(const Point<dim - 1> &xi) const
+    {
+      Tensor<1, dim> result;
+      for (unsigned int v = 0; v < n; ++v)
+        result += phi(v, xi) * normals[v];
+      return result / result.norm();
+    }
+
+    /// How far the surface is from the face: half of the way to the tangent
+    /// planes at the vertices (Boubekeur and Alexa, ACM Trans. Graphics 27,
+    /// 2008), which is exact for quadrics.
+    Tensor<1, dim>
+    bulge(const Point<dim - 1> &xi) const
+    {
+      Tensor<1, dim> lift;
+      for (unsigned int v = 0; v < n; ++v)
+        lift += phi(v, xi) * lifts[v];
+      const Point<dim> x      = position(xi) + lift;
+      Tensor<1, dim>   result = lift;
+      for (unsigned int v = 0; v < n; ++v)
+        result -= 0.5 * phi(v, xi) *
+                  ((x - vertices[v] - lifts[v]) * normals[v]) * normals[v];
+      return result;
+    }
+
+    /// Where in the plane across @p axis, in which @p seen is this face, the
+    /// place is from which @p x lies along the normal; beyond the face, along
+    /// the normal at its edge.
+    Point<dim - 1>
+    foot_of(const Point<dim>         &x,
+            const Tensor<1, dim>     &axis,
+            const PlaneFace<dim - 1> &seen) const;
+
+    /// The face seen along a direction.
+    PlaneFace<dim - 1>
+    seen(const Projection<dim> &along) const
+    {
+      PlaneFace<dim - 1> result;
+      for (unsigned int v = 0; v < n; ++v)
+        result[v] = along(vertices[v]);
+      return result;
+    }
+
+  private:
+    static double
+    phi(const unsigned int v, const Point<dim - 1> &xi)
+    {
+      return GeometryInfo<dim - 1>::d_linear_shape_function(xi, v);
+    }
+  };
+
+
+
   template <int d>
   BoundingBox<d>
   box_of(const PlaneFace<d> &face)
@@ -73,38 +150,106 @@ namespace Viscoplastic
 
 
 
+  /// A step of Newton's method for the reference coordinates of a place.
+  template <int d>
+  Tensor<1, d>
+  reference_step(const PlaneFace<d> &face,
+                 const Point<d>     &x,
+                 const Point<d>     &xi)
+  {
+    Tensor<1, d> residual = x;
+    Tensor<2, d> jacobian;
+    for (unsigned int v = 0; v < face.size(); ++v)
+      {
+        residual -= GeometryInfo<d>::d_linear_shape_function(xi, v) * face[v];
+        jacobian +=
+          outer_product(Tensor<1, d>(face[v]),
+                        GeometryInfo<d>::d_linear_shape_function_gradient(xi,
+                                                                          v));
+      }
+    return invert(jacobian) * residual;
+  }
+
+
+
+  template <int d>
+  Point<d>
+  reference_center()
+  {
+    Point<d> xi;
+    for (unsigned int i = 0; i < d; ++i)
+      xi[i] = 0.5;
+    return xi;
+  }
+
+
+
   /// The reference coordinates of a place on a face.
   template <int d>
   Point<d>
   reference_position(const PlaneFace<d> &face, const Point<d> &x)
   {
-    Point<d> xi;
-    for (unsigned int i = 0; i < d; ++i)
-      xi[i] = 0.5;
-    // Newton's method; one step where the face is a parallelogram. What a step
-    // of this size leaves is its square, below the rounding of small faces far
-    // from the origin.
+    Point<d> xi = reference_center<d>();
+    // One step where the face is a parallelogram. What a step of this size
+    // leaves is its square, below the rounding of small faces far from the
+    // origin.
     double change = 1.;
     for (unsigned int n = 0; change > 1e-8; ++n)
       {
         AssertThrow(n < 50,
                     ExcMessage("A face on an interface between two bodies is "
                                "too distorted."));
-        Tensor<1, d> residual = x;
-        Tensor<2, d> jacobian;
-        for (unsigned int v = 0; v < face.size(); ++v)
-          {
-            residual -=
-              GeometryInfo<d>::d_linear_shape_function(xi, v) * face[v];
-            jacobian += outer_product(
-              Tensor<1, d>(face[v]),
-              GeometryInfo<d>::d_linear_shape_function_gradient(xi, v));
-          }
-        const Tensor<1, d> step = invert(jacobian) * residual;
+        const Tensor<1, d> step = reference_step(face, x, xi);
         xi += step;
         change = step.norm();
       }
     return xi;
+  }
+
+
+
+  /// The same on the face or at its edge.
+  template <int d>
+  Point<d>
+  nearest_reference_position(const PlaneFace<d> &face, const Point<d> &x)
+  {
+    Point<d> xi     = reference_center<d>();
+    double   change = 1.;
+    for (unsigned int n = 0; n < 20 && change > 1e-8; ++n)
+      {
+        const Point<d> next = GeometryInfo<d>::project_to_unit_cell(
+          xi + reference_step(face, x, xi));
+        change = (next - xi).norm();
+        xi     = next;
+      }
+    return xi;
+  }
+
+
+
+  template <int dim>
+  Point<dim - 1>
+  SurfaceFace<dim>::foot_of(const Point<dim>         &x,
+                            const Tensor<1, dim>     &axis,
+                            const PlaneFace<dim - 1> &seen) const
+  {
+    const Projection<dim> along(axis);
+    const double          size = (vertices[n - 1] - vertices[0]).norm();
+    Point<dim - 1>        foot = along(x);
+    // Along the normal at the foot before, whose error falls by the distance
+    // over the radius of curvature.
+    double change = size;
+    for (unsigned int i = 0; i < 50 && change > 1e-12 * size; ++i)
+      {
+        const Point<dim - 1> xi = nearest_reference_position(seen, foot);
+        const Tensor<1, dim> along_normal = normal(xi);
+        const double         distance =
+          ((x - position(xi)) * axis) / (along_normal * axis);
+        const Point<dim - 1> next = along(x - distance * along_normal);
+        change                    = (next - foot).norm();
+        foot                      = next;
+      }
+    return foot;
   }
 
 
@@ -212,39 +357,41 @@ namespace Viscoplastic
 
 
 
+  inline double
+  measure(const PlaneFace<2> &face)
+  {
+    return std::abs(area(face[0], face[1], face[3]) +
+                    area(face[0], face[3], face[2])) /
+           2.;
+  }
+
+
+
   /// Dual basis functions on a face: coefficients of psi_i in phi_j, and the
-  /// integrals of phi_i.
+  /// integrals of phi_i, by a quadrature in reference coordinates. Whatever
+  /// that is, it finds linear functions as they are.
   template <int d>
   struct DualBasis
   {
     static constexpr unsigned int n = GeometryInfo<d>::vertices_per_cell;
 
-    explicit DualBasis(const PlaneFace<d> &face)
+    /// @p visit calls its argument with each point and its weight.
+    template <typename Visit>
+    explicit DualBasis(const Visit &visit)
       : coefficients(n, n)
     {
       FullMatrix<double> mass(n, n);
       integrals.fill(0.);
-      const QGauss<d> quadrature(2);
-      for (unsigned int q = 0; q < quadrature.size(); ++q)
-        {
-          const Point<d> &xi = quadrature.point(q);
-          Tensor<2, d>    jacobian;
-          for (unsigned int v = 0; v < n; ++v)
-            jacobian += outer_product(
-              Tensor<1, d>(face[v]),
-              GeometryInfo<d>::d_linear_shape_function_gradient(xi, v));
-          const double JxW =
-            std::abs(determinant(jacobian)) * quadrature.weight(q);
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              const double phi =
-                GeometryInfo<d>::d_linear_shape_function(xi, i);
-              integrals[i] += phi * JxW;
-              for (unsigned int j = 0; j < n; ++j)
-                mass(i, j) +=
-                  phi * GeometryInfo<d>::d_linear_shape_function(xi, j) * JxW;
-            }
-        }
+      visit([&](const Point<d> &xi, const double JxW) {
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const double phi = GeometryInfo<d>::d_linear_shape_function(xi, i);
+            integrals[i] += phi * JxW;
+            for (unsigned int j = 0; j < n; ++j)
+              mass(i, j) +=
+                phi * GeometryInfo<d>::d_linear_shape_function(xi, j) * JxW;
+          }
+      });
       mass.gauss_jordan();
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)

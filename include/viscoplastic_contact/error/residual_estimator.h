@@ -163,10 +163,12 @@ namespace Viscoplastic
       bool is_other_side = false;
 
       /// Where another body was opposite to a point at first: relevant nodes
-      /// with weights, the distance along the normal, and h_e/(2 mu) of both.
+      /// with weights, the normal, the distance along it, and h_e/(2 mu) of
+      /// both.
       struct Opposite
       {
         std::vector<std::pair<std::size_t, double>> nodes;
+        Tensor<1, dim>                              normal;
         double                                      distance, softness;
       };
       /// None without another body; without nodes where nothing is opposite.

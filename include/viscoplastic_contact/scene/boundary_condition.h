@@ -75,6 +75,9 @@ namespace Viscoplastic
     Tensor<1, dim> normal;
     /// Whether that is given, so that the piece may be curved.
     bool normal_is_given = false;
+    /// Whether the piece is curved and has normals at its nodes instead, see
+    /// SurfaceNormals: only in contact with another body.
+    bool normal_varies = false;
 
     /// Whether u_nu is prescribed here.
     bool
@@ -187,9 +190,11 @@ namespace Viscoplastic
     Tensor<1, dim>
     sliding(const Point<dim> &x, const double t) const;
 
-    /// d nu + sliding().
+    /// d nu + sliding(), at a point with this normal nu.
     Tensor<1, dim>
-    glued_displacement(const Point<dim> &x, const double t) const;
+    glued_displacement(const Point<dim>     &x,
+                       const Tensor<1, dim> &outward_normal,
+                       const double          t) const;
 
     /// Whether some displacement component is prescribed here.
     bool

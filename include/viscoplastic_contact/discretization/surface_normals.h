@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <viscoplastic_contact/scene/scene.h>
+
+namespace Viscoplastic
+{
+  template <int dim>
+  struct SurfaceFace;
+
+
+  /**
+   * Outward normals at the nodes of curved boundaries on which two bodies are
+   * in contact, of both sides: those of the faces around, each weighted by
+   * 1/length in the plane, and in space by the sine of its angle over the
+   * product of the edges there (Max, J. Graphics Tools 4, 1999), which is exact
+   * where vertices lie on a circle or sphere. On a plane of symmetry they are
+   * those of the body with its mirror image. Hanging nodes have the mean of
+   * their parents', and are lifted to the surface, see SurfaceFace::bulge().
+   */
+  template <int dim>
+  class SurfaceNormals
+  {
+  public:
+    /// Collective.
+    SurfaceNormals(const DoFHandler<dim>           &dof_handler,
+                   const AffineConstraints<double> &hanging_nodes,
+                   const Scene<dim>                &scene);
+
+    /// That of a locally relevant node, by its first degree of freedom.
+    Tensor<1, dim>
+    at(const types::global_dof_index first_dof) const;
+
+    /// A face of these boundaries on an owned cell or a ghost.
+    SurfaceFace<dim>
+    face(const typename DoFHandler<dim>::cell_iterator &cell,
+         const unsigned int                             f) const;
+
+    /// How far along the normals of a face to look for the other side: half of
+    /// the radius of curvature, where they meet.
+    static double
+    reach(const SurfaceFace<dim> &face);
+
+  private:
+    LinearAlgebra::distributed::Vector<double> normals, lifts;
+  };
+} // namespace Viscoplastic

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Two bodies that touch along a curved face, whose normals are those at its nodes."""
+
+import numpy as np
+
+from harness import TestCase, main, run, scene_file
+
+TIGHT = {"Solver/Contact tolerance": 1e-10}
+RADII = 1, 2, 3
+MODULI, RATIOS = (1, 2), (0.3, 0.2)
+
+
+def gives_way(dim):
+    """How far the faces of both rings (of spheres in space) give way to a pressure 1."""
+    a, b, c = RADII
+    result = []
+    for E, nu, of in (MODULI[0], RATIOS[0], a), (MODULI[1], RATIOS[1], c):
+        if dim == 2:
+            shape = (1 + nu) * ((1 - 2 * nu) * b**2 + of**2) / abs(b**2 - of**2)
+        else:
+            shape = ((1 - 2 * nu) * b**3 + (1 + nu) / 2 * of**3) / abs(b**3 - of**3)
+        result.append(b / E * shape)
+    return sum(result)
+
+
+SPHERES = {
+    "Dimension": 3,
+    "Geometry/Arguments": "0, 0, 0 : 1 : 2 : 0 : true | 0, 0, 0 : 2 : 3 : 0 : true",
+    "Boundary 4/Role": "symmetry",
+    "Boundary 24/Role": "symmetry",
+    "Output/Points": "",
+}
+
+
+def fit(changes, ranks=1):
+    return run("shrink_fit_2d", {**TIGHT, **changes}, ranks=ranks)
+
+
+def fit_of_whole_rings(changes):
+    """All around, where the mean of the normals is zero."""
+    whole = {
+        "Geometry/Generator": "hyper_shell | hyper_shell",
+        "Geometry/Arguments": "0, 0 : 1 : 2 : 8 : true | 0, 0 : 2 : 3 : 12 : true",
+        "Output/Points": "",
+    }
+    ends = tuple(f"subsection Boundary {n}\n" for n in (2, 3, 22, 23))
+    text = "\n\n".join(
+        part
+        for part in scene_file("shrink_fit_2d").read_text().split("\n\n")
+        if not part.startswith(ends)
+    )
+    return run("whole", {**TIGHT, **whole, **changes}, text=text)
+
+
+class ShrinkFit(TestCase):
+    pressure = 0.001 / gives_way(2)
+
+    def test_rings(self):
+        """Lamé's pressure, with second order; the same on ranks."""
+        errors = []
+        for level, ranks, solver in (
+            (1, 2, "algebraic multigrid"),
+            (2, 3, "multigrid"),
+            (3, 1, "direct"),
+        ):
+            changes = {
+                "Geometry/Global refinements": level,
+                "Solver/Linear solver": solver,
+            }
+            result = fit(changes, ranks)
+            if ranks > 1:
+                alone = fit({**changes, "Solver/Linear solver": "direct"})
+                for column in "max_pressure", "strain_energy", "point1_y":
+                    self.assertClose(result[column], alone[column], relative=1e-7)
+            errors.append(abs(result["max_pressure"][-1] / self.pressure - 1))
+        # measured: 9.1e-3, 2.8e-3, 6.8e-4
+        self.assertLess(errors[0], 0.01)
+        for coarse, fine in zip(errors, errors[1:]):
+            self.assertLess(fine, coarse / 3)
+
+    def test_whole_rings(self):
+        result = fit_of_whole_rings(
+            {
+                "Geometry/Global refinements": 3,
+                "Supports/Points": "0, 1: x; 1, 0: y; -1, 0: y; "
+                "0, 3: x; 3, 0: y; -3, 0: y",
+            }
+        )
+        self.assertClose(result["max_pressure"][-1], self.pressure, 0.01)
+
+    def test_contact_laws(self):
+        """Under a pressure on the outside all of them are one body of two rings."""
+        b, c = RADII[1:]
+        E, nu = MODULI[1], RATIOS[1]
+        outside = 2 * c**2 * b * (1 - nu**2) / E / (c**2 - b**2)
+        pressure = 0.001 * outside / gives_way(2)
+        E, nu = MODULI[0], RATIOS[0]
+        a = RADII[0]
+        inside = -pressure * 2 * b**2 * a * (1 - nu**2) / E / (b**2 - a**2)
+        loads = {
+            "Boundary 1/Gap": 0,
+            "Boundary 21/Role": "traction",
+            "Boundary 21/Pressure": "0.001*t",
+            "Initial state/Equilibrate": "false",
+        }
+        for law, friction in (
+            ("unilateral", "none"),
+            ("bilateral", "none"),
+            ("normal compliance", "none"),
+            ("unilateral", "coulomb"),
+            ("bilateral", "tresca"),
+            ("bilateral", "glued"),
+        ):
+            with self.subTest(law=law, friction=friction):
+                result = fit(
+                    {
+                        **loads,
+                        "Boundary 1/Contact law": law,
+                        "Boundary 1/Friction law": friction,
+                        "Boundary 1/Compliance": 1e5 if "compl" in law else 0,
+                        "Boundary 1/Friction coefficient": 0.3,
+                        "Boundary 1/Friction bound": 1e-4,
+                    },
+                )
+                self.assertClose(result["point0_x"][-1], inside, 0.008)
+                if law != "bilateral":
+                    self.assertClose(result["max_pressure"][-1], pressure, 0.008)
+
+    def test_spheres_with_hanging_nodes(self):
+        """On the face of either, where nodes in the middle of edges are not on it."""
+        pressure = 0.001 / gives_way(3)
+        errors = []
+        for level, sides, ranks in ((1, "", 1), (2, "", 3), (2, "24: 1", 1)):
+            result = fit(
+                {
+                    **SPHERES,
+                    "Geometry/Global refinements": level,
+                    "Geometry/Boundary refinements": sides,
+                    "Boundary 1/Gap": "-0.02" if sides else "-0.001",
+                },
+                ranks,
+            )
+            force = result["contact_force_x"][-1] / (20 if sides else 1)
+            # of an eighth, on the plane across
+            errors.append(abs(force / (np.pi * pressure) - 1))
+        # measured: 5.8e-2, 1.4e-2
+        self.assertLess(errors[1], errors[0] / 3.5)
+        self.assertLess(errors[2], 0.025)
+
+    def test_turned_glued_rings(self):
+        """A rigid turn meets no more resistance than the geometry's error."""
+        energies = []
+        for level in 1, 2:
+            result = fit_of_whole_rings(
+                {
+                    "Geometry/Global refinements": level,
+                    "Boundary 0/Role": "displacement",
+                    "Boundary 0/Displacement": "-0.001*t*y; 0.001*t*x",
+                    "Boundary 1/Contact law": "bilateral",
+                    "Boundary 1/Friction law": "glued",
+                    "Boundary 1/Gap": 0,
+                    "Initial state/Equilibrate": "false",
+                }
+            )
+            energies.append(result["strain_energy"][-1])
+        # measured: 5.9e-12, 7.4e-13
+        self.assertLess(energies[1], energies[0] / 6)
+
+
+if __name__ == "__main__":
+    main()

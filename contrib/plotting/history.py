@@ -106,6 +106,7 @@ PANELS = (
         "energy",
         [
             "external_work",
+            "thermal_work",
             "stored_energy",
             "viscous_dissipation",
             "friction_dissipation",

@@ -67,7 +67,7 @@ COLUMNS = [
     ("mean_von_mises", "mean von Mises stress", "stress"),
     ("capped_volume", "capped volume", "volume"),
     (r"(stored|strain|spring|adaptation|construction)_energy", None, "energy"),
-    (r"external_work|duality_gap|energy_balance_defect", None, "energy"),
+    (r"(external|thermal)_work|duality_gap|energy_balance_defect", None, "energy"),
     (r"(viscous|friction)_dissipation", None, "energy"),
     (r"stored_energy_\w+|viscous_dissipation_\w+", None, "energy"),
     (r"area_\w+", None, "area"),

@@ -133,7 +133,8 @@ namespace Viscoplastic
     refuse_slips(text, entry);
     const auto                           columns = columns_in(text);
     std::unique_ptr<FunctionParser<dim>> parser;
-    if (columns.empty())
+    if (columns.empty() &&
+        Utilities::split_string_list(variables).size() == dim + 1)
       parser = std::make_unique<FunctionParser<dim>>(1);
     else
       parser = std::make_unique<ParserWithTables<dim>>(columns);
@@ -218,11 +219,13 @@ namespace Viscoplastic
     , constant(0.)
     , parser(parse_expression<dim>(text, variables + ",t", entry))
   {
-    for (const std::string &variable : Utilities::split_string_list(variables))
-      position_dependent = position_dependent || mentions(text, variable);
+    const auto names = Utilities::split_string_list(variables);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      (i < dim ? position_dependent : has_additional_variable) |=
+        mentions(text, names[i]);
     constant = parser->value(Point<dim>());
     // Not everybody asks a constant for its value.
-    if (!time_dependent && !position_dependent)
+    if (!time_dependent && !position_dependent && !has_additional_variable)
       value(Point<dim>(), 0.);
   }
 
@@ -243,14 +246,18 @@ namespace Viscoplastic
 
   template <int dim>
   double
-  Expression<dim>::value(const Point<dim> &x, const double t) const
+  Expression<dim>::value(const Point<dim> &x,
+                         const double      t,
+                         const double      additional) const
   {
     double result = constant;
     if (!parser)
       result = function(x, t);
-    else if (time_dependent || position_dependent)
+    else if (time_dependent || position_dependent || has_additional_variable)
       {
         parser->set_time(t);
+        if (has_additional_variable)
+          with_tables<dim>(parser)->set_additional_variable(additional);
         result = parser->value(x);
       }
     require_finite(result, x, t);

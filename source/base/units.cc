@@ -19,7 +19,7 @@ namespace Viscoplastic
   {
     constexpr Dimension length_dimension{1., 0., 0.},
       time_dimension{0., 1., 0.}, stress_dimension{0., 0., 1.},
-      force_dimension{2., 0., 1.};
+      force_dimension{2., 0., 1.}, energy_dimension{3., 0., 1.};
 
     // Also of a calendar's year, in the mean.
     constexpr double day = 86400., year = 365.25 * day;
@@ -29,18 +29,34 @@ namespace Viscoplastic
     known_units()
     {
       static const std::vector<Unit> units{
-        {"nm", length_dimension, 1e-9}, {"um", length_dimension, 1e-6},
-        {"mm", length_dimension, 1e-3}, {"cm", length_dimension, 1e-2},
-        {"m", length_dimension, 1.},    {"km", length_dimension, 1e3},
-        {"ms", time_dimension, 1e-3},   {"s", time_dimension, 1.},
-        {"min", time_dimension, 60.},   {"h", time_dimension, 3600.},
-        {"day", time_dimension, day},   {"days", time_dimension, day},
-        {"year", time_dimension, year}, {"years", time_dimension, year},
-        {"Pa", stress_dimension, 1.},   {"kPa", stress_dimension, 1e3},
-        {"MPa", stress_dimension, 1e6}, {"GPa", stress_dimension, 1e9},
-        {"bar", stress_dimension, 1e5}, {"N", force_dimension, 1.},
-        {"kN", force_dimension, 1e3},   {"MN", force_dimension, 1e6},
-        {"J", {3., 0., 1.}, 1.},        {"kg", {1., 2., 1.}, 1.}};
+        {"nm", length_dimension, 1e-9},
+        {"um", length_dimension, 1e-6},
+        {"mm", length_dimension, 1e-3},
+        {"cm", length_dimension, 1e-2},
+        {"m", length_dimension, 1.},
+        {"km", length_dimension, 1e3},
+        {"ms", time_dimension, 1e-3},
+        {"s", time_dimension, 1.},
+        {"min", time_dimension, 60.},
+        {"h", time_dimension, 3600.},
+        {"day", time_dimension, day},
+        {"days", time_dimension, day},
+        {"year", time_dimension, year},
+        {"years", time_dimension, year},
+        {"Pa", stress_dimension, 1.},
+        {"kPa", stress_dimension, 1e3},
+        {"MPa", stress_dimension, 1e6},
+        {"GPa", stress_dimension, 1e9},
+        {"bar", stress_dimension, 1e5},
+        {"N", force_dimension, 1.},
+        {"kN", force_dimension, 1e3},
+        {"MN", force_dimension, 1e6},
+        {"J", energy_dimension, 1.},
+        {"kJ", energy_dimension, 1e3},
+        {"kg", {1., 2., 1.}, 1.},
+        {"K", {0., 0., 0., 1.}, 1.},
+        // A number of particles; in a scene it only divides energies.
+        {"mol", {}, 1.}};
       return units;
     }
 
@@ -241,7 +257,7 @@ namespace Viscoplastic
       return std::abs(a - b) < 1e-9;
     };
     return equal(length, other.length) && equal(time, other.time) &&
-           equal(stress, other.stress);
+           equal(stress, other.stress) && equal(temperature, other.temperature);
   }
 
 
@@ -249,7 +265,10 @@ namespace Viscoplastic
   Dimension
   Dimension::operator*(const Dimension &other) const
   {
-    return {length + other.length, time + other.time, stress + other.stress};
+    return {length + other.length,
+            time + other.time,
+            stress + other.stress,
+            temperature + other.temperature};
   }
 
 
@@ -257,7 +276,10 @@ namespace Viscoplastic
   Dimension
   Dimension::power(const double exponent) const
   {
-    return {exponent * length, exponent * time, exponent * stress};
+    return {exponent * length,
+            exponent * time,
+            exponent * stress,
+            exponent * temperature};
   }
 
 
@@ -278,6 +300,7 @@ namespace Viscoplastic
       {{1., 0., 1.}, "a force per length"},
       {{-1., 0., 1.}, "a force per volume"},
       {{3., 0., 1.}, "an energy"},
+      {{0., 0., 0., 1.}, "a temperature"},
       {{0., 1., 1.}, "a viscosity, stress times time"}};
     for (const auto &[known, word] : words)
       if (known == dimension)
@@ -286,7 +309,8 @@ namespace Viscoplastic
     for (const auto &[name, exponent] :
          {std::make_pair("length", dimension.length),
           std::make_pair("time", dimension.time),
-          std::make_pair("stress", dimension.stress)})
+          std::make_pair("stress", dimension.stress),
+          std::make_pair("temperature", dimension.temperature)})
       if (std::abs(exponent) > 1e-9)
         {
           text << (text.str().empty() ? "" : " ") << name;
@@ -490,6 +514,8 @@ namespace Viscoplastic
           return '(' + energy + '/' + time.name + ")^0.5";
         case Quantity::stress_norm:
           return stress.name + '*' + power_of_length(0.5 * dim);
+        case Quantity::temperature:
+          return "K";
         case Quantity::wall_time:
           return "s";
       }

@@ -29,6 +29,7 @@ namespace Viscoplastic
                           "Poisson's ratio",
                           "Voigt matrix",
                           "Law",
+                          "Thermal expansion",
                           "Added at",
                           "Removed at",
                           "Volumetric integration",
@@ -47,6 +48,7 @@ namespace Viscoplastic
                           "Tangential stiffness"});
       return section == "Initial state" || section == "Dimension" ||
              section == "Units" || section == "Supports" ||
+             path == "Temperature/Reference temperature" ||
              path == "Mesh refinement/Strategy" || path == "Output/Points" ||
              path == "Output/Point fields" || path == "Output/Lines" ||
              path == "Output/Line fields" || path == "Output/Integrals" ||
@@ -91,8 +93,11 @@ namespace Viscoplastic
                changes.allowed)
               .push_back("'" + path + "' is " + quoted(value) + " (was " +
                          quoted(old->second) + ")");
-            for (const std::string section :
-                 {"Boundary", "Material", "Loads", "Exact solution"})
+            for (const std::string section : {"Boundary",
+                                              "Material",
+                                              "Loads",
+                                              "Temperature",
+                                              "Exact solution"})
               changes.of_data |= path.compare(0, section.size(), section) == 0;
           }
       }

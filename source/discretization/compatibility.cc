@@ -148,7 +148,7 @@ namespace Viscoplastic
     DistributedVector residual = load.values;
     space.restrict_to_unknowns(residual);
     double size = residual.l2_norm(), largest = 0.;
-    if (space.scene.initial_stress)
+    if (space.scene.initial_stress || space.scene.has_initial_thermal_stress())
       {
         // More points than elsewhere: what remains is quadrature error.
         DistributedVector internal = work_of_initial_stress(space, 4);

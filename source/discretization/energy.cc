@@ -24,6 +24,7 @@ namespace Viscoplastic
   template <int dim>
   CellEnergies
   energies_of_cell(const FlowLaws<dim>                  &laws,
+                   const typename FlowLaws<dim>::AtTime &before,
                    const typename FlowLaws<dim>::AtTime &now,
                    const State<dim>                     &old_state,
                    const State<dim>                     &state,
@@ -44,8 +45,9 @@ namespace Viscoplastic
       return result;
     result.mean_stress += stress_space.mean(c, &state.z[c * n]);
     // A source flows also where there is no law.
-    const bool flows = law || laws.source_solution;
-    if (flows)
+    const bool flows   = law || laws.source_solution;
+    const bool is_warm = laws.thermal && laws.thermal->expands;
+    if (flows || is_warm)
       stress_space.strains(c, old_state.u.begin(), old_strain.data());
     for (unsigned int s = 0; s < n; ++s)
       {
@@ -53,7 +55,7 @@ namespace Viscoplastic
         const double                 weight = stress_space.weight(c, s);
         result.irreversible_energy +=
           0.5 * weight * stiffness.complementary_square(z);
-        if (!flows)
+        if (!flows && !is_warm)
           continue;
         const SymmetricTensor<2, 3> &old_z = old_state.z[c * n + s];
         const SymmetricTensor<2, 3>  mean_strain =
@@ -62,6 +64,17 @@ namespace Viscoplastic
         // E^-1 sigma, of the mean stress of the step.
         SymmetricTensor<2, 3> driving_strain =
           mean_strain + stiffness.strain(mean_z);
+        SymmetricTensor<2, 3> flow = z - old_z;
+        if (is_warm)
+          {
+            const double growth =
+              now.thermal_strain(c, s) - before.thermal_strain(c, s);
+            result.thermal_work -=
+              weight * growth * trace(stiffness.stress(mean_strain) + mean_z);
+            flow -= ThermalStrain<dim>::stress(stiffness, growth);
+            if (!flows)
+              continue;
+          }
         // Parameters may be expressions: only for laws that use them.
         if (law && law->has_own_energy())
           {
@@ -70,15 +83,19 @@ namespace Viscoplastic
               stiffness.stress(strain[s]) + z;
             driving_strain =
               law->driving_strain(stiffness.stress(mean_strain) + mean_z,
-                                  mean_strain,
+                                  0.5 *
+                                    (before.mechanical(old_strain[s], c, s) +
+                                     now.mechanical(strain[s], c, s)),
                                   stiffness,
                                   point);
             result.irreversible_energy +=
-              weight *
-              (law->stored_energy(stress, strain[s], stiffness, point) -
-               0.5 * stiffness.complementary_square(stress));
+              weight * (law->stored_energy(stress,
+                                           now.mechanical(strain[s], c, s),
+                                           stiffness,
+                                           point) -
+                        0.5 * stiffness.complementary_square(stress));
           }
-        result.viscous_dissipation -= weight * ((z - old_z) * driving_strain);
+        result.viscous_dissipation -= weight * (flow * driving_strain);
       }
     return result;
   }
@@ -92,20 +109,21 @@ namespace Viscoplastic
                    const State<dim>    &state)
   {
     const StressSpace<dim> &stress_space = laws.stress_space;
-    const auto              now          = laws.at(state.t);
-    StressSummary<dim>      result;
-    LargestPlace<dim>       largest_mises;
-    double                  volume = 0.;
+    const auto         before = laws.at(old_state.t), now = laws.at(state.t);
+    StressSummary<dim> result;
+    LargestPlace<dim>  largest_mises;
+    double             volume = 0.;
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
       {
         const auto &cell = stress_space.space.cells[c];
         if (!stress_space.space.scene.is_present(cell->material_id()))
           continue;
         const CellEnergies energies =
-          energies_of_cell(laws, now, old_state, state, c);
+          energies_of_cell(laws, before, now, old_state, state, c);
         const SymmetricTensor<2, 3> &mean = energies.mean_stress;
         result.irreversible_energy += energies.irreversible_energy;
         result.viscous_dissipation += energies.viscous_dissipation;
+        result.thermal_work += energies.thermal_work;
         const double mises = std::sqrt(1.5) * stable_norm(deviator(mean));
         if (largest_mises.may_take(mises))
           largest_mises.add(mises, cell->center());
@@ -121,7 +139,8 @@ namespace Viscoplastic
                              result.stress_norm,
                              result.irreversible_energy,
                              result.viscous_dissipation,
-                             volume};
+                             volume,
+                             result.thermal_work};
     Utilities::MPI::sum(sums, comm, sums);
     largest_mises.reduce(comm);
     result.max_von_mises       = largest_mises.value();
@@ -131,6 +150,7 @@ namespace Viscoplastic
     result.stress_norm         = std::sqrt(sums[1]);
     result.irreversible_energy = sums[2];
     result.viscous_dissipation = sums[3];
+    result.thermal_work        = sums[5];
     return result;
   }
 
@@ -179,11 +199,13 @@ namespace Viscoplastic
   template CellEnergies
   energies_of_cell<2>(const FlowLaws<2> &,
                       const FlowLaws<2>::AtTime &,
+                      const FlowLaws<2>::AtTime &,
                       const State<2> &,
                       const State<2> &,
                       const std::size_t);
   template CellEnergies
   energies_of_cell<3>(const FlowLaws<3> &,
+                      const FlowLaws<3>::AtTime &,
                       const FlowLaws<3>::AtTime &,
                       const State<3> &,
                       const State<3> &,

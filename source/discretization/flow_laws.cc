@@ -58,6 +58,9 @@ namespace Viscoplastic
   template <int dim>
   FlowLaws<dim>::FlowLaws(const StressSpace<dim> &stress_space)
     : stress_space(stress_space)
+    , thermal(stress_space.space.scene.temperature ?
+                std::make_unique<const ThermalStrain<dim>>(stress_space) :
+                nullptr)
     , any(false)
     , any_cap(false)
     , any_own_energy(false)
@@ -70,9 +73,15 @@ namespace Viscoplastic
     for (const auto &material : scene.materials)
       {
         const ViscoplasticLaw *law = material->law.get();
-        materials.push_back({law,
-                             law && law->depends_on_position(),
-                             law && law->depends_on_time()});
+        const bool of_temperature = law && law->has_parameters_of_temperature();
+        materials.push_back(
+          {law,
+           law && (law->depends_on_position() ||
+                   (of_temperature &&
+                    scene.temperature->value.depends_on_position())),
+           law && (law->depends_on_time() ||
+                   (of_temperature && thermal->varies_in_time)),
+           law && law->depends_on_temperature() && thermal->varies_in_time});
         any |= law != nullptr;
         any_cap |= law && law->has_cap();
         any_own_energy |= law && law->has_own_energy();
@@ -98,10 +107,13 @@ namespace Viscoplastic
         {
           const ViscoplasticLaw *law = start.law(c);
           if (any_to_sample)
-            parameters.push_back(
-              law ? law->point(position(stress_space, c, s), 0.).parameters :
-                    std::array<double, 6>());
-          if (law && (s == 0 || law->depends_on_position()))
+            parameters.push_back(law ? law
+                                         ->point(position(stress_space, c, s),
+                                                 0.,
+                                                 start.temperature(c, s))
+                                         .parameters :
+                                       std::array<double, 6>());
+          if (law && (s == 0 || start.varies_in_space(c)))
             law->check(stress_space.moduli(c), start.point(c, s));
           if (law && s == 0)
             check_added_material(scene.material(
@@ -117,11 +129,14 @@ namespace Viscoplastic
   bool
   FlowLaws<dim>::have_constant_tangents() const
   {
-    return std::all_of(
-      materials.begin(), materials.end(), [](const Entry &entry) {
-        return !entry.law ||
-               (entry.law->has_constant_tangents() && !entry.varies_in_time);
-      });
+    return std::all_of(materials.begin(),
+                       materials.end(),
+                       [](const Entry &entry) {
+                         return !entry.law ||
+                                (entry.law->has_constant_tangents() &&
+                                 !entry.varies_in_time &&
+                                 !entry.follows_temperature);
+                       });
   }
 
 
@@ -134,7 +149,8 @@ namespace Viscoplastic
            std::none_of(materials.begin(),
                         materials.end(),
                         [](const Entry &entry) {
-                          return entry.varies_in_time;
+                          return entry.varies_in_time ||
+                                 entry.follows_temperature;
                         });
   }
 
@@ -146,16 +162,15 @@ namespace Viscoplastic
   {
     if (std::none_of(materials.begin(),
                      materials.end(),
-                     [](const Entry &entry) { return entry.varies_in_time; }))
+                     [](const Entry &entry) { return entry.varies_in_time; }) &&
+        !(thermal && thermal->varies_in_time))
       return;
     const AtTime now(*this, t); // evaluates what depends on t alone
     for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
-      {
-        const ViscoplasticLaw *law = now.law(c);
-        if (law && law->depends_on_time() && law->depends_on_position())
-          for (unsigned int s = 0; s < stress_space.n_samples; ++s)
-            law->point(position(stress_space, c, s), t);
-      }
+      if (now.law(c) && now.entry(c).varies_in_time &&
+          now.entry(c).varies_in_space)
+        for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+          now.point(c, s);
   }
 
 
@@ -186,13 +201,29 @@ namespace Viscoplastic
 
   template <int dim>
   FlowLaws<dim>::AtTime::AtTime(const FlowLaws &laws, const double t)
-    : laws(laws)
+    : thermal(laws.thermal ? laws.thermal->at(t) : nullptr)
+    , laws(laws)
     , t(t)
   {
+    // Parameters that are the same everywhere are those of any temperature.
+    const double T =
+      thermal && !thermal->temperature.empty() ? thermal->temperature[0] : 0.;
     for (const Entry &entry : laws.materials)
       uniform.push_back(entry.law && !entry.varies_in_space ?
-                          entry.law->point(Point<3>(), t) :
+                          entry.law->point(Point<3>(), t, T) :
                           LawPoint());
+  }
+
+
+
+  template <int dim>
+  bool
+  FlowLaws<dim>::AtTime::varies_in_space(const std::size_t cell) const
+  {
+    return entry(cell).varies_in_space ||
+           (entry(cell).law && entry(cell).law->depends_on_temperature() &&
+            laws.stress_space.space.scene.temperature->value
+              .depends_on_position());
   }
 
 
@@ -202,18 +233,18 @@ namespace Viscoplastic
   FlowLaws<dim>::AtTime::point(const std::size_t  cell,
                                const unsigned int s) const
   {
-    const unsigned int m =
-      laws.material_of_cell.empty() ? 0 : laws.material_of_cell[cell];
-    const Entry   &entry = laws.materials[m];
-    const Point<3> x     = position(laws.stress_space, cell, s);
+    const unsigned int m     = material(cell);
+    const Entry       &entry = laws.materials[m];
+    const Point<3>     x     = position(laws.stress_space, cell, s);
     if (entry.varies_in_space && entry.varies_in_time)
-      return entry.law->point(x, t);
+      return entry.law->point(x, t, temperature(cell, s));
     LawPoint point = uniform[m];
     if (entry.varies_in_space)
       point.parameters =
         laws.parameters[cell * laws.stress_space.n_samples + s];
-    point.x = x;
-    point.t = t;
+    point.x           = x;
+    point.t           = t;
+    point.temperature = temperature(cell, s);
     return point;
   }
 
@@ -268,6 +299,7 @@ namespace Viscoplastic
           for (unsigned int s = 0; s < n; ++s)
             {
               stress[s] = stiffness.stress(strain[s]) + z[c * n + s];
+              strain[s] = now.mechanical(strain[s], c, s);
               points[s] = now.point(c, s);
             }
           law->flow({n, stress.data(), strain.data(), points.data(), stiffness},

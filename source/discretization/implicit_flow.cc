@@ -17,13 +17,15 @@ namespace Viscoplastic
             const SymmetricTensor<2, 3> &start)
       {
         if (law != &equation.law || stiffness != &equation.stiffness ||
-            k != equation.k || parameters != equation.point.parameters)
+            k != equation.k || parameters != equation.point.parameters ||
+            temperature != equation.point.temperature)
           {
-            law        = &equation.law;
-            stiffness  = &equation.stiffness;
-            k          = equation.k;
-            parameters = equation.point.parameters;
-            inverse    = invert(
+            law         = &equation.law;
+            stiffness   = &equation.stiffness;
+            k           = equation.k;
+            parameters  = equation.point.parameters;
+            temperature = equation.point.temperature;
+            inverse     = invert(
               identity_tensor<3>() -
               k * law->tangents({}, {}, *stiffness, equation.point).stress);
           }
@@ -35,6 +37,7 @@ namespace Viscoplastic
       const Stiffness       *stiffness = nullptr;
       double                 k         = 0.;
       std::array<double, 6>  parameters{};
+      double                 temperature = 0.;
       SymmetricTensor<4, 3>  inverse;
     };
   } // namespace
@@ -61,12 +64,22 @@ namespace Viscoplastic
         {
           const std::size_t i = c * stress_space.n_samples + s;
           const LawPoint    point = laws.point(c, s);
-          z[i] =
-            law.has_constant_tangents() ?
-                                      linear_equation.solve(
-                {law, strain[s], old_z[i], k, stiffness, point}, start[i]) :
-                                      implicit_irreversible_stress(
-                law, strain[s], old_z[i], k, stiffness, point, start[i]);
+          // The stress is that of the mechanical strain and the part of z that
+          // is not thermal.
+          const SymmetricTensor<2, 3> strain_of_law =
+            laws.mechanical(strain[s], c, s);
+          const double                excess = laws.thermal_strain(c, s);
+          const SymmetricTensor<2, 3> thermal =
+            excess != 0. ? ThermalStrain<dim>::stress(stiffness, excess) :
+                                                   SymmetricTensor<2, 3>();
+          const SymmetricTensor<2, 3> old = old_z[i] - thermal,
+                                      from = start[i] - thermal;
+          z[i]                             = thermal +
+                 (law.has_constant_tangents() ?
+                                            linear_equation.solve(
+                      {law, strain_of_law, old, k, stiffness, point}, from) :
+                                            implicit_irreversible_stress(
+                      law, strain_of_law, old, k, stiffness, point, from));
         }
     };
 

@@ -6,6 +6,7 @@
 #include <viscoplastic_contact/discretization/bulk_system.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/discretization/springs.h>
+#include <viscoplastic_contact/discretization/thermal_strain.h>
 #include <viscoplastic_contact/laws/strain.h>
 
 #include <algorithm>
@@ -36,6 +37,24 @@ namespace Viscoplastic
 
   namespace
   {
+    /// That of alpha (T - T_0) at t = 0.
+    template <int dim>
+    SymmetricTensor<2, 3>
+    initial_thermal_stress(const Scene<dim>        &scene,
+                           const Point<dim>        &x,
+                           const types::material_id id)
+    {
+      const Material<dim> &material = scene.material(id);
+      if (!scene.has_initial_thermal_stress() || !material.thermal_expansion)
+        return {};
+      return ThermalStrain<dim>::stress(
+        material.stiffness(x),
+        material.expansion(x) * (scene.temperature->value.value(x, 0.) -
+                                 *scene.temperature->reference));
+    }
+
+
+
     /// Call visit(cell, fe_values) for each owned cell.
     template <int dim, typename Visitor>
     void
@@ -145,7 +164,8 @@ namespace Viscoplastic
     return virtual_work(space,
                         n_points,
                         [&](const Point<dim> &x, const types::material_id id) {
-                          return initial_stress(space.scene, x, id);
+                          return initial_stress(space.scene, x, id) +
+                                 initial_thermal_stress(space.scene, x, id);
                         });
   }
 
@@ -272,6 +292,8 @@ namespace Viscoplastic
 
     if (scene.has_irreversible_stress())
       state.z = initial_irreversible_stress(stress_space, state.u);
+    if (scene.has_initial_thermal_stress())
+      ThermalStrain<dim>(stress_space).add_stress(0., 1., state.z);
     return state;
   }
 
@@ -290,6 +312,13 @@ namespace Viscoplastic
         space.dof_handler.get_triangulation().n_active_cells());
     if (!scene.initial_displacement && !scene.initial_stress)
       return 0.;
+    // Temperatures are taken as they are.
+    IrreversibleStress        rest;
+    const auto                thermal = scene.has_initial_thermal_stress() ?
+                                          std::make_unique<ThermalStrain<dim>>(stress_space) :
+                                          nullptr;
+    const IrreversibleStress &z =
+      without_thermal_stress(thermal.get(), 0., state.z, rest);
     std::vector<double>                sums(2, 0.);
     std::vector<SymmetricTensor<2, 3>> strain(stress_space.n_samples);
     std::size_t                        c = 0;
@@ -299,7 +328,7 @@ namespace Viscoplastic
       // sigma0^h at the samples
       for (unsigned int s = 0; s < stress_space.n_samples; ++s)
         strain[s] =
-          stiffness.stress(strain[s]) + state.z[c * stress_space.n_samples + s];
+          stiffness.stress(strain[s]) + z[c * stress_space.n_samples + s];
       const std::vector<SymmetricTensor<2, 3>> &sigma  = strain;
       const double                              before = sums[0] + sums[1];
       for (const unsigned int q : values.quadrature_point_indices())

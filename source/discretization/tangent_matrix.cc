@@ -112,7 +112,7 @@ namespace Viscoplastic
               const StepTangent next =
                 law ? step_tangent(*law,
                                    stiffness.stress(strain[s]) + z[i],
-                                   strain[s],
+                                   now.mechanical(strain[s], c, s),
                                    k,
                                    stiffness,
                                    now.point(c, s)) :

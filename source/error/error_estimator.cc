@@ -27,11 +27,12 @@ namespace Viscoplastic
     /// Collective.
     template <int dim>
     double
-    change_of_loads(const Scene<dim>  &scene,
-                    const Forces<dim> &before,
-                    const Forces<dim> &after)
+    change_of_loads(const FlowLaws<dim>       &laws,
+                    const EvaluatedState<dim> &old,
+                    const EvaluatedState<dim> &end)
     {
-      const auto changes = [](const auto &datum) {
+      const Scene<dim> &scene   = laws.stress_space.space.scene;
+      const auto        changes = [](const auto &datum) {
         return datum && datum->depends_on_time();
       };
       for (const auto &[id, condition] : scene.boundary)
@@ -39,10 +40,13 @@ namespace Viscoplastic
             changes(condition.friction_coefficient) ||
             changes(condition.normal_stress))
           return std::numeric_limits<double>::infinity();
-      DistributedVector change = after.load.values;
-      change -= before.load.values;
+      // So does a temperature.
+      if (laws.thermal && laws.thermal->changes(old.state.t, end.state.t))
+        return std::numeric_limits<double>::infinity();
+      DistributedVector change = end.forces.load.values;
+      change -= old.forces.load.values;
       const double size = change.l2_norm();
-      return size > 0. ? size / after.load.values.l2_norm() : 0.;
+      return size > 0. ? size / end.forces.load.values.l2_norm() : 0.;
     }
 
 
@@ -200,7 +204,7 @@ namespace Viscoplastic
     const double     r =
       std::max(accepted_rate.relaxation_rate, end.rate->relaxation_rate);
     const double of_loads = defect.first < 0. && k * r > resolved ?
-                              change_of_loads(scene, old.forces, end.forces) :
+                              change_of_loads(laws, old, end) :
                               std::numeric_limits<double>::infinity();
     const bool   fades    = std::isfinite(of_loads);
     state.time_error      = accepted.time_error;
@@ -222,13 +226,13 @@ namespace Viscoplastic
         const ViscoplasticLaw *law       = now.law(c);
         // The same in all cells of most bodies.
         if (c == 0 || law != last_law || &stiffness != last_stiffness ||
-            (law && law->depends_on_position()))
+            (law && now.varies_in_space(c)))
           {
-            fading     = law ?
-                           fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
-                           std::nullopt;
-            is_uniform = law && law->has_constant_tangents() &&
-                         !law->depends_on_position();
+            fading = law ?
+                       fading_with_strain(*law, k, stiffness, now.point(c, 0)) :
+                       std::nullopt;
+            is_uniform =
+              law && law->has_constant_tangents() && !now.varies_in_space(c);
             if (law == nullptr)
               relaxation = identity_tensor<3>();
             else if (is_uniform && (relaxes || fades))
@@ -258,8 +262,12 @@ namespace Viscoplastic
             if (needs_stress)
               stress = stiffness.stress(strains[s]) + state.z[i];
             if (law && (relaxes || fades) && !is_uniform)
-              relaxation = error_relaxation(
-                *law, stress, strains[s], k, stiffness, now.point(c, s));
+              relaxation = error_relaxation(*law,
+                                            stress,
+                                            now.mechanical(strains[s], c, s),
+                                            k,
+                                            stiffness,
+                                            now.point(c, s));
             const SymmetricTensor<2, 3> all = step;
             if (fades)
               {

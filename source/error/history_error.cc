@@ -35,7 +35,7 @@ namespace Viscoplastic
             mean += strains[q] * (weights[q] / stress_space.volume(c));
           const auto tangents =
             law->tangents(cell.stiffness.stress(mean) + state.z[c],
-                          mean,
+                          now.mechanical(mean, c, 0),
                           cell.stiffness,
                           point);
           for (unsigned int q = 0; q < strains.size(); ++q)

@@ -244,11 +244,15 @@ namespace Viscoplastic
     if (scene.quantity)
       return nullptr;
     return [this, &discretization, &accepted, so_far] {
-      limit_memory_loss(triangulation,
-                        discretization.stress_space,
-                        accepted.state.z,
-                        budget->transfer(accepted.errors,
-                                         budget->size(so_far)));
+      IrreversibleStress rest;
+      limit_memory_loss(
+        triangulation,
+        discretization.stress_space,
+        without_thermal_stress(discretization.laws.thermal.get(),
+                               accepted.state.t,
+                               accepted.state.z,
+                               rest),
+        budget->transfer(accepted.errors, budget->size(so_far)));
     };
   }
 

@@ -110,13 +110,14 @@ namespace Viscoplastic
         const SymmetricTensor<2, 3> stress    = stiffness.stress(strains[s]) +
                                              state.z[c * n + s],
                                     change =
-                                      tangent->at_samples()[c * n + s] * e;
-        const LawPoint point = now.point(c, s);
+                                      tangent->at_samples()[c * n + s] * e,
+                                    strain = now.mechanical(strains[s], c, s);
+        const LawPoint point               = now.point(c, s);
         // C e = E e + k dG to first order.
         return stiffness.strain(
           change - stiffness.stress(e) -
-          k * (flow->rate(stress + change, strains[s] + e, stiffness, point) -
-               flow->rate(stress, strains[s], stiffness, point)));
+          k * (flow->rate(stress + change, strain + e, stiffness, point) -
+               flow->rate(stress, strain, stiffness, point)));
       };
     return space_estimator.multiply_recovered(state, dual, linearization);
   }

@@ -344,6 +344,8 @@ namespace Viscoplastic
     if (fields.t && !initial_tractions.empty())
       for (std::size_t i = 0; i < tractions.size(); ++i)
         tractions[i] += initial_tractions[i];
+    if (fields.t && !expansion.empty())
+      add_thermal_tractions(*fields.t, tractions);
 
     // Normals point out of both sides.
     for (const InteriorFace &face : interior_faces)

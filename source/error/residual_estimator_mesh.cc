@@ -3,8 +3,10 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/discretization/plane_faces.h>
+#include <viscoplastic_contact/discretization/thermal_strain.h>
 #include <viscoplastic_contact/error/residual_estimator.h>
 #include <viscoplastic_contact/mesh/cell_order.h>
 
@@ -27,6 +29,7 @@ namespace Viscoplastic
     make_faces();
     make_face_values();
     make_initial_stress();
+    make_expansion();
     if (!stress_space.space.mortar_rows.empty())
       find_other_bodies();
     subface_shape_of.clear();
@@ -334,7 +337,7 @@ namespace Viscoplastic
           mean += at(c, shape.positions[q]) * (shape.weights[q] / shape.volume);
         means.push_back(mean);
       }
-    const auto add_face = [&](const std::size_t c, const FaceShape &face) {
+    for_each_face([&](const std::size_t c, const FaceShape &face) {
       for (unsigned int q = 0; q < n_face_points; ++q)
         {
           const SymmetricTensor<2, 3> rest =
@@ -345,12 +348,94 @@ namespace Viscoplastic
               traction[i] += rest[i][j] * face.normals[q][j];
           initial_tractions.push_back(traction);
         }
-    };
+    });
+  }
+
+
+
+  template <int dim>
+  template <typename Call>
+  void
+  ResidualEstimator<dim>::for_each_face(const Call &call) const
+  {
     for (std::size_t c = 0; c < cells.size(); ++c)
       for (const FaceShape &face : shapes[cells[c].shape].faces)
-        add_face(c, face);
+        call(c, face);
     for (const SubfaceSide &side : subface_sides)
-      add_face(side.cell, subface_shapes[side.table]);
+      call(side.cell, subface_shapes[side.table]);
+  }
+
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::make_expansion()
+  {
+    const Scene<dim> &scene = stress_space.space.scene;
+    if (!scene.has_thermal_strain())
+      return;
+    fail_together(stress_space.space.communicator, [&] {
+      for (const LocalCell &cell : cells)
+        {
+          Tensor<1, dim> center = cell.origin;
+          for (const auto &position : shapes[cell.shape].positions)
+            center += position / n_points;
+          expansion.push_back(
+            scene.material(cell.material_id).expansion(Point<dim>(center)));
+        }
+      const Temperature<dim> &T = *scene.temperature;
+      for_each_face([&](const std::size_t c, const FaceShape &face) {
+        for (unsigned int q = 0; q < n_face_points; ++q)
+          reference_temperature.push_back(
+            T.reference ?
+              *T.reference :
+            expansion[c] == 0. ?
+              0. :
+              T.value.value(cells[c].origin + face.positions[q], 0.));
+      });
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::add_thermal_tractions(
+    const double                 t,
+    std::vector<Tensor<1, dim>> &tractions) const
+  {
+    const Expression<dim> &T      = stress_space.space.scene.temperature->value;
+    const bool             varies = T.depends_on_time();
+    if (varies || thermal_tractions.empty())
+      {
+        const double same_everywhere =
+          T.depends_on_position() ? 0. : T.value(Point<dim>(), t);
+        thermal_tractions.assign(tractions.size(), Tensor<1, dim>());
+        std::size_t i = 0;
+        // A temperature without a value there, on some rank.
+        fail_together(stress_space.space.communicator, [&] {
+          for_each_face([&](const std::size_t c, const FaceShape &face) {
+            for (unsigned int q = 0; q < n_face_points; ++q, ++i)
+              if (expansion[c] != 0.)
+                {
+                  const double here =
+                    T.depends_on_position() ?
+                      T.value(cells[c].origin + face.positions[q], t) :
+                      same_everywhere;
+                  const SymmetricTensor<2, 3> stress =
+                    ThermalStrain<dim>::stress(
+                      cells[c].stiffness,
+                      expansion[c] * (here - reference_temperature[i]));
+                  for (unsigned int k = 0; k < dim; ++k)
+                    for (unsigned int l = 0; l < dim; ++l)
+                      thermal_tractions[i][k] +=
+                        stress[k][l] * face.normals[q][l];
+                }
+          });
+        });
+      }
+    for (std::size_t i = 0; i < tractions.size(); ++i)
+      tractions[i] += thermal_tractions[i];
   }
 
 

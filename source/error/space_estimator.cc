@@ -53,6 +53,10 @@ namespace Viscoplastic
                     const State<dim>          &state,
                     const Forces<dim>         &forces)
         : state(state)
+        , z(without_thermal_stress(d.laws.thermal.get(),
+                                   state.t,
+                                   state.z,
+                                   rest))
       {
         if (d.face)
           density = d.face->density(state.contact);
@@ -73,7 +77,7 @@ namespace Viscoplastic
       fields(const double memory) const
       {
         return {state.u,
-                state.z,
+                z,
                 state.t,
                 density.size() > 0 ? &density : nullptr,
                 memory,
@@ -81,8 +85,10 @@ namespace Viscoplastic
       }
 
     private:
-      const State<dim> &state;
-      DistributedVector density, relative_u;
+      const State<dim>         &state;
+      IrreversibleStress        rest;
+      const IrreversibleStress &z;
+      DistributedVector         density, relative_u;
     };
   } // namespace
 

@@ -86,7 +86,7 @@ namespace Viscoplastic
               const auto tangents =
                 law->tangents(stiffness.stress(strains[q]) +
                                 state.z[c * stress_space.n_samples + q],
-                              strains[q],
+                              now.mechanical(strains[q], c, q),
                               stiffness,
                               now.point(c, q));
               for (const SymmetricTensor<2, 3> &deviator : deviators)

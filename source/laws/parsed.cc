@@ -15,7 +15,8 @@ namespace Viscoplastic
     /**
      * G = -E (strain rate), strain rate = 3/2 F f s/sigma_eq, where s = dev
      * sigma, F is a function of position and time, and the equivalent strain
-     * rate f(sigma_eq, p, eps_eq, t) is given as an expression of
+     * rate f(sigma_eq, p, eps_eq, T, t) is given as an expression of the
+     * temperature T and
      *
      *     sigma_eq = sqrt(3/2) |s|,   p = -tr(sigma)/3,
      *     eps_eq = sqrt(2/3) |d|,     d = dev(eps - E^-1 sigma).
@@ -27,17 +28,25 @@ namespace Viscoplastic
         : PointwiseLaw({{section, "Factor", LawParameter::Range::non_negative}})
         , f(section.prm.get("Strain rate"),
             section.path + "/Strain rate",
-            "sigma_eq,p,eps_eq")
+            "sigma_eq,p,eps_eq,T")
         , name(section.path + "/Strain rate")
       {
         // What has no value at rest has none at the start of most runs.
-        strain_rate(Point<3>(), 0.);
+        if (!f.depends_on_additional_variable())
+          strain_rate(Point<3>(), LawPoint());
       }
 
       bool
       depends_on_time() const override
       {
         return f.depends_on_time() || ViscoplasticLaw::depends_on_time();
+      }
+
+      bool
+      depends_on_temperature() const override
+      {
+        return f.depends_on_additional_variable() ||
+               has_parameters_of_temperature();
       }
 
       SymmetricTensor<2, 3>
@@ -51,7 +60,7 @@ namespace Viscoplastic
         if (state[0] == 0)
           return {};
         return stiffness.stress(-1.5 * point.parameters[factor] *
-                                strain_rate(state, point.t) / state[0] *
+                                strain_rate(state, point) / state[0] *
                                 deviator(stress));
       }
 
@@ -142,15 +151,15 @@ namespace Viscoplastic
       }
 
       double
-      strain_rate(const Point<3> &state, const double t) const
+      strain_rate(const Point<3> &state, const LawPoint &point) const
       {
-        const double value = f.value(state, t);
+        const double value = f.value(state, point.t, point.temperature);
         if (!(value >= 0))
           {
             std::ostringstream message;
             message << "'" << name << "' is " << value
                     << " at sigma_eq = " << state[0] << ", p = " << state[1]
-                    << ", eps_eq = " << state[2] << ", t = " << t
+                    << ", eps_eq = " << state[2] << ", t = " << point.t
                     << "; it must be zero or positive, since flow against the "
                        "stress would create energy.";
             AssertThrow(false, ExcMessage(message.str()));
@@ -185,13 +194,12 @@ namespace Viscoplastic
             left[i] = i == 1 ? state[i] - h : std::max(0., state[i] - h);
             result.by[i] =
               point.parameters[factor] *
-              (strain_rate(right, point.t) - strain_rate(left, point.t)) /
+              (strain_rate(right, point) - strain_rate(left, point)) /
               (right[i] - left[i]);
           }
-        result.secant =
-          state[0] > 0 ?
-            point.parameters[factor] * strain_rate(state, point.t) / state[0] :
-            result.by[0];
+        result.secant = state[0] > 0 ? point.parameters[factor] *
+                                         strain_rate(state, point) / state[0] :
+                                       result.by[0];
         return result;
       }
     };
@@ -220,8 +228,8 @@ namespace Viscoplastic
       prm.declare_entry("Strain rate",
                         "sigma_eq",
                         Patterns::Anything(),
-                        "f >= 0, an expression of sigma_eq, p, eps_eq and t. "
-                        "Unit: 1/time.");
+                        "f >= 0, an expression of sigma_eq, p, eps_eq, the "
+                        "temperature T and t. Unit: 1/time.");
       prm.declare_entry("Factor",
                         "1",
                         Patterns::Anything(),

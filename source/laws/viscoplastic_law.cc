@@ -55,18 +55,21 @@ namespace Viscoplastic
   {
     // A z in a plane scene gets the message of any unknown symbol.
     if (section.dim == 2)
-      Expression<2>(text, name);
-    expression = std::make_shared<Expression<3>>(text, name);
-    if (!depends_on_position() && !depends_on_time())
+      Expression<2>(text, name, "x,y,T");
+    expression = std::make_shared<Expression<3>>(text, name, "x,y,z,T");
+    if (!depends_on_position() && !depends_on_time() &&
+        !depends_on_temperature())
       value(Point<3>(), 0.);
   }
 
 
 
   double
-  LawParameter::value(const Point<3> &x, const double t) const
+  LawParameter::value(const Point<3> &x,
+                      const double    t,
+                      const double    temperature) const
   {
-    const double value = expression->value(x, t);
+    const double value = expression->value(x, t, temperature);
 
     const auto check = [&](const bool holds, const std::string &allowed) {
       if (holds)
@@ -75,6 +78,8 @@ namespace Viscoplastic
       message << "'" << name << "' is " << value;
       if (depends_on_position() || depends_on_time())
         message << " at x = (" << x << "), t = " << t;
+      if (depends_on_temperature())
+        message << " for T = " << temperature;
       message << "; it must be " << allowed << ".";
       AssertThrow(false, ExcMessage(message.str()));
     };
@@ -110,11 +115,13 @@ namespace Viscoplastic
 
 
   LawPoint
-  ViscoplasticLaw::point(const Point<3> &x, const double t) const
+  ViscoplasticLaw::point(const Point<3> &x,
+                         const double    t,
+                         const double    temperature) const
   {
-    LawPoint result{x, t, {}};
+    LawPoint result{x, t, {}, temperature};
     for (unsigned int i = 0; i < parameters.size(); ++i)
-      result.parameters[i] = parameters[i].value(x, t);
+      result.parameters[i] = parameters[i].value(x, t, temperature);
     prepare(result);
     return result;
   }
@@ -128,6 +135,18 @@ namespace Viscoplastic
                        parameters.end(),
                        [](const LawParameter &p) {
                          return p.depends_on_position();
+                       });
+  }
+
+
+
+  bool
+  ViscoplasticLaw::has_parameters_of_temperature() const
+  {
+    return std::any_of(parameters.begin(),
+                       parameters.end(),
+                       [](const LawParameter &p) {
+                         return p.depends_on_temperature();
                        });
   }
 

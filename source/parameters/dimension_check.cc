@@ -58,6 +58,7 @@ namespace Viscoplastic
       {"y", {Dimension{1., 0., 0.}}},
       {"z", {Dimension{1., 0., 0.}}},
       {"t", {Dimension{0., 1., 0.}}},
+      {"T", {Dimension{0., 0., 0., 1.}}},
       {"sigma_eq", {Dimension{0., 0., 1.}}},
       {"p", {Dimension{0., 0., 1.}}},
       {"eps_eq", pure_number},

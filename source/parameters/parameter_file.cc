@@ -107,6 +107,7 @@ namespace Viscoplastic
     for (auto &[id, numbered] : materials)
       declare_material("Material " + std::to_string(id), numbered);
     in_subsection("Loads", loads);
+    in_subsection("Temperature", temperature);
     in_subsection("Initial state", initial_state);
     in_subsection("Exact solution", exact_solution);
     for (auto &[id, boundary] : boundaries)

@@ -141,6 +141,25 @@ namespace Viscoplastic
                         viscoplastic_law_help(laws),
                       Patterns::Selection(viscoplastic_law_names(laws)));
     declare_viscoplastic_law_parameters(prm, laws);
+    prm.add_parameter("Thermal expansion",
+                      thermal_expansion,
+                      "alpha as an expression of position, taken at the center "
+                      "of each cell: the material expands by alpha (T - T_0) "
+                      "in all directions, with `Temperature/Value' and "
+                      "`Temperature/Reference temperature'; empty for none. "
+                      "Unit: 1/temperature.");
+    prm.add_parameter("Activation energy",
+                      activation_energy,
+                      "Q >= 0: the rate G of the law is multiplied by "
+                      "exp(-Q/R (1/T - 1/T_L)) (Arrhenius) with the absolute "
+                      "temperature T; empty for a law that does not depend on "
+                      "it by itself. Unit: energy/mol.");
+    prm.add_parameter("Law temperature",
+                      law_temperature,
+                      "T_L, the temperature for which the entries of the law "
+                      "hold; `infinite' for a factor exp(-Q/(R T)), as laws of "
+                      "creep are often written. Empty: `Temperature/Reference "
+                      "temperature'. Unit: temperature.");
     prm.add_parameter("Added at",
                       added_at,
                       "When this part of the body is added, free of stress in "
@@ -205,6 +224,29 @@ namespace Viscoplastic
     prm.add_parameter("Body force",
                       body_force,
                       "b(x,t). Unit: force per volume.");
+  }
+
+
+
+  void
+  TemperatureParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Value",
+                      value,
+                      "T(x,t); empty where temperature plays no role. "
+                      "Expressions of laws know it as the variable T. Unit: "
+                      "temperature.");
+    prm.add_parameter("Reference temperature",
+                      reference,
+                      "T_0, at which the body has no thermal strain; what "
+                      "alpha (T - T_0) does at t = 0 adds to the initial "
+                      "stress. Empty: that of each place at t = 0. Unit: "
+                      "temperature.");
+    prm.add_parameter("Gas constant",
+                      gas_constant,
+                      "R of `Material/Activation energy'. Empty: 8.314462618 "
+                      "J/(mol K), in the SI where no units are declared. Unit: "
+                      "energy/(mol temperature).");
   }
 
 

@@ -365,7 +365,7 @@ namespace Viscoplastic
       additional_fields,
       "What the outputs of fields have besides displacements and stresses, "
       "separated by commas. In the body, of cell means: the tensors `total "
-      "strain' eps(u) and `irreversible strain' eps(u) - E^-1 sigma; the scalars "
+      "strain' eps(u) and `irreversible strain' eps(u) - E^-1 sigma, less the thermal strain; the scalars "
       "`creep strain', the equivalent (2/3 e:e)^(1/2) of the deviator of what "
       "flow has added to the irreversible strain, and `creep rate', the same of "
       "-E^-1 G; `principal stresses', the largest first. On Gamma_3: `normal traction' sigma_nu, negative in compression; "

@@ -36,7 +36,11 @@ namespace Viscoplastic
       {"stress", {0., 0., 1.}},
       {"stress times time", {0., 1., 1.}},
       {"force per volume", {-1., 0., 1.}},
-      {"stress/length", {-1., 0., 1.}}};
+      {"stress/length", {-1., 0., 1.}},
+      {"temperature", {0., 0., 0., 1.}},
+      {"1/temperature", {0., 0., 0., -1.}},
+      {"energy/mol", {3., 0., 1.}},
+      {"energy/(mol temperature)", {3., 0., 1., -1.}}};
 
 
 

@@ -81,6 +81,9 @@ namespace Viscoplastic
     : stress_space(laws.stress_space)
     , state(state)
     , u(reported_displacement(laws.stress_space.space.scene, state, difference))
+    , irreversible(
+        without_thermal_stress(laws.thermal.get(), state.t, state.z, rest))
+    , now(laws.at(state.t))
   {
     for (const RecordedField field : fields)
       if (is_mean(field))
@@ -154,6 +157,9 @@ namespace Viscoplastic
             for (const char *number : {"1", "2", "3"})
               result.push_back(std::string("principal_stress_") + number);
             break;
+          case RecordedField::temperature:
+            result.emplace_back("temperature");
+            break;
           default: // of the boundary
             break;
         }
@@ -216,19 +222,23 @@ namespace Viscoplastic
             result.push_back(von_mises(stress));
             break;
           case RecordedField::irreversible_stress:
-            append<dim>(z, result);
+            append<dim>(state.z.empty() ?
+                          z :
+                          stress_space.mean(
+                            cell, &irreversible[cell * stress_space.n_samples]),
+                        result);
             break;
           case RecordedField::total_strain:
             stress_space.strains(cell, u.begin(), samples.data());
             append<dim>(stress_space.mean(cell, samples.data()), result);
             break;
           case RecordedField::irreversible_strain:
-            // eps(u) - E^-1 sigma = -E^-1 z
-            append<dim>(minus_strain(stress_space, state.z, cell), result);
+            // eps(u) - E^-1 sigma - alpha (T - T_0) I
+            append<dim>(minus_strain(stress_space, irreversible, cell), result);
             break;
           case RecordedField::creep_strain:
             {
-              auto creep = minus_strain(stress_space, state.z, cell);
+              auto creep = minus_strain(stress_space, irreversible, cell);
               if (!initial_strain.empty())
                 creep -= initial_strain[cell];
               result.push_back(equivalent_strain(creep));
@@ -242,6 +252,16 @@ namespace Viscoplastic
             for (const double value : eigenvalues(stress))
               result.push_back(value);
             break;
+          case RecordedField::temperature:
+            {
+              double mean = 0.;
+              for (unsigned int s = 0; s < stress_space.n_samples; ++s)
+                mean +=
+                  now.temperature(cell, s) *
+                  (stress_space.weight(cell, s) / stress_space.volume(cell));
+              result.push_back(mean);
+              break;
+            }
           default:
             Assert(false, ExcInternalError());
         }

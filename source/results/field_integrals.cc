@@ -120,8 +120,9 @@ namespace Viscoplastic
                                 const State<dim>         &state) const
   {
     // 1/2 int E^-1 sigma : sigma with sigma = E eps(u) + z.
-    const StressSpace<dim>            &samples = discretization.stress_space;
-    const auto                         now = discretization.laws.at(state.t);
+    const StressSpace<dim> &samples = discretization.stress_space;
+    const auto              before  = discretization.laws.at(old.t),
+               now                  = discretization.laws.at(state.t);
     std::vector<SymmetricTensor<2, 3>> strain(points->n_samples);
     std::array<double, 2>              result{{0., 0.}};
     for (const Piece &piece : cells)
@@ -139,7 +140,7 @@ namespace Viscoplastic
                            (state.z[c * samples.n_samples + s] * strain[s]);
           }
         const CellEnergies energies =
-          energies_of_cell(discretization.laws, now, old, state, c);
+          energies_of_cell(discretization.laws, before, now, old, state, c);
         result[0] += energies.irreversible_energy;
         result[1] += energies.viscous_dissipation;
       }

@@ -98,7 +98,8 @@ namespace Viscoplastic
       balance.add_step({quantities.stored_energy,
                         quantities.external_work,
                         quantities.stress.viscous_dissipation,
-                        quantities.friction.dissipation});
+                        quantities.friction.dissipation,
+                        quantities.stress.thermal_work});
     largest_force = std::max(largest_force, quantities.largest_force);
     contact_iterations += step.report.iterations;
     linear_iterations += step.report.linear_iterations;

@@ -221,6 +221,11 @@ namespace Viscoplastic
             balance.external_work(),
             Quantity::energy,
             AtEnd::printed);
+    if (scene.has_thermal_strain())
+      row.add("thermal_work",
+              balance.thermal_work(),
+              Quantity::energy,
+              AtEnd::printed);
     if (scene.is_adaptive())
       row.add("adaptation_energy",
               balance.adaptation_energy(),

@@ -18,6 +18,7 @@ namespace Viscoplastic
                               {"irreversible_stress_*", Quantity::stress},
                               {"von_mises", Quantity::stress},
                               {"creep_rate", Quantity::rate},
+                              {"temperature", Quantity::temperature},
                               {"principal_stress_*", Quantity::stress},
                               {"error_energy", Quantity::energy_norm},
                               {"recovery", Quantity::energy_norm},

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 namespace Viscoplastic
@@ -171,6 +172,24 @@ namespace Viscoplastic
         return result;
       }
 
+      /// The largest deviation from a value, or from that of t = 0 where there
+      /// is none.
+      double
+      largest_deviation(const Expression<dim>       &datum,
+                        const std::optional<double> &from) const
+      {
+        double     result = 0.;
+        const auto start  = values_at(datum, places, 0.);
+        for (const double t : times)
+          {
+            const auto now = values_at(datum, places, t);
+            for (std::size_t i = 0; i < now.size(); ++i)
+              result =
+                std::max(result, std::abs(now[i] - from.value_or(start[i])));
+          }
+        return result;
+      }
+
       double
       largest(const VectorExpression<dim> &datum,
               const unsigned int           n_components) const
@@ -213,6 +232,13 @@ namespace Viscoplastic
       add(body.largest(*scene.initial_stress, stress_components<dim>().size()),
           "the initial stress",
           true);
+    for (const auto &material : scene.materials)
+      if (const auto &alpha = material->thermal_expansion)
+        add(modulus.least * body.largest(*alpha) *
+              body.largest_deviation(scene.temperature->value,
+                                     scene.temperature->reference),
+            "Young's modulus times the thermal strain of " + material->name,
+            true);
     if (scene.body_force)
       add(body.largest(*scene.body_force, dim) * size,
           "the body force times the size of the body",

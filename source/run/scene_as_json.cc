@@ -5,6 +5,7 @@
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/base/files.h>
 #include <viscoplastic_contact/base/json_text.h>
+#include <viscoplastic_contact/base/spelling.h>
 #include <viscoplastic_contact/base/table.h>
 #include <viscoplastic_contact/base/version.h>
 #include <viscoplastic_contact/mesh/mesh.h>
@@ -140,8 +141,9 @@ namespace Viscoplastic
             if (boundary.role == BoundaryRole::contact)
               json["areas"][std::to_string(id)] = data.area(id);
           }
-        add("Loads/Body force",
-            [&](const std::string &text) { return data.over_body(text); });
+        for (const char *path : {"Loads/Body force", "Temperature/Value"})
+          add(path,
+              [&](const std::string &text) { return data.over_body(text); });
       }
 
     private:
@@ -161,8 +163,11 @@ namespace Viscoplastic
           if (const std::string &path = entry.first;
               path == section + "/Young's modulus" ||
               path == section + "/Poisson's ratio" ||
-              // The strain rate of a parsed law is a function of other things.
-              (path.compare(0, of_law.size(), of_law) == 0 &&
+              path == section + "/Thermal expansion" ||
+              // The strain rate of a parsed law is a function of other things,
+              // as are parameters of a temperature.
+              (!mentions(entry.second, "T") &&
+               path.compare(0, of_law.size(), of_law) == 0 &&
                path != of_law + "Strain rate"))
             add(path, over_space);
       }

@@ -34,6 +34,24 @@ namespace Viscoplastic
 
 
 
+  namespace
+  {
+    /// The state without what the temperature gives on any mesh; nothing where
+    /// that is the state itself. Collective.
+    template <int dim>
+    std::optional<State<dim>>
+    without_thermal_stress(const FlowLaws<dim> &laws, const State<dim> &state)
+    {
+      if (!laws.thermal || !laws.thermal->expands)
+        return {};
+      std::optional<State<dim>> result(state);
+      laws.thermal->add_stress(state.t, -1., result->z);
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
   MeshChange<dim>::MeshChange(
     const ErrorEstimator<dim>                 *error_estimator,
@@ -41,13 +59,16 @@ namespace Viscoplastic
     const EvaluatedState<dim>                 &accepted,
     parallel::distributed::Triangulation<dim> &triangulation)
     : StateCarrier<dim>(error_estimator, discretization, accepted)
-    , loss(error_estimator != nullptr ? memory_loss(triangulation,
-                                                    discretization.stress_space,
-                                                    accepted.state.z) :
-                                        0.)
+    , without_temperature(
+        without_thermal_stress(discretization.laws, accepted.state))
+    , carried(without_temperature ? *without_temperature : accepted.state)
+    , loss(
+        error_estimator != nullptr ?
+          memory_loss(triangulation, discretization.stress_space, carried.z) :
+          0.)
     , transfer(triangulation,
                discretization.stress_space,
-               accepted.state,
+               carried,
                discretization.face ? &this->density : nullptr)
   {}
 
@@ -63,6 +84,9 @@ namespace Viscoplastic
     State<dim>       &state  = accepted.state;
     auto              result = transfer.unpack(discretization.stress_space);
     state                    = std::move(result.state);
+    if (without_temperature)
+      for (IrreversibleStress *stress : {&state.z, &result.stress})
+        discretization.laws.thermal->add_stress(state.t, 1., *stress);
     if (discretization.face)
       state.contact =
         contact_on_new_mesh(discretization, state, result.multiplier_density);

@@ -61,8 +61,8 @@ namespace Viscoplastic
     material   = has_own_stress() ? nullptr : elastic;
     AssertThrow(!makes_data || has_stress(),
                 ExcMessage("'Exact solution/Stress' is missing; only for a "
-                           "body of one elastic material it follows from the "
-                           "displacement."));
+                           "body of one elastic material without thermal "
+                           "expansion it follows from the displacement."));
   }
 
 

@@ -343,6 +343,8 @@ namespace Viscoplastic
         for (unsigned int d = 0; d < dim; ++d)
           inspect((*scene.body_force)[d], places);
       }
+    if (scene.temperature && scene.temperature->value.depends_on_time())
+      inspect(scene.temperature->value, places_in_body(triangulation));
 
     // (2.10) excludes them.
     if (!jumps.list.empty())

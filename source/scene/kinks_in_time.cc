@@ -274,6 +274,8 @@ namespace Viscoplastic
       for (unsigned int d = 0; d < dim; ++d)
         if ((*scene.body_force)[d].may_have_kinks())
           inspect((*scene.body_force)[d], places_in_body(triangulation));
+    if (scene.temperature && scene.temperature->value.may_have_kinks())
+      inspect(scene.temperature->value, places_in_body(triangulation));
 
     // Those of several data at the same time are one.
     std::vector<Kink> &kinks = result.kinks;

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/base/subsection.h>
+#include <viscoplastic_contact/laws/arrhenius.h>
 #include <viscoplastic_contact/scene/material.h>
 
 #include <cmath>
@@ -94,15 +95,67 @@ namespace Viscoplastic
 
 
 
+    /// T_L of `Law temperature', infinity for `infinite'.
+    template <int dim>
+    double
+    law_temperature(const std::string      &section,
+                    const std::string      &text,
+                    const Temperature<dim> &temperature)
+    {
+      const std::string entry = section + "/Law temperature";
+      if (Utilities::trim(text) == "infinite")
+        return std::numeric_limits<double>::infinity();
+      if (const auto given = optional_positive_number(text, entry))
+        return *given;
+      AssertThrow(temperature.reference,
+                  ExcMessage("'" + section +
+                             "/Activation energy' needs the temperature for "
+                             "which the entries of the law hold: give '" +
+                             entry +
+                             "', or 'Temperature/Reference temperature'."));
+      AssertThrow(*temperature.reference > 0.,
+                  ExcMessage("'Temperature/Reference temperature' is no "
+                             "absolute temperature, as '" +
+                             section + "/Activation energy' needs it."));
+      return *temperature.reference;
+    }
+
+
+
+    /// @p temperature: null in scenes that have none.
+    template <int dim>
     std::unique_ptr<const ViscoplasticLaw>
     make_law(const std::string                 &section,
              const std::string                 &name,
+             const MaterialParameters          &parameters,
              ParameterHandler                  &handler,
-             const unsigned int                 dim,
-             const std::vector<LawDescription> &laws)
+             const std::vector<LawDescription> &laws,
+             const Temperature<dim>            *temperature)
     {
-      const Subsection subsection(handler, section);
-      return make_viscoplastic_law(name, handler, section, dim, laws);
+      auto law = [&] {
+        const Subsection subsection(handler, section);
+        return make_viscoplastic_law(name, handler, section, dim, laws);
+      }();
+      if (!law)
+        return law;
+      AssertThrow(temperature || !law->depends_on_temperature(),
+                  ExcMessage("'" + section + "/" + name +
+                             "' is a law of the temperature T, but the scene "
+                             "has none: give 'Temperature/Value'."));
+      const std::string entry  = section + "/Activation energy";
+      const auto        energy = Utilities::trim(parameters.activation_energy);
+      if (energy.empty() || energy == "0")
+        return law;
+      const double Q = *optional_positive_number(energy, entry);
+      AssertThrow(temperature,
+                  ExcMessage("'" + entry +
+                             "' needs a temperature: give "
+                             "'Temperature/Value'."));
+      return thermally_activated(std::move(law),
+                                 Q / temperature->gas_constant,
+                                 law_temperature(section,
+                                                 parameters.law_temperature,
+                                                 *temperature));
     }
   } // namespace
 
@@ -113,7 +166,8 @@ namespace Viscoplastic
                           const MaterialParameters          &parameters,
                           ParameterHandler                  &handler,
                           const std::vector<LawDescription> &laws,
-                          const bool                         is_absent)
+                          const bool                         is_absent,
+                          const Temperature<dim>            *temperature)
     : section(section)
     , name(parameters.name.empty() ? section : parameters.name)
     , law_name(is_absent ? "elastic" : parameters.law)
@@ -124,8 +178,24 @@ namespace Viscoplastic
     , removed_at(read_time(parameters.removed_at,
                            section + "/Removed at",
                            std::numeric_limits<double>::infinity()))
-    , law(make_law(section, law_name, handler, dim, laws))
+    , law(make_law(section, law_name, parameters, handler, laws, temperature))
   {
+    const std::string expansion_entry = section + "/Thermal expansion";
+    if (!is_absent && !Utilities::trim(parameters.thermal_expansion).empty())
+      {
+        thermal_expansion.emplace(parameters.thermal_expansion,
+                                  expansion_entry);
+        AssertThrow(!thermal_expansion->depends_on_time(),
+                    ExcMessage("'" + expansion_entry +
+                               "' depends on t; it must be a function of "
+                               "position only."));
+        AssertThrow(temperature || thermal_expansion->is_zero(),
+                    ExcMessage("'" + expansion_entry +
+                               "' needs a temperature: give "
+                               "'Temperature/Value'."));
+        if (thermal_expansion->is_zero())
+          thermal_expansion.reset();
+      }
     AssertThrow(added_at < removed_at,
                 ExcMessage(
                   "'" + section + "/Removed at' = " + parameters.removed_at +

@@ -50,6 +50,8 @@ namespace Viscoplastic
     , initial_stress(optional_vector<dim>(parameters.initial_state.stress,
                                           stress_components<dim>().size(),
                                           "Initial state/Stress"))
+    , temperature(
+        make_temperature<dim>(parameters.temperature, parameters.units))
   {
     AssertThrow(dim == 2 || plane_model() == PlaneModel::strain,
                 ExcMessage("'Geometry/Plane model' = axisymmetric is that of "
@@ -189,6 +191,19 @@ namespace Viscoplastic
 
   template <int dim>
   bool
+  Scene<dim>::has_thermal_strain() const
+  {
+    return std::any_of(materials.begin(),
+                       materials.end(),
+                       [](const auto &material) {
+                         return material->thermal_expansion.has_value();
+                       });
+  }
+
+
+
+  template <int dim>
+  bool
   Scene<dim>::has_moving_foundation() const
   {
     for (const auto &pair : boundary)
@@ -209,7 +224,8 @@ namespace Viscoplastic
            condition.bound_depends_on_time()) ||
           condition.has_computed_pressure())
         return false;
-    return !body_force || !body_force->depends_on_time();
+    return !(body_force && body_force->depends_on_time()) &&
+           !(temperature && temperature->value.depends_on_time());
   }
 
 
@@ -337,11 +353,16 @@ namespace Viscoplastic
         if (!material->law)
           continue;
         const std::string announcement = material->law->announcement();
-        result.push_back("viscoplastic flow" + of + " (" + material->law_name +
-                         ", history at " + history +
-                         (announcement.empty() ? "" : "; " + announcement) +
-                         ")");
+        result.push_back(
+          "viscoplastic flow" + of + " (" + material->law_name +
+          (material->needs_absolute_temperature() ? ", by temperature" : "") +
+          ", history at " + history +
+          (announcement.empty() ? "" : "; " + announcement) + ")");
       }
+    if (temperature)
+      result.emplace_back(has_thermal_strain() ?
+                            "thermal expansion" :
+                            "temperature, without thermal expansion");
     if (has_viscosity())
       result.push_back("time integration by " +
                        name_of(parameters.time.scheme));

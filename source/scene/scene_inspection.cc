@@ -8,9 +8,11 @@
 #include <viscoplastic_contact/mesh/plane_model.h>
 #include <viscoplastic_contact/scene/jump_in_time.h>
 #include <viscoplastic_contact/scene/output_check.h>
+#include <viscoplastic_contact/scene/sample_places.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 // What a scene learns from its mesh, and what is wrong with the two together.
@@ -55,6 +57,7 @@ namespace Viscoplastic
          warnings_of_data_in_time(*this, triangulation))
       warnings.push_back(warning);
     make_materials(material_ids(triangulation));
+    inspect_temperature(triangulation);
     // The residuals of an elastic one miss most where its surface is loaded.
     AssertThrow(!is_axisymmetric() || has_viscosity() || !quantity ||
                   quantity->kind != QuantityOfInterest::Kind::displacement,
@@ -71,7 +74,8 @@ namespace Viscoplastic
       warnings.push_back(warning);
     if (exact_solution)
       {
-        const bool is_elastic = materials.size() == 1 && !materials[0]->law;
+        const bool is_elastic =
+          materials.size() == 1 && !materials[0]->law && !has_thermal_strain();
         exact_solution->set_body(mesh_size(triangulation),
                                  is_elastic ? materials[0].get() : nullptr);
         for (auto &pair : boundary)
@@ -322,6 +326,47 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  Scene<dim>::inspect_temperature(const Triangulation<dim> &triangulation)
+  {
+    if (!temperature)
+      return;
+    AssertThrow(!has_source(),
+                ExcMessage("'Exact solution/Data' = solution makes no data for "
+                           "a body with a temperature; leave "
+                           "'Temperature/Value' out, or use 'Data' = scene."));
+    bool is_used = has_thermal_strain();
+    for (const auto &material : materials)
+      {
+        is_used |= material->law && material->law->depends_on_temperature();
+        if (!material->needs_absolute_temperature())
+          continue;
+        // Where R is known, so are its kelvins. Colder creep is helium's.
+        constexpr double suspiciously_cold = 60.;
+        double           least = std::numeric_limits<double>::infinity();
+        for (const double T :
+             values_at(temperature->value, places_in_body(triangulation), 0.))
+          least = std::min(least, T);
+        if (parameters.temperature.gas_constant.empty() && least > 0. &&
+            least < suspiciously_cold)
+          {
+            std::ostringstream text;
+            text << "'Temperature/Value' is " << least
+                 << " K somewhere at t = 0, but '" << material->section
+                 << "/Activation energy' asks for absolute temperatures; if "
+                    "these are degrees Celsius, add 273.15.";
+            warnings.push_back(text.str());
+          }
+      }
+    if (!is_used)
+      warnings.push_back("'Temperature/Value' has no effect: no material has "
+                         "'Thermal expansion', 'Activation energy' or a law "
+                         "of the temperature T.");
+  }
+
+
+
+  template <int dim>
+  void
   Scene<dim>::make_materials(const std::set<types::material_id> &ids)
   {
     materials.clear();
@@ -332,7 +377,9 @@ namespace Viscoplastic
           std::make_unique<const Material<dim>>("Material",
                                                 parameters.material,
                                                 parameters.handler,
-                                                parameters.laws));
+                                                parameters.laws,
+                                                /* is_absent = */ false,
+                                                temperature.get()));
         for (const types::material_id id : ids)
           entries[id] = {materials[0].get()};
         return;
@@ -360,8 +407,13 @@ namespace Viscoplastic
         MaterialParameters named = given->second;
         if (names.has("material", id))
           named.name = names.of("material", id);
-        materials.push_back(std::make_unique<const Material<dim>>(
-          section, named, parameters.handler, parameters.laws));
+        materials.push_back(
+          std::make_unique<const Material<dim>>(section,
+                                                named,
+                                                parameters.handler,
+                                                parameters.laws,
+                                                /* is_absent = */ false,
+                                                temperature.get()));
         entries[id] = {materials.back().get()};
       }
     for (const auto &pair : parameters.materials)

@@ -61,6 +61,10 @@ namespace Viscoplastic
     };
 
     z = old.z;
+    if (discretization.laws.thermal)
+      discretization.laws.thermal->follow(old.t, step.t, z);
+    // What z would be if nothing flowed.
+    const IrreversibleStress carried = is_heun ? z : IrreversibleStress();
     if (scene.has_viscosity())
       {
         // (3.19): z_n = z_{n-1} + k G(t_{n-1}, sigma_{n-1}, eps_{n-1}).
@@ -86,7 +90,7 @@ namespace Viscoplastic
                             ExactSolution<dim>::Side::before);
           use(end);
           for (std::size_t i = 0; i < z.size(); ++i)
-            z[i] = 0.5 * (old.z[i] + predicted.z[i] + step.k * end.rate[i]);
+            z[i] = 0.5 * (carried[i] + predicted.z[i] + step.k * end.rate[i]);
         }
         solve(problem, predicted, solution);
       }
@@ -114,8 +118,9 @@ namespace Viscoplastic
   {
     if (!problem.data_are_unchanged)
       return false;
-    // Of rates that are zero, or as small as rounding.
-    return !discretization.scene().has_viscosity() ||
+    // Of rates that are zero, or as small as rounding, and of temperatures that
+    // stay.
+    return !discretization.scene().has_irreversible_stress() ||
            Utilities::MPI::min(z == problem.old.state.z ? 1 : 0,
                                discretization.space.communicator) == 1;
   }

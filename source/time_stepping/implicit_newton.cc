@@ -148,7 +148,7 @@ namespace Viscoplastic
     const typename FlowLaws<dim>::AtTime laws;
     const bool                           tangents_are_symmetric;
     const DistributedVector              zero; // ghosted
-    /// z_{n-1}, and what a source adds to it.
+    /// z_{n-1}, and what the temperature and a source add to it.
     IrreversibleStress target;
 
     StepSolution<dim> solution;
@@ -184,6 +184,8 @@ namespace Viscoplastic
     , target(problem.old.state.z)
     , solution(problem)
   {
+    if (d.laws.thermal)
+      d.laws.thermal->follow(problem.old.state.t, problem.time_step.t, target);
     if (d.laws.source_solution)
       fail_together(d.space.communicator, [&] {
         const unsigned int n = d.stress_space.n_samples;
@@ -260,7 +262,7 @@ namespace Viscoplastic
     ahead.sadd(problem.time_ahead(old), 1., problem.old_u());
     at = zero;
     d.space.to_cartesian(ahead, at);
-    z = stress(at, old.z);
+    z = stress(at, target);
   }
 
 

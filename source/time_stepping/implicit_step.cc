@@ -32,6 +32,8 @@ namespace Viscoplastic
     if (!problem.data_are_unchanged || tangent.is_constant ||
         d.laws.source_solution)
       return {};
+    if (d.laws.thermal && d.laws.thermal->changes(old.t, problem.time_step.t))
+      return {};
     const auto is_zero = [&](const FlowRate &rate) {
       const bool all_zero =
         std::all_of(rate.rate.begin(), rate.rate.end(), [](const auto &G) {

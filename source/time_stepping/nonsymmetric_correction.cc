@@ -39,7 +39,7 @@ namespace Viscoplastic
                   algorithmic_tangent(*law,
                                       stiffness.stress(strain[s]) +
                                         at.z[c * n + s],
-                                      strain[s],
+                                      now.mechanical(strain[s], c, s),
                                       k,
                                       stiffness,
                                       now.point(c, s)) -

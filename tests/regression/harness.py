@@ -60,7 +60,7 @@ EFFORT = {
 # Fields that have one value a cell.
 CELL_DATA = (
     *("stress_", "irreversible_stress_", "von_mises", "estimator", "subdomain"),
-    *("strain_", "irreversible_strain_", "creep_", "principal_stress_"),
+    *("strain_", "irreversible_strain_", "creep_", "principal_stress_", "temperature"),
 )
 
 # Columns that are errors of the solution of one step, compared with bounds,

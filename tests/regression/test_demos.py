@@ -86,9 +86,7 @@ class SaltPillar(TestCase):
         rate = 1.2e-3 / 3.1536e7 / self.HEIGHT
         half_root = np.sqrt(3) / 2
         steady = (rate / (half_root * self.RATE)) ** (1 / self.EXPONENT) / half_root
-        self.assertClose(
-            -self.free["reaction_3_y"][-1] / 6, steady, relative=1e-7
-        )
+        self.assertClose(-self.free["reaction_3_y"][-1] / 6, steady, relative=1e-7)
         self.assertClose(
             self.free["max_von_mises"][-1], half_root * steady, relative=1e-7
         )
@@ -219,6 +217,60 @@ class SaltDrift(TestCase):
         self.assertLess(result["max_displacement"].max(), 3e-4)
 
 
+class SaltCavern(TestCase):
+    """A body of revolution, pressure by table, temperature by depth and time."""
+
+    FILES = {
+        "Table 1/File": SOURCE / "prm" / "demos" / "salt_cavern_2d.csv",
+        "Output/Fields every": 0,
+    }
+
+    def test_closes_like_a_thick_sphere(self):
+        """Bailey's formula, with the rate that Arrhenius gives at 328 K."""
+        shape = "sin(pi*y)*(y < 0.999)*(y > 0.001)", "cos(pi*y)"
+        result = run(
+            "salt_cavern_2d",
+            {
+                **self.FILES,
+                "Geometry/Coordinates": f"30*(1400/30)^x*{shape[0]}; "
+                f"-1500 - 30*(1400/30)^x*{shape[1]}",
+                "Temperature/Value": 328,
+                "Loads/Body force": "",
+                "Initial state/Stress": "",
+                "Initial state/Equilibrate": "false",
+                "Boundary 0/Pressure": "-15*min(1, t)",
+                "Boundary 1/Pressure": 0,
+                "Output/Points": "30, -1500",
+                "Time/Phases": "1: 5, 30: 15, 3000: 30",
+            },
+        )
+        n, a, b = 5, 30.0, 1400.0
+        A = 0.18 * 365.25 * np.exp(-54e3 / 8.314462618 / 328)
+        rate = A / 2 * (3 * 15 / 2 / n) ** n / (1 - (a / b) ** (3 / n)) ** n
+        u, t = result["point0_x"], result["t"]
+        self.assertClose((u[-2] - u[-1]) / (t[-1] - t[-2]), a * rate, relative=0.05)
+
+    def test_what_the_table_and_the_brine_do(self):
+        cold = run("salt_cavern_2d", self.FILES)
+        warm = run(
+            "salt_cavern_2d", {**self.FILES, "Temperature/Value": "283 - 0.03*y"}
+        )
+        for result in cold, warm:
+            u, row = result["point0_x"], result.row
+            rates = [
+                (u[row(b)] - u[row(a)]) / (b - a)
+                for a, b in ((1, 10), (10.5, 18), (18.5, 30))
+            ]
+            # It closes while the well is open.
+            self.assertLess(max(rates[0], rates[2]), 10 * -abs(rates[1]))
+            self.assertLess(
+                abs(result["energy_balance_defect"]).max(),
+                1e-4 * result["viscous_dissipation"][-1],
+            )
+        # The cold wall creeps less.
+        self.assertLess(cold["point0_x"][-1] / warm["point0_x"][-1], 0.8)
+
+
 class Cavern(TestCase):
     """doc/ground.md"""
 
@@ -256,8 +308,7 @@ class BrakePad(TestCase):
         cls.result = run(
             "brake_pad_3d",
             {
-                "Geometry/Arguments":
-                    "16, 8, 3 : 0, 0, 0 : 0.1, 0.05, 0.012 : true",
+                "Geometry/Arguments": "16, 8, 3 : 0, 0, 0 : 0.1, 0.05, 0.012 : true",
                 "Output/Fields every": 1,
             },
         )
@@ -631,9 +682,7 @@ class ShearedSlab(TestCase):
         # closed: stored energy and force come back
         stored = r["stored_energy"][cycle]
         self.assertClose(stored[-1], stored[0], absolute=1e-4 * area)
-        self.assertClose(
-            force[cycle][-1], force[cycle][0], absolute=1e-4 * force.max()
-        )
+        self.assertClose(force[cycle][-1], force[cycle][0], absolute=1e-4 * force.max())
         # Up to the error in time of friction while nodes begin to slip, of
         # second order in the step.
         self.assertClose(viscous + friction, area, relative=3e-4)
@@ -665,14 +714,10 @@ class ShearedSlab(TestCase):
                 "Output/Fields every": 0,
             },
         )
-        constants = dict(
-            modulus=20e6, thickness=0.02, viscosity=2.3e8, bound=100e3
-        )
+        constants = dict(modulus=20e6, thickness=0.02, viscosity=2.3e8, bound=100e3)
         t = result["t"]
         stress = result["reaction_3_x"] / 0.12
-        self.assertClose(
-            stress, layer(t, self.plate(t), **constants), absolute=1e-3
-        )
+        self.assertClose(stress, layer(t, self.plate(t), **constants), absolute=1e-3)
         # and nearly what 100 times smaller steps give: the error is of first
         # order, 1.2 % of the area with 120 steps a cycle
         fine = np.linspace(0, 180, 100 * (len(t) - 1) + 1)
@@ -874,9 +919,14 @@ class TunnelLining(TestCase):
         )
         L = -p * b**2 / (b**2 - a**2)
         cos, sin = np.cos(2 * t), np.sin(2 * t)
-        hoop = L * (1 + a**2 / r**2) + (2 * A + 12 * B * r**2 + 6 * C / r**4) * cos
-        radial = (1 - 2 * nu) * L * r + L * a**2 / r + cos * (
-            -2 * A * r - 4 * nu * B * r**3 + 2 * C / r**3 + 4 * (1 - nu) * D / r
+        hoop = (
+            L * (1 + a**2 / r**2) + (2 * A + 12 * B * r**2 + 6 * C / r**4) * cos
+        )
+        radial = (
+            (1 - 2 * nu) * L * r
+            + L * a**2 / r
+            + cos
+            * (-2 * A * r - 4 * nu * B * r**3 + 2 * C / r**3 + 4 * (1 - nu) * D / r)
         )
         tangential = sin * (
             2 * A * r
@@ -905,8 +955,7 @@ class TunnelLining(TestCase):
         computed = (xx * y**2 + yy * x**2 - 2 * xy * x * y) / (x**2 + y**2)
         return np.array(
             [
-                np.linalg.norm(error_u, axis=0).max()
-                / np.linalg.norm(u, axis=0).max(),
+                np.linalg.norm(error_u, axis=0).max() / np.linalg.norm(u, axis=0).max(),
                 abs(computed - hoop).max() / abs(hoop).max(),
             ]
         )
@@ -914,8 +963,7 @@ class TunnelLining(TestCase):
     def test_closed_form(self):
         """Second order, and no friction, law or history on the way."""
         coarse, fine = (
-            run("tunnel_lining_2d", {"Geometry/Global refinements": n})
-            for n in (2, 3)
+            run("tunnel_lining_2d", {"Geometry/Global refinements": n}) for n in (2, 3)
         )
         for result in coarse, fine:
             self.check_identities(result)
@@ -938,7 +986,8 @@ class TunnelLining(TestCase):
         self.assertClose(result["reaction_3_y"][-1], load, relative=2e-5)
         # the load grows in equal parts, the response with it
         self.assertClose(
-            result["reaction_3_y"], result["t"] * result["reaction_3_y"][-1],
+            result["reaction_3_y"],
+            result["t"] * result["reaction_3_y"][-1],
             relative=1e-10,
         )
 

@@ -57,7 +57,9 @@ class Scene:
 SCENES = {
     "plane": {
         # more than the 2000 unknowns that multigrid leaves to its coarsest level
-        "verification/slab": Scene({**cells(48, 24, to="2, 1"), **phases("1: 6, 2: 6")}),
+        "verification/slab": Scene(
+            {**cells(48, 24, to="2, 1"), **phases("1: 6, 2: 6")}
+        ),
         "verification/conveyor_2d": Scene(phases("1: 5, 2: 5")),
         "verification/coulomb_block_2d": Scene(phases("1: 2, 2: 4, 4: 8")),
         "verification/half_clamped_block": Scene(refined(1)),
@@ -109,6 +111,7 @@ SCENES = {
         ),
         "verification/indentation_3d": Scene({**refined(0), **phases("0.1: 1, 2: 5")}),
         "verification/lifted_beam_2d": Scene(phases("1: 2")),
+        "verification/hot_pipe": Scene(phases("1: 2, 500: 4")),
         # Unloaded, nothing decides who sticks.
         "verification/round_sample": Scene(phases("241: 4")),
         "verification/partial_slip_2d": Scene(
@@ -192,6 +195,13 @@ SCENES = {
                 "Geometry/File": SOURCE / "prm" / "demos" / "rod_seal_2d.msh",
                 **refined(0),
                 **phases("1: 5, 2.5: 6, 3.5: 4, 5: 4"),
+            }
+        ),
+        "demos/salt_cavern_2d": Scene(
+            {
+                "Table 1/File": SOURCE / "prm" / "demos" / "salt_cavern_2d.csv",
+                "Geometry/Arguments": "14, 10 : 0, 0 : 1, 1 : true",
+                **phases("1: 3, 10: 5"),
             }
         ),
         "demos/salt_drift_2d": Scene(

@@ -171,7 +171,9 @@ def header(result):
     """{column: unit} of the first line of statistics.csv."""
     with open(result.directory / "statistics.csv", newline="") as file:
         names = next(csv.reader(file))
-    return dict(re.fullmatch(r"([^ ]+)(?: \[(.+)\])?", name).groups("") for name in names)
+    return dict(
+        re.fullmatch(r"([^ ]+)(?: \[(.+)\])?", name).groups("") for name in names
+    )
 
 
 def documented_units():
@@ -268,7 +270,10 @@ class Same(TestCase):
                     size = SIZES[labels[name]] if labels[name] else 1
                     largest = abs(expected[name]).max()
                     self.assertClose(
-                        values * size, expected[name], absolute=1e-5 * largest, what=name
+                        values * size,
+                        expected[name],
+                        absolute=1e-5 * largest,
+                        what=name,
                     )
             if series == "solution":
                 self.assertEqual(labels["creep_rate"], "1/day")
@@ -284,10 +289,13 @@ class Same(TestCase):
         )
         self.assertNotIn("units", self.plain.info)
         self.assertRegex(self.scene.stdout, r"(?m)^At t = 91.312 day:$")
-        self.assertRegex(self.scene.stdout, r"Step 1/8  t = 3\.3333 day  k = 3\.33 day  ")
+        self.assertRegex(
+            self.scene.stdout, r"Step 1/8  t = 3\.3333 day  k = 3\.33 day  "
+        )
         self.assertRegex(self.scene.stdout, r"friction force +\S+; \S+ MN/m\n")
         self.assertRegex(
-            self.scene.stdout, r"von Mises stress +\S+ MPa at t = \S+ day, x = \(.*\) m\n"
+            self.scene.stdout,
+            r"von Mises stress +\S+ MPa at t = \S+ day, x = \(.*\) m\n",
         )
         for unit in ("day", "MPa", "MN"):
             self.assertNotIn(unit, self.plain.stdout)
@@ -298,7 +306,9 @@ class Same(TestCase):
         again = run("record", text=record)
         for column in again.statistics:
             if not column.startswith("wall_"):
-                self.assertTrue(np.array_equal(again[column], self.scene[column]), column)
+                self.assertTrue(
+                    np.array_equal(again[column], self.scene[column]), column
+                )
 
     def test_read_by_python(self):
         results = Results(self.scene.directory)
@@ -355,7 +365,9 @@ class Scaled:
         }
 
     def power(self, powers):
-        return float(np.prod([size**power for size, power in zip(self.sizes, powers)]))
+        return float(
+            np.prod([size**power for size, power in zip(self.sizes, powers)])
+        )
 
     def scene(self, described):
         """The file that `--describe' prints for a scene, in which each entry has
@@ -405,6 +417,10 @@ class Scaled:
             "stress/length": (1, -1, 0),
             "1/(stress^n time)": (-exponent["n"], 0, -1),
             "stress/length^m": (1, -exponent["m"], 0),
+            "temperature": (0, 0, 0),
+            "1/temperature": (0, 0, 0),
+            "energy/mol": (1, 3, 0),
+            "energy/(mol temperature)": (1, 3, 0),
         }[unit]
         if not value or not unit:
             return value
@@ -478,17 +494,33 @@ SHORT = (
     ),
     (
         "slab_adaptive",
-        {"Error control/Tolerance": 0.2, "Time/Phases": "0.5: 4", "Output/Points": "0, 0"},
+        {
+            "Error control/Tolerance": 0.2,
+            "Time/Phases": "0.5: 4",
+            "Output/Points": "0, 0",
+        },
     ),
     (
         "coulomb_block_3d",
-        {"Solver/Linear solver": "multigrid", "Boundary 4/Slip rate factor": "1/(1 + v)"},
+        {
+            "Solver/Linear solver": "multigrid",
+            "Boundary 4/Slip rate factor": "1/(1 + v)",
+        },
     ),
     ("springs_block_2d", {"Boundary 2/Tangential stiffness": "0.1 + 0.2*x"}),
     ("supports_block_3d", {}),
     ("rubbing_2d", {}),
     ("junction_2d", {}),
     ("excavated_column", {}),
+    (
+        "hot_pipe",
+        {
+            # that of the units which are changed here
+            "Temperature/Gas constant": 8314.462618,
+            "Time/Phases": "1: 2, 100: 2",
+            "Output/Point fields": "",
+        },
+    ),
     ("corner_coulomb_90_2d", {}),
     ("corner_tresca_150_2d", {}),
     ("conveyor_3d", WALL),
@@ -536,10 +568,14 @@ class OtherUnits(TestCase):
         columns = {}
         for column in known.statistics:
             if column not in EFFORT | DEFECTS and not column.startswith("wall_"):
-                words = documented[documented_name(column)].removesuffix(" (`residual`)")
+                words = documented[documented_name(column)].removesuffix(
+                    " (`residual`)"
+                )
                 columns.setdefault(POWERS_OF_WORDS[words](dimension), []).append(column)
         # What is zero has no size but that of others.
-        sizes = [known[name].max() for name in ("max_von_mises", "max_displacement", "t")]
+        sizes = [
+            known[name].max() for name in ("max_von_mises", "max_displacement", "t")
+        ]
         for powers, names in columns.items():
             finite = {name: np.isfinite(known[name]) for name in names}
             scale = max(abs(known[name][finite[name]]).max() for name in names)
@@ -694,7 +730,9 @@ class Work(TestCase):
         said = self.program(
             "salt.prm", "--set", "Boundary 2/Friction bound=7 kg/(m s^2)*q", code=1
         ).stderr
-        self.assertIn("expression '7 kg/(m s^2)*q' of 'Boundary 2/Friction bound'", said)
+        self.assertIn(
+            "expression '7 kg/(m s^2)*q' of 'Boundary 2/Friction bound'", said
+        )
         # The unit would be that of the exponent.
         for value in "10^8 Pa", "2*10^8 Pa", "pow(10, 8 Pa)":
             said = self.program(

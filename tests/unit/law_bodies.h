@@ -56,7 +56,7 @@ namespace Viscoplastic::Testing
                 const double                     t         = 0)
       : law(std::move(law_))
       , stiffness(stiffness)
-      , point(law->point(x, t))
+      , point(law->point(x, t, /* temperature = */ 2.))
     {
       law->check(stiffness, point);
     }

@@ -3,9 +3,11 @@
 // What all laws must satisfy.
 
 #include "law_bodies.h"
+#include <viscoplastic_contact/laws/arrhenius.h>
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 namespace
@@ -49,6 +51,20 @@ namespace
         add("norton, n = 1", norton(0.2, 1., 1e-3), 1.5 * r * 0.2);
         add("norton, n = 1.2", norton(0.2, 1.2, 1.), 1.5 * r * 0.2 * 1.2);
         add("parsed", parsed("0.3*sigma_eq", "2"), 1.5 * r * 0.6);
+        // At the temperature 2 it flows 1.2 times as fast as at 1.6.
+        for (const bool hardens : {false, true})
+          add(hardens ? "perzyna by temperature" : "norton by temperature",
+              thermally_activated(hardens ? perzyna(0.5, 0.2, 0.3) :
+                                            norton(0.2, 3., 1.5),
+                                  std::log(1.2) / (1. / 1.6 - 1. / 2.),
+                                  1.6),
+              1.2 * (hardens ? 5 * r + 1.5 * std::sqrt(2. / 3.) * ratio :
+                               1.5 * r * 0.2 * 3. * 2.25));
+        add("norton, A = T/10",
+            make_law("norton",
+                     "set Rate factor = 0.1*T\nset Exponent = 3\n"
+                     "set Stress cap = 1.5"),
+            1.5 * r * 0.2 * 3. * 2.25);
         add("example",
             garofalo(0.4, 0.8, 1.2),
             1.5 * r * 0.4 / 0.8 * std::cosh(1.5));
@@ -118,6 +134,37 @@ namespace
             EXPECT_EQ(flow[i].is_beyond_cap,
                       body.law->is_beyond_cap(stress[i], points[i]));
           }
+      }
+  }
+
+
+
+  /// G is that of the law times exp(-Q/R (1/T - 1/T_L)), and parameters may
+  /// be expressions of T: all bodies here have T = 2.
+  TEST(Laws, RatesByTemperature)
+  {
+    RandomTensors     random;
+    const FlowingBody cold(norton(0.2, 3., 1.5)),
+      hot(thermally_activated(norton(0.2, 3., 1.5), 3., 1.6)),
+      boundless(thermally_activated(norton(0.2, 3., 1.5),
+                                    3.,
+                                    std::numeric_limits<double>::infinity())),
+      of_T(make_law("norton",
+                    "set Rate factor = 0.1*T\nset Exponent = 3\n"
+                    "set Stress cap = 1.5"));
+    EXPECT_TRUE(hot.law->depends_on_temperature());
+    EXPECT_TRUE(of_T.law->depends_on_temperature());
+    EXPECT_FALSE(cold.law->depends_on_temperature());
+    for (unsigned int i = 0; i < 5; ++i)
+      {
+        const Tensor2 stress = random();
+        const Tensor2 rate   = cold.rate(stress);
+        const double  small  = 1e-14 * rate.norm();
+        expect_near(hot.rate(stress),
+                    std::exp(-3. * (1. / 2. - 1. / 1.6)) * rate,
+                    10. * small);
+        expect_near(boundless.rate(stress), std::exp(-1.5) * rate, small);
+        expect_near(of_T.rate(stress), rate, small);
       }
   }
 

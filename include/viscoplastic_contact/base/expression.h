@@ -62,8 +62,9 @@ namespace Viscoplastic
   public:
     /**
      * @p entry names the parameter in error messages. @p variables are the
-     * names of the dim arguments before t where these are no coordinates.
-     * Throws ExpressionError when @p text cannot be parsed.
+     * names of the dim arguments before t where these are no coordinates; one
+     * more may follow them. Throws ExpressionError when @p text cannot be
+     * parsed.
      */
     Expression(const std::string &text,
                const std::string &entry,
@@ -76,9 +77,12 @@ namespace Viscoplastic
     /// what it follows from.
     Expression(const Function &function, const std::string &entry);
 
-    /// Throws ExcMessage naming entry, place and time if not finite.
+    /// Throws ExcMessage naming entry, place and time if not finite. @p
+    /// additional is the variable that follows the dim first ones, if any.
     double
-    value(const Point<dim> &x, const double t) const;
+    value(const Point<dim> &x,
+          const double      t,
+          const double      additional = 0.) const;
 
     /// Throw ExcMessage, naming entry, place and time, unless the value @p
     /// result that is known already is finite.
@@ -101,6 +105,13 @@ namespace Viscoplastic
     depends_on_position() const
     {
       return position_dependent;
+    }
+
+    /// Whether it depends on a variable beside the dim first ones and time.
+    bool
+    depends_on_additional_variable() const
+    {
+      return has_additional_variable;
     }
 
     /// Whether it depends on time and has conditions or steps in it; poles are
@@ -135,12 +146,14 @@ namespace Viscoplastic
     bool
     is_zero() const
     {
-      return !time_dependent && !position_dependent && constant == 0.;
+      return !time_dependent && !position_dependent &&
+             !has_additional_variable && constant == 0.;
     }
 
   private:
     std::string                          text, entry, variables;
     bool                                 time_dependent, position_dependent;
+    bool                                 has_additional_variable = false;
     double                               constant;
     std::unique_ptr<FunctionParser<dim>> parser;
     Function                             function; // if there is no parser

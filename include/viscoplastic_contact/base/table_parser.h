@@ -22,7 +22,8 @@ namespace Viscoplastic
   /**
    * deal.II's parser with columns of tables as functions, which deal.II keeps
    * muParser from: its variables, constants and functions are those of
-   * FunctionParser.
+   * FunctionParser. Between the coordinates and time there may be one more
+   * variable.
    */
   template <int dim>
   class ParserWithTables : public FunctionParser<dim>
@@ -93,7 +94,7 @@ namespace Viscoplastic
       gap.clear();
       for (unsigned int d = 0; d < dim; ++d)
         variables[d] = x[d];
-      variables[dim] = this->get_time();
+      variables.back() = this->get_time();
       try
         {
           return parser.Eval();
@@ -103,6 +104,13 @@ namespace Viscoplastic
           AssertThrow(false, ExcMessage(error.GetMsg()));
         }
       return 0.;
+    }
+
+    /// The value of the variable between the coordinates and time.
+    void
+    set_additional_variable(const double value) const
+    {
+      variables[dim] = value;
     }
 
     bool

@@ -7,11 +7,11 @@
 
 namespace Viscoplastic
 {
-  /// Exponents of length, time and stress, of which the units of everything in
-  /// a scene are products: a force is a stress times length^2.
+  /// Exponents of length, time, stress and temperature, of which the units of
+  /// everything in a scene are products: a force is a stress times length^2.
   struct Dimension
   {
-    double length = 0., time = 0., stress = 0.;
+    double length = 0., time = 0., stress = 0., temperature = 0.;
 
     /// Up to the rounding of exponents that are no whole numbers.
     bool
@@ -85,6 +85,7 @@ namespace Viscoplastic
     energy_norm,   // energy^1/2
     rate_norm,     // (energy/time)^1/2
     stress_norm,   // stress volume^1/2
+    temperature,   // always K
     wall_time      // s whatever the units of the scene
   };
 

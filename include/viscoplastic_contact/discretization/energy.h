@@ -29,6 +29,9 @@ namespace Viscoplastic
      * the bulk is exact, whatever the step size.
      */
     double viscous_dissipation = 0.;
+    /// -int sigma : (what the step has added to the thermal strain), at the
+    /// same mean: what heating has done to the body.
+    double thermal_work = 0.;
   };
 
   /// Collective. Without a step (initial state), give the same state twice.
@@ -44,13 +47,15 @@ namespace Viscoplastic
     /// The mean of the strain and the stress.
     SymmetricTensor<2, 3> mean_strain, mean_stress;
     /// Integrals, see StressSummary.
-    double irreversible_energy = 0., viscous_dissipation = 0.;
+    double irreversible_energy = 0., viscous_dissipation = 0.,
+           thermal_work = 0.;
   };
 
-  /// @p now is laws.at(state.t).
+  /// @p before and @p now are laws.at() of the times of both states.
   template <int dim>
   CellEnergies
   energies_of_cell(const FlowLaws<dim>                  &laws,
+                   const typename FlowLaws<dim>::AtTime &before,
                    const typename FlowLaws<dim>::AtTime &now,
                    const State<dim>                     &old_state,
                    const State<dim>                     &state,

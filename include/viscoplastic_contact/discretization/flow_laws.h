@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <viscoplastic_contact/discretization/stress_space.h>
+#include <viscoplastic_contact/discretization/thermal_strain.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 
 #include <array>
@@ -25,6 +25,9 @@ namespace Viscoplastic
 
     const StressSpace<dim> &stress_space;
 
+    /// The temperature; null in scenes that have none.
+    const std::unique_ptr<const ThermalStrain<dim>> thermal;
+
     /// Whether any material has a law, and one with a cap on the stress.
     /// Known on all ranks.
     bool any, any_cap, any_own_energy;
@@ -33,7 +36,8 @@ namespace Viscoplastic
     bool
     have_constant_tangents() const;
 
-    /// Whether G depends on the state alone, not on t.
+    /// Whether G depends on the state alone, not on t or on a temperature that
+    /// does.
     bool
     are_autonomous() const;
 
@@ -52,20 +56,64 @@ namespace Viscoplastic
       const ViscoplasticLaw *
       law(const std::size_t cell) const
       {
-        return laws
-          .materials[laws.material_of_cell.empty() ?
-                       0 :
-                       laws.material_of_cell[cell]]
-          .law;
+        return laws.materials[material(cell)].law;
       }
 
       /// The point at which law(cell) is evaluated for one of its samples.
       LawPoint
       point(const std::size_t cell, const unsigned int s) const;
 
+      /// Whether point() differs from sample to sample.
+      bool
+      varies_in_space(const std::size_t cell) const;
+
+      /// T at a sample, 0 in scenes without temperature.
+      double
+      temperature(const std::size_t cell, const unsigned int s) const
+      {
+        return thermal ?
+                 thermal->temperature[cell * laws.stress_space.n_samples + s] :
+                 0.;
+      }
+
+      /// alpha (T - T_0) at a sample.
+      double
+      thermal_strain(const std::size_t cell, const unsigned int s) const
+      {
+        return thermal && !thermal->strain.empty() ?
+                 thermal->strain[cell * laws.stress_space.n_samples + s] :
+                 0.;
+      }
+
+      /// The strain that laws know: without that of the temperature.
+      SymmetricTensor<2, 3>
+      mechanical(SymmetricTensor<2, 3> strain,
+                 const std::size_t     cell,
+                 const unsigned int    s) const
+      {
+        if (const double excess = thermal_strain(cell, s); excess != 0.)
+          for (unsigned int i = 0; i < 3; ++i)
+            strain[i][i] -= excess;
+        return strain;
+      }
+
     private:
       friend class FlowLaws;
       AtTime(const FlowLaws &laws, const double t);
+
+      unsigned int
+      material(const std::size_t cell) const
+      {
+        return laws.material_of_cell.empty() ? 0 : laws.material_of_cell[cell];
+      }
+
+      const auto &
+      entry(const std::size_t cell) const
+      {
+        return laws.materials[material(cell)];
+      }
+
+      std::shared_ptr<const typename ThermalStrain<dim>::Samples> thermal;
 
       const FlowLaws       &laws;
       const double          t;
@@ -94,7 +142,10 @@ namespace Viscoplastic
     struct Entry
     {
       const ViscoplasticLaw *law;
-      bool                   varies_in_space, varies_in_time;
+      /// Of the parameters.
+      bool varies_in_space, varies_in_time;
+      /// Of the rate, at a temperature that changes.
+      bool follows_temperature;
     };
 
     std::vector<Entry> materials;

@@ -51,8 +51,9 @@ namespace Viscoplastic
    * The estimate bounds the error of one step for given z; the error that has
    * accumulated in z is not part of it. An initial stress, which may vary in
    * cells and balance the loads there, is taken as it is, and not as the cell
-   * means that z holds of it. Cells of absent materials count for
-   * nothing, and faces towards them as free ones of Gamma_2.
+   * means that z holds of it; so is the thermal stress. Cells of absent
+   * materials count for nothing, and faces towards them as free ones of
+   * Gamma_2.
    *
    * What depends on the mesh alone is kept from step to step, as are data that
    * do not depend on time.
@@ -69,7 +70,7 @@ namespace Viscoplastic
     {
       /// With ghosts, Cartesian.
       const DistributedVector &u;
-      /// May be empty.
+      /// Without thermal stress; may be empty.
       const IrreversibleStress &z;
       /// Of the data; none, for fields that have no data.
       std::optional<double> t;
@@ -191,6 +192,8 @@ namespace Viscoplastic
     void
     make_initial_stress();
     void
+    make_expansion();
+    void
     find_other_bodies();
 
     /// Face @p f of a cell with this number.
@@ -301,6 +304,22 @@ namespace Viscoplastic
     /// What sigma0 nu at all faces has beyond that of its cell means, which z_h
     /// holds; empty without an initial stress.
     std::vector<Tensor<1, dim>> initial_tractions;
+
+    /// Add the thermal stress at time t. Collective.
+    void
+    add_thermal_tractions(const double                 t,
+                          std::vector<Tensor<1, dim>> &tractions) const;
+
+    /// What call(cell, face) does for all faces, in the order of tractions.
+    template <typename Call>
+    void
+    for_each_face(const Call &call) const;
+
+    /// alpha of the cells, and T_0 at the points of all faces; empty where
+    /// nothing expands.
+    std::vector<double> expansion, reference_temperature;
+    /// -E alpha (T - T_0) nu there, kept if the temperature stays.
+    mutable std::vector<Tensor<1, dim>> thermal_tractions;
 
     /// sigma nu at all faces: kept, since a new array for each step costs as
     /// much as to fill it.

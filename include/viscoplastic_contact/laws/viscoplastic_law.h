@@ -36,8 +36,9 @@ namespace Viscoplastic
 
 
   /**
-   * A number in a law, such as a viscosity: an expression of x, y, (z,) and t
-   * of the parameter file, with the range that it must have everywhere.
+   * A number in a law, such as a viscosity: an expression of x, y, (z,) t and
+   * the temperature T of the parameter file, with the range that it must have
+   * everywhere.
    */
   class LawParameter
   {
@@ -62,7 +63,9 @@ namespace Viscoplastic
     /// Throws ExcMessage naming entry, value, range, place and time if out of
     /// range.
     double
-    value(const Point<3> &x, const double t) const;
+    value(const Point<3> &x,
+          const double    t,
+          const double    temperature = 0.) const;
 
     bool
     depends_on_position() const
@@ -74,6 +77,12 @@ namespace Viscoplastic
     depends_on_time() const
     {
       return expression->depends_on_time();
+    }
+
+    bool
+    depends_on_temperature() const
+    {
+      return expression->depends_on_additional_variable();
     }
 
     /// The name with its section, such as "Material 2/norton/Exponent".
@@ -102,12 +111,14 @@ namespace Viscoplastic
   /// Where and when a law is evaluated (in 2D, z = 0), and what the
   /// parameters of the law are there, in the order of its constructor; behind
   /// them there may be what the law derives from them, see
-  /// ViscoplasticLaw::prepare().
+  /// ViscoplasticLaw::prepare(). The temperature is that of the scene, 0 where
+  /// there is none.
   struct LawPoint
   {
     Point<3>              x;
     double                t = 0;
     std::array<double, 6> parameters{};
+    double                temperature = 0.;
   };
 
   /// States at several points of one body, such as those of a cell.
@@ -153,12 +164,33 @@ namespace Viscoplastic
 
     /// The point with the values of the parameters there. Evaluates
     /// expressions: keep the result where they do not change.
-    LawPoint
-    point(const Point<3> &x, const double t) const;
+    virtual LawPoint
+    point(const Point<3> &x,
+          const double    t,
+          const double    temperature = 0.) const;
 
-    /// Whether point() differs from place to place.
-    bool
+    /// Whether point() differs from place to place at the same temperature.
+    virtual bool
     depends_on_position() const;
+
+    /// Whether parameters are expressions of the temperature.
+    virtual bool
+    has_parameters_of_temperature() const;
+
+    /// Whether G depends on the temperature: to be overridden by a law that
+    /// uses point.temperature itself.
+    virtual bool
+    depends_on_temperature() const
+    {
+      return has_parameters_of_temperature();
+    }
+
+    /// Whether that has to be an absolute one.
+    virtual bool
+    needs_absolute_temperature() const
+    {
+      return false;
+    }
 
     /// Whether a point must be evaluated anew at each time.
     virtual bool
@@ -172,7 +204,8 @@ namespace Viscoplastic
     check(const Stiffness & /*stiffness*/, const LawPoint & /*point*/) const
     {}
 
-    /// G, stress per time.
+    /// G, stress per time. The strain is the mechanical one, without that of
+    /// the temperature.
     virtual SymmetricTensor<2, 3>
     rate(const SymmetricTensor<2, 3> &stress,
          const SymmetricTensor<2, 3> &strain,

@@ -249,6 +249,7 @@ namespace Viscoplastic
     creep_strain,
     creep_rate,
     principal_stresses,
+    temperature,
     slip,
     slip_rate,
     traction,
@@ -267,7 +268,7 @@ namespace Viscoplastic
   {
     return "displacement|velocity|stress|von Mises stress|irreversible stress|"
            "total strain|irreversible strain|creep strain|creep rate|principal "
-           "stresses|slip|slip rate|traction|bound|utilisation|stick|friction "
+           "stresses|temperature|slip|slip rate|traction|bound|utilisation|stick|friction "
            "work|contact pressure|gap|normal traction|stress vector";
   }
 

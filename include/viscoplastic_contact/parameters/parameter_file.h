@@ -62,6 +62,7 @@ namespace Viscoplastic
     std::map<unsigned int, MaterialParameters> materials;
     SupportParameters                          supports;
     LoadParameters                             loads;
+    TemperatureParameters                      temperature;
     InitialStateParameters                     initial_state;
     ExactSolutionParameters                    exact_solution;
     std::map<unsigned int, BoundaryParameters> boundaries;

@@ -53,6 +53,11 @@ namespace Viscoplastic
     std::string poissons_ratio = "0.3";
     std::string voigt_matrix;
     std::string law = "elastic";
+    /// alpha; empty for a material that does not expand.
+    std::string thermal_expansion;
+    /// Q, and the temperature at which the law is as its entries say; empty for
+    /// a law that does not know of temperature.
+    std::string activation_energy, law_temperature;
     /// Times; empty for a material that is there from the beginning, or to the
     /// end.
     std::string added_at, removed_at;
@@ -83,6 +88,15 @@ namespace Viscoplastic
   struct LoadParameters
   {
     std::string body_force;
+
+    void
+    declare(ParameterHandler &prm);
+  };
+
+  struct TemperatureParameters
+  {
+    /// T(x,t); empty for a body whose temperature plays no role.
+    std::string value, reference, gas_constant;
 
     void
     declare(ParameterHandler &prm);

@@ -61,6 +61,10 @@ namespace Viscoplastic
     /// The displacement as it is reported.
     DistributedVector        difference;
     const DistributedVector &u;
+    /// z without thermal stress.
+    IrreversibleStress                   rest;
+    const IrreversibleStress            &irreversible;
+    const typename FlowLaws<dim>::AtTime now;
     /// The fields that are means of cells, and the others.
     std::set<RecordedField>                cell_fields;
     std::vector<const DistributedVector *> nodal_fields;

@@ -14,6 +14,7 @@ namespace Viscoplastic
     /// What has come and gone in the step; see StressSummary and
     /// FrictionIdentities.
     double external_work, viscous_dissipation, friction_dissipation;
+    double thermal_work = 0.;
   };
 
 
@@ -32,8 +33,9 @@ namespace Viscoplastic
   /**
    * The balance of energy over a run,
    *
-   *     external work = change of the stored energy + viscous dissipation
-   *                     + dissipation by friction.
+   *     external work + work of heating = change of the stored energy
+   *                                       + viscous dissipation
+   *                                       + dissipation by friction.
    *
    * The time integration keeps that of the bulk exactly, whatever the step
    * size, so that the defect is that of friction: sum lambda . s takes the
@@ -60,6 +62,8 @@ namespace Viscoplastic
       largest_work = std::max(largest_work, std::abs(work));
       viscous += step.viscous_dissipation;
       friction += step.friction_dissipation;
+      thermal += step.thermal_work;
+      largest_work = std::max(largest_work, std::abs(thermal));
     }
 
     /// Add a change of the mesh. What it does to the stored energy beyond the
@@ -104,6 +108,13 @@ namespace Viscoplastic
       return friction;
     }
 
+    /// What heating has done to the body.
+    double
+    thermal_work() const
+    {
+      return thermal;
+    }
+
     double
     adaptation_energy() const
     {
@@ -121,8 +132,9 @@ namespace Viscoplastic
     double
     defect() const
     {
-      return work - (energy - initial_energy - adaptation - construction) -
-             viscous - friction;
+      return work + thermal -
+             (energy - initial_energy - adaptation - construction) - viscous -
+             friction;
     }
 
     /// What there was to balance, also where loads give back what they took.
@@ -138,7 +150,7 @@ namespace Viscoplastic
     exchange(Archive &archive)
     {
       archive &initial_energy &energy &work &largest_work &viscous &friction
-        &adaptation &construction;
+        &adaptation &construction &thermal;
     }
 
   private:
@@ -154,6 +166,7 @@ namespace Viscoplastic
     }
 
     double initial_energy = 0., energy = 0., work = 0., largest_work = 0.,
-           viscous = 0., friction = 0., adaptation = 0., construction = 0.;
+           viscous = 0., friction = 0., adaptation = 0., construction = 0.,
+           thermal = 0.;
   };
 } // namespace Viscoplastic

@@ -6,6 +6,8 @@
 #include <viscoplastic_contact/results/energy_balance.h>
 #include <viscoplastic_contact/time_stepping/time_stepper.h>
 
+#include <optional>
+
 namespace Viscoplastic
 {
   /**
@@ -59,8 +61,10 @@ namespace Viscoplastic
           EvaluatedState<dim>       &accepted);
 
   private:
-    const double       loss;
-    StateTransfer<dim> transfer;
+    const std::optional<State<dim>> without_temperature;
+    const State<dim>               &carried;
+    const double                    loss;
+    StateTransfer<dim>              transfer;
   };
 
 

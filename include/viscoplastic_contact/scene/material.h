@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/base/expression.h>
 #include <viscoplastic_contact/laws/viscoplastic_law.h>
 #include <viscoplastic_contact/parameters/parameters.h>
+#include <viscoplastic_contact/scene/temperature.h>
 
 #include <memory>
 #include <optional>
@@ -12,8 +13,8 @@
 namespace Viscoplastic
 {
   /**
-   * What one part of the body consists of: its elastic tensor E as a function
-   * of position, and its law G.
+   * What one part of the body consists of: its elastic tensor E and thermal
+   * expansion as functions of position, and its law G.
    *
    * A material may be absent in some stages of construction. Its cells stay in
    * the mesh then, without loads, flow or stress, and with a stiffness that is
@@ -27,13 +28,15 @@ namespace Viscoplastic
     /**
      * @p section is the subsection of the parameter file ("Material" or
      * "Material 2"), in which @p handler stands outside; it names the material
-     * in messages. Throws ExcMessage for data that cannot be right anywhere.
+     * in messages; @p temperature is null in scenes that have none. Throws
+     * ExcMessage for data that cannot be right anywhere.
      */
     Material(const std::string                 &section,
              const MaterialParameters          &parameters,
              ParameterHandler                  &handler,
-             const std::vector<LawDescription> &laws      = built_in_laws(),
-             const bool                         is_absent = false);
+             const std::vector<LawDescription> &laws        = built_in_laws(),
+             const bool                         is_absent   = false,
+             const Temperature<dim>            *temperature = nullptr);
 
     /// E at x. Throws ExcMessage naming section, place and what is wrong.
     Stiffness
@@ -49,6 +52,20 @@ namespace Viscoplastic
     bool
     is_uniform() const;
 
+    /// alpha at x, 0 for a material that does not expand.
+    double
+    expansion(const Point<dim> &x) const
+    {
+      return thermal_expansion ? thermal_expansion->value(x, 0.) : 0.;
+    }
+
+    /// Whether the temperature has to be an absolute one.
+    bool
+    needs_absolute_temperature() const
+    {
+      return law && law->needs_absolute_temperature();
+    }
+
     static constexpr double absent_stiffness = 1e-6;
 
     const std::string section;
@@ -62,6 +79,8 @@ namespace Viscoplastic
     double added_at, removed_at;
     /// The law of flow; null for an elastic material.
     std::unique_ptr<const ViscoplasticLaw> law;
+    /// alpha; absent where the material does not expand.
+    std::optional<Expression<dim>> thermal_expansion;
 
   private:
     /// The stiffness from Young's modulus and Poisson's ratio at x.

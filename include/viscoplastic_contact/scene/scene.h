@@ -153,13 +153,24 @@ namespace Viscoplastic
              exact_solution->has_own_stress();
     }
 
-    /// Whether there is z = sigma - E eps(u): from viscosity, or from initial
-    /// data.
+    /// Whether there is z = sigma - E eps(u): from viscosity, from the
+    /// temperature, or from initial data.
     bool
     has_irreversible_stress() const
     {
       return has_viscosity() || initial_displacement || initial_stress ||
-             has_stages();
+             has_thermal_strain() || has_stages();
+    }
+
+    /// Whether some material expands with temperature.
+    bool
+    has_thermal_strain() const;
+
+    /// Whether it may have done so before t = 0.
+    bool
+    has_initial_thermal_stress() const
+    {
+      return has_thermal_strain() && temperature->reference;
     }
 
     PlaneModel
@@ -231,7 +242,8 @@ namespace Viscoplastic
     bool
     keeps_friction_work() const;
 
-    /// Whether neither loads nor friction bounds depend on time.
+    /// Whether neither loads, the temperature nor friction bounds depend on
+    /// time.
     bool
     has_constant_loads_and_bounds() const;
 
@@ -260,6 +272,8 @@ namespace Viscoplastic
     /// b, u0, sigma0; absent where identically zero.
     std::optional<VectorExpression<dim>> body_force;
     std::optional<VectorExpression<dim>> initial_displacement, initial_stress;
+    /// T; null in scenes that give none.
+    std::unique_ptr<const Temperature<dim>> temperature;
     /// What is recorded beside the fields, and where.
     std::vector<Point<dim>>      output_points;
     std::vector<OutputLine<dim>> output_lines;
@@ -296,6 +310,10 @@ namespace Viscoplastic
 
     void
     make_materials(const std::set<types::material_id> &ids);
+
+    /// A temperature that nothing depends on, or in the wrong unit.
+    void
+    inspect_temperature(const Triangulation<dim> &triangulation);
 
     /// Find the stages of construction; refuse some that cannot be.
     void

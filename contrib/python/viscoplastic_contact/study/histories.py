@@ -14,6 +14,7 @@ ENERGIES = (
     "viscous_dissipation",
     "stored_energy",
     "external_work",
+    "thermal_work",
 )
 
 

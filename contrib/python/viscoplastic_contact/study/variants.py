@@ -9,7 +9,11 @@ from .words import exact
 
 # Of what an effect is: of the problem that is solved, of how it is discretized, or
 # of what only watches the run and should change no answer.
-KINDS = PROBLEM, DISCRETIZATION, OBSERVATION = "problem", "discretization", "observation"
+KINDS = PROBLEM, DISCRETIZATION, OBSERVATION = (
+    "problem",
+    "discretization",
+    "observation",
+)
 
 # muParser refuses expressions of 20000 characters.
 LONGEST_TEXT = 15000
@@ -81,7 +85,7 @@ def zeros_for(expression):
 
 
 def in_a_sentence(entry):
-    """"friction bound" of "Friction bound"; names keep their capitals."""
+    """ "friction bound" of "Friction bound"; names keep their capitals."""
     if entry.startswith(("Young", "Poisson")):
         return entry
     return entry[0].lower() + entry[1:]
@@ -148,6 +152,9 @@ class Variants:
             for over in ("space", "time"):
                 self.add_mean(over, "body force", "Loads/Body force")
             self.is_load = False
+        if self.scene["Temperature/Value"].strip():
+            for over in ("space", "time"):
+                self.add_mean(over, "temperature", "Temperature/Value")
         initial = "Initial state/Stress", "Initial state/Displacement"
         if any(self.scene[path] for path in initial):
             self.add("initial state", "none", *(f"{path}=" for path in initial))
@@ -164,7 +171,9 @@ class Variants:
     def add_materials(self):
         sections = self.materials()
         for section in sections:
-            self.add_material(section, f" of {self.title(section)}" if len(sections) > 1 else "")
+            self.add_material(
+                section, f" of {self.title(section)}" if len(sections) > 1 else ""
+            )
         # All of the first one.
         first = sections[0] + "/"
         same = [
@@ -175,11 +184,18 @@ class Variants:
             if self.values[f"{other}/{path[len(first):]}"] != text
         ]
         if same:
-            self.add("different materials", f"{self.title(sections[0])} everywhere", *same)
+            self.add(
+                "different materials", f"{self.title(sections[0])} everywhere", *same
+            )
 
     def add_material(self, section, of):
         law = self.scene[f"{section}/Law"]
         self.add_law(section, of, law)
+        of_heat = ("Thermal expansion", "Activation energy")
+        for name in of_heat[: 1 if law == "elastic" else 2]:
+            if not is_zero(self.scene[f"{section}/{name}"] or "0"):
+                self.add(in_a_sentence(name) + of, "none", f"{section}/{name}=")
+        self.add_mean("space", "thermal expansion" + of, f"{section}/Thermal expansion")
         moduli = ("Young's modulus", "Poisson's ratio")
         if section in self.isotropic:
             nearest = zip(moduli, self.isotropic[section])
@@ -338,7 +354,8 @@ class Variants:
             name
             for name in self.sections("Boundary").values()
             if self.values[f"{name}/Role"] == "contact"
-            and self.values[f"{name}/Contact law"] in ("unilateral", "normal compliance")
+            and self.values[f"{name}/Contact law"]
+            in ("unilateral", "normal compliance")
         ]
         if (
             len(unilateral) == 1
@@ -378,7 +395,9 @@ class Variants:
                 ["cell means", "quadrature points"],
             )
             alternative(
-                "time scheme", "Time/Scheme", ["forward Euler", "backward Euler", "Heun"]
+                "time scheme",
+                "Time/Scheme",
+                ["forward Euler", "backward Euler", "Heun"],
             )
         if scene.has_step_control:
             self.add(

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <viscoplastic_contact/discretization/stress_space.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace Viscoplastic
+{
+  /**
+   * The temperature T and the thermal strain alpha (T - T_0) I at the samples
+   * of all owned cells. With it
+   *
+   *     sigma = E (eps(u) - alpha (T - T_0) I) + z':
+   *
+   * the thermal stress -E alpha (T - T_0) I is a part of
+   * z = sigma - E eps(u), which follows it from step to step, so that only
+   * those who ask for what has flowed, or for the strain that a law knows, must
+   * know of it. With cell means, that of the cell's center counts.
+   */
+  template <int dim>
+  class ThermalStrain
+  {
+  public:
+    /// The scene has a temperature. Collective.
+    explicit ThermalStrain(const StressSpace<dim> &stress_space);
+
+    /// By sample.
+    struct Samples
+    {
+      double              t;
+      std::vector<double> temperature, strain;
+    };
+
+    /// Evaluates the temperature, or gives what it was when asked last. Throws
+    /// ExcMessage where it has no value, or is not an absolute one but has to
+    /// be. Collective.
+    std::shared_ptr<const Samples>
+    at(const double t) const;
+
+    /// Whether any material expands, known on all ranks.
+    const bool expands;
+    /// Whether thermal strains and rates may change from step to step.
+    const bool varies_in_time;
+
+    /// Whether the temperature is another one somewhere. Collective.
+    bool
+    changes(const double t_old, const double t) const;
+
+    /// Add @p factor times the thermal stress at time t to a stress.
+    /// Collective.
+    void
+    add_stress(const double        t,
+               const double        factor,
+               IrreversibleStress &stress) const;
+
+    /// Let z, which is that of time @p t_old, follow to time t. Collective.
+    void
+    follow(const double t_old, const double t, IrreversibleStress &z) const;
+
+    /// The stress of the thermal strain @p strain.
+    static SymmetricTensor<2, 3>
+    stress(const Stiffness &stiffness, const double strain)
+    {
+      return stiffness.stress(-strain * unit_symmetric_tensor<3>());
+    }
+
+  private:
+    const StressSpace<dim> &stress_space;
+    /// alpha of each cell, empty if none expands, and T_0 of each sample.
+    std::vector<double> expansion, reference;
+    /// The last two that were asked for: those of a step.
+    mutable std::array<std::shared_ptr<const Samples>, 2> last;
+  };
+
+
+
+  /// What z is without the thermal stress of time t, kept in @p rest unless z
+  /// is that itself. @p thermal: null in scenes without temperature.
+  /// Collective.
+  template <int dim>
+  const IrreversibleStress &
+  without_thermal_stress(const ThermalStrain<dim> *thermal,
+                         const double              t,
+                         const IrreversibleStress &z,
+                         IrreversibleStress       &rest);
+} // namespace Viscoplastic

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <viscoplastic_contact/base/messages.h>
+#include <viscoplastic_contact/discretization/thermal_strain.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace Viscoplastic
+{
+  namespace
+  {
+    template <int dim>
+    bool
+    any_expands(const Scene<dim> &scene)
+    {
+      return std::any_of(scene.materials.begin(),
+                         scene.materials.end(),
+                         [](const auto &material) {
+                           return material->thermal_expansion.has_value();
+                         });
+    }
+
+
+
+    template <int dim>
+    void
+    require_absolute(const Material<dim> &material,
+                     const double         T,
+                     const Point<dim>    &x,
+                     const double         t)
+    {
+      if (T > 0.)
+        return;
+      std::ostringstream message;
+      message << "'Temperature/Value' is " << T << " at x = (" << x
+              << "), t = " << t << ", but '" << material.section
+              << "/Activation energy' asks for absolute temperatures, in "
+                 "kelvin: add 273.15 to degrees Celsius.";
+      AssertThrow(false, ExcMessage(message.str()));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  ThermalStrain<dim>::ThermalStrain(const StressSpace<dim> &stress_space)
+    : expands(any_expands(stress_space.space.scene))
+    , varies_in_time(
+        stress_space.space.scene.temperature->value.depends_on_time())
+    , stress_space(stress_space)
+  {
+    if (!expands)
+      return;
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    fail_together(space.communicator, [&] {
+      for (const auto &cell : space.cells)
+        expansion.push_back(
+          space.scene.material(cell->material_id()).expansion(cell->center()));
+    });
+    // Where T_0 is that of each place it has to be known first.
+    const auto &given = space.scene.temperature->reference;
+    reference =
+      given ?
+        std::vector<double>(stress_space.n_cells() * stress_space.n_samples,
+                            *given) :
+        at(0.)->temperature;
+    last = {};
+  }
+
+
+
+  template <int dim>
+  std::shared_ptr<const typename ThermalStrain<dim>::Samples>
+  ThermalStrain<dim>::at(const double t) const
+  {
+    for (const auto &samples : last)
+      if (samples && (samples->t == t || !varies_in_time))
+        return samples;
+    const Scene<dim>      &scene  = stress_space.space.scene;
+    const Expression<dim> &T      = scene.temperature->value;
+    const unsigned int     n      = stress_space.n_samples;
+    const std::size_t      size   = stress_space.n_cells() * n;
+    auto                   result = std::make_shared<Samples>();
+    std::vector<double>   &values = result->temperature;
+    result->t                     = t;
+    fail_together(stress_space.space.communicator, [&] {
+      if (!T.depends_on_position())
+        values.assign(size, T.value(Point<dim>(), t));
+      else
+        for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+          for (unsigned int s = 0; s < n; ++s)
+            values.push_back(T.value(stress_space.position(c, s), t));
+      for (std::size_t c = 0; c < stress_space.n_cells(); ++c)
+        if (const Material<dim> &material =
+              scene.material(stress_space.space.cells[c]->material_id());
+            material.needs_absolute_temperature())
+          for (unsigned int s = 0; s < n; ++s)
+            require_absolute(material,
+                             values[c * n + s],
+                             stress_space.position(c, s),
+                             t);
+    });
+    if (!reference.empty())
+      for (std::size_t i = 0; i < size; ++i)
+        result->strain.push_back(expansion[i / n] * (values[i] - reference[i]));
+    std::swap(last[0], last[1]);
+    last[0] = result;
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  ThermalStrain<dim>::changes(const double t_old, const double t) const
+  {
+    if (!varies_in_time || t == t_old)
+      return false;
+    const bool differs = at(t_old)->temperature != at(t)->temperature;
+    return Utilities::MPI::max(differs ? 1 : 0,
+                               stress_space.space.communicator) == 1;
+  }
+
+
+
+  template <int dim>
+  void
+  ThermalStrain<dim>::add_stress(const double        t,
+                                 const double        factor,
+                                 IrreversibleStress &z) const
+  {
+    if (!expands)
+      return;
+    const auto         now = at(t);
+    const unsigned int n   = stress_space.n_samples;
+    for (std::size_t i = 0; i < z.size(); ++i)
+      z[i] += stress(stress_space.moduli(i / n), factor * now->strain[i]);
+  }
+
+
+
+  template <int dim>
+  void
+  ThermalStrain<dim>::follow(const double        t_old,
+                             const double        t,
+                             IrreversibleStress &z) const
+  {
+    // z stays bit for bit where nothing changes.
+    if (!expands || !varies_in_time || t == t_old)
+      return;
+    const auto         before = at(t_old), now = at(t);
+    const unsigned int n = stress_space.n_samples;
+    for (std::size_t i = 0; i < z.size(); ++i)
+      if (const double change = now->strain[i] - before->strain[i];
+          change != 0.)
+        z[i] += stress(stress_space.moduli(i / n), change);
+  }
+
+
+
+  template <int dim>
+  const IrreversibleStress &
+  without_thermal_stress(const ThermalStrain<dim> *thermal,
+                         const double              t,
+                         const IrreversibleStress &z,
+                         IrreversibleStress       &rest)
+  {
+    if (thermal == nullptr || !thermal->expands)
+      return z;
+    rest = z;
+    thermal->add_stress(t, -1., rest);
+    return rest;
+  }
+
+
+
+  template const IrreversibleStress &
+  without_thermal_stress(const ThermalStrain<2> *,
+                         const double,
+                         const IrreversibleStress &,
+                         IrreversibleStress &);
+  template const IrreversibleStress &
+  without_thermal_stress(const ThermalStrain<3> *,
+                         const double,
+                         const IrreversibleStress &,
+                         IrreversibleStress &);
+  template class ThermalStrain<2>;
+  template class ThermalStrain<3>;
+} // namespace Viscoplastic

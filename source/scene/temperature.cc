@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <viscoplastic_contact/scene/temperature.h>
+
+namespace Viscoplastic
+{
+  std::optional<double>
+  optional_number(const std::string &text, const std::string &entry)
+  {
+    if (Utilities::trim(text).empty())
+      return {};
+    const Expression<1> number(text, entry);
+    AssertThrow(!number.depends_on_position() && !number.depends_on_time(),
+                ExcMessage("'" + entry + "' = " + text + " is not a number."));
+    return number.value(Point<1>(), 0.);
+  }
+
+
+
+  std::optional<double>
+  optional_positive_number(const std::string &text, const std::string &entry)
+  {
+    const auto result = optional_number(text, entry);
+    AssertThrow(!result || *result > 0.,
+                ExcMessage("'" + entry + "' = " + text + " is not positive."));
+    return result;
+  }
+
+
+
+  namespace
+  {
+    double
+    gas_constant(const std::string &text, const Units &units)
+    {
+      const double joules = 8.314462618; // CODATA 2018, a mole and a kelvin
+      return optional_positive_number(text, "Temperature/Gas constant")
+        .value_or(units.are_declared() ? joules / units.si({3., 0., 1.}) :
+                                         joules);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Temperature<dim>::Temperature(const TemperatureParameters &parameters,
+                                const Units                 &units)
+    : value(parameters.value, "Temperature/Value")
+    , reference(optional_number(parameters.reference,
+                                "Temperature/Reference temperature"))
+    , gas_constant(Viscoplastic::gas_constant(parameters.gas_constant, units))
+  {}
+
+
+
+  template <int dim>
+  std::unique_ptr<const Temperature<dim>>
+  make_temperature(const TemperatureParameters &parameters, const Units &units)
+  {
+    if (!Utilities::trim(parameters.value).empty())
+      return std::make_unique<const Temperature<dim>>(parameters, units);
+    AssertThrow(parameters.reference.empty() && parameters.gas_constant.empty(),
+                ExcMessage("'Temperature' has no `Value', so that its other "
+                           "entries mean nothing."));
+    return nullptr;
+  }
+
+
+
+  template class Temperature<2>;
+  template class Temperature<3>;
+  template std::unique_ptr<const Temperature<2>>
+  make_temperature(const TemperatureParameters &, const Units &);
+  template std::unique_ptr<const Temperature<3>>
+  make_temperature(const TemperatureParameters &, const Units &);
+} // namespace Viscoplastic

@@ -34,6 +34,45 @@ namespace Viscoplastic
     std::vector<double> cartesian(space.relevant.n_elements());
     probe->add_force(Point<dim>::unit_vector(quantity.component), cartesian);
     space.add_cartesian_load(cartesian, point_load);
+    make_load_density(cartesian);
+  }
+
+
+
+  template <int dim>
+  void
+  DualProblem<dim>::make_load_density(const std::vector<double> &force)
+  {
+    const AdmissibleSpace<dim> &space = discretization.space;
+    // A plane of symmetry is no boundary of the whole body.
+    std::set<types::boundary_id> ids;
+    for (const auto &[id, condition] : space.scene.boundary)
+      if (condition.role != BoundaryRole::symmetry)
+        ids.insert(id);
+    const auto  weights = boundary_weights(space, ids);
+    const auto &hanging = space.cartesian_hanging_nodes();
+    LinearAlgebra::distributed::Vector<double> forces(space.owned,
+                                                      space.relevant,
+                                                      space.communicator);
+    for (std::size_t i = 0; i < force.size(); ++i)
+      if (force[i] != 0.)
+        {
+          const auto dof = space.relevant.nth_index_in_set(i);
+          if (!hanging.is_constrained(dof))
+            forces(dof) += force[i];
+          else
+            for (const auto &[parent, share] :
+                 *hanging.get_constraint_entries(dof))
+              forces(parent) += share * force[i];
+        }
+    forces.compress(VectorOperation::add);
+    DistributedVector values = space.owned_vector();
+    for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+      if (const double weight = weights.local_element(i - i % dim); weight > 0.)
+        values.begin()[i] = forces.local_element(i) / weight;
+    space.distribute_hanging_nodes(values);
+    load_density = space.ghosted_vector();
+    load_density = values;
   }
 
 
@@ -204,6 +243,8 @@ namespace Viscoplastic
     const AdmissibleSpace<dim> &space = d.space;
     DualSolution<dim>           dual;
     dual.w = prescribed();
+    if (probe)
+      dual.load = &load_density;
     const DistributedVector start(dual.w);
     const DistributedVector load = right_side(contact);
     const bool is_zero = load.l2_norm() == 0. && dual.w.l2_norm() == 0.;

@@ -271,7 +271,7 @@ namespace Viscoplastic
       {
         if (ends[c].empty())
           continue;
-        // Half of the nodes make all of what the mean misses.
+        // Half of the nodes make all of what the mean misses, if it is linear.
         SymmetricTensor<2, 3> missed = mean_strain(c, u);
         for (const unsigned int node : nodes[c])
           for (unsigned int i = 0; i < components.size(); ++i)
@@ -279,7 +279,8 @@ namespace Viscoplastic
               nodal[node + i] / n_vertices;
         missed *= 2. * local.stress_space.volume(c);
         for (const unsigned int v : ends[c])
-          for (unsigned int i = 0; i < components.size(); ++i)
+          for (unsigned int i = 0; i < components.size() && !is_curved(c, v, u);
+               ++i)
             change.local_element(nodes[c][v] + i) +=
               missed.access_raw_entry(components[i]);
       }
@@ -377,15 +378,32 @@ namespace Viscoplastic
   {
     if (across[c][opposite(vertex)] == numbers::invalid_unsigned_int)
       return {};
-    const unsigned int          node = nodes[c][opposite(vertex)];
-    const SymmetricTensor<2, 3> mean = recovered(node);
-    const double volume  = 1. / part.inverse_volume.local_element(node);
-    const double density = energy_density(c, mean);
-    return Patch{mean,
-                 density,
+    const unsigned int node    = nodes[c][opposite(vertex)];
+    const double       volume  = 1. / part.inverse_volume.local_element(node);
+    const double       density = energy_density(c, recovered(node));
+    return Patch{density,
                  density * volume,
                  std::max(0., sums.local_element(node) - density * volume),
                  sums.local_element(node + 1)};
+  }
+
+
+
+  template <int dim>
+  bool
+  RecoveryEstimator<dim>::is_curved(const unsigned int       c,
+                                    const unsigned int       vertex,
+                                    const DistributedVector &u) const
+  {
+    constexpr double   least_curvature = 0.25;
+    const unsigned int other           = across[c][opposite(vertex)];
+    if (other == numbers::invalid_unsigned_int)
+      return false;
+    const SymmetricTensor<2, 3> here  = mean_strain(c, u),
+                                there = mean_strain(other, u),
+                                patch = recovered(nodes[c][opposite(vertex)]);
+    return energy_density(c, here + there - 2. * patch) >
+           least_curvature * energy_density(c, here - patch);
   }
 
 
@@ -398,12 +416,12 @@ namespace Viscoplastic
     std::vector<double>     &squares) const
   {
     // Strains that grow less than r^(-1/4) are recovered well enough.
-    const double     least_growth = std::sqrt(2.), least_curvature = 0.25;
-    constexpr double nearly = 1. - 1e-6; // what is equal but for rounding
-    const auto       node   = [this](NodalVector       &field,
+    const double     least_growth = std::sqrt(2.);
+    constexpr double nearly       = 1. - 1e-6; // what is equal but for rounding
+    const auto       node         = [this](NodalVector       &field,
                              const unsigned int c,
                              const unsigned int v,
-                             const unsigned int i) -> double         &{
+                             const unsigned int i) -> double               &{
       return field.local_element(nodes[c][v] + i);
     };
     std::vector<double> densities(local.cells.size());
@@ -422,17 +440,7 @@ namespace Viscoplastic
 
     // A point is singular if the strain of the cell with the largest one there
     // has grown towards it, not towards another of its vertices, and not as it
-    // does in bending or around holes: K + O - 2 P of the means in the cell,
-    // across the patch and in it is zero for linear strains and for those that
-    // vary in one direction.
-    const auto is_of_a_point =
-      [&](const unsigned int c, const unsigned int v, const Patch &patch) {
-        const SymmetricTensor<2, 3> here = mean_strain(c, u),
-                                    there =
-                                      mean_strain(across[c][opposite(v)], u);
-        return energy_density(c, here + there - 2. * patch.mean) >
-               least_curvature * energy_density(c, here - patch.mean);
-      };
+    // does in bending or around holes.
     maxima = 0.;
     for (const unsigned int c : part.cells)
       {
@@ -440,7 +448,7 @@ namespace Viscoplastic
         for (unsigned int v = 0; v < n_vertices; ++v)
           if (const auto around = patch(part, c, v);
               around && densities[c] > least_growth * around->density &&
-              is_of_a_point(c, v, *around))
+              is_curved(c, v, u))
             growth[v] = densities[c] / around->density;
         const double largest = *std::max_element(growth.begin(), growth.end());
         for (unsigned int v = 0; v < n_vertices; ++v)
@@ -562,7 +570,7 @@ namespace Viscoplastic
                 double product = (e - delta_u[q]) * (C * of_w[q]) -
                                  of_step * (C * delta_w[q]) / law.share;
                 if (law.remainder)
-                  product +=
+                  product -=
                     law.remainder(c, s, of_step) * (C * strains[q]) / law.share;
                 products[c] += weights[q] * product;
               }

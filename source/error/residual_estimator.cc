@@ -304,7 +304,11 @@ namespace Viscoplastic
           }
         if (!face.springs.empty())
           given -= face.springs[q].stiffness * at_point(fields.u.begin());
-        result[q] = contradiction(condition, tractions[q], given, density);
+        Tensor<1, dim> traction = tractions[q];
+        if (fields.load_density != nullptr &&
+            condition.role != BoundaryRole::symmetry)
+          traction -= at_point(fields.load_density->begin());
+        result[q] = contradiction(condition, traction, given, density);
         if (face.is_other_side)
           result[q] += density;
         if (!face.springs.empty())

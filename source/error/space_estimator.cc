@@ -146,7 +146,10 @@ namespace Viscoplastic
                                          {},
                                          dual.density.size() > 0 ?
                                            &dual.density :
-                                           nullptr});
+                                           nullptr,
+                                         0.,
+                                         nullptr,
+                                         dual.load});
   }
 
 

@@ -58,13 +58,6 @@ namespace Viscoplastic
       warnings.push_back(warning);
     make_materials(material_ids(triangulation));
     inspect_temperature(triangulation);
-    // The residuals of an elastic one miss most where its surface is loaded.
-    AssertThrow(!is_axisymmetric() || has_viscosity() || !quantity ||
-                  quantity->kind != QuantityOfInterest::Kind::displacement,
-                ExcMessage("'Error control/Quantity': the error of a "
-                           "displacement of elastic bodies of revolution is "
-                           "not estimated; choose a force, or the energy norm "
-                           "(an empty entry)."));
     find_stages(triangulation);
     AssertThrow(!has_contact_pairs() || !has_stages(),
                 ExcMessage("Contact between two bodies ('Against') cannot be "

@@ -101,11 +101,12 @@ class Patch(TestCase):
 
 class Lame(TestCase):
     """Thick cylinder and sphere under internal pressure: first order, and the
-    estimate is the error."""
+    estimate is the error, also that of the displacement of the inner wall."""
 
     NU = 0.3
+    POINT = {"Output/Points": "1, 0", "Error control/Quantity": "point0_x"}
 
-    def check_ladder(self, ladder):
+    def check_ladder(self, ladder, displacement):
         errors = [error(result) for result in ladder]
         self.assertGreater(np.log2(errors[0] / errors[1]), 0.97)
         stresses = [error(result, "stress") for result in ladder]
@@ -114,10 +115,17 @@ class Lame(TestCase):
             effectivity = result["estimate_total"][-1] / result["error_energy"][-1]
             self.assertGreater(effectivity, 0.8)
             self.assertLess(effectivity, 2)
+            # measured: 1.00 to 1.03; 0.12 where the dual load is a force at a
+            # point of the loaded wall, which residuals take for an error
+            error_of_point = displacement - result["point0_x"][-1]
+            signed = result["quantity_correction"][-1] / error_of_point
+            self.assertGreater(signed, 0.9)
+            self.assertLess(signed, 1.1)
 
     def cylinder(self, **more):
         # u = A r + B/r by p = 1 inside, nothing outside, no strain along z
         inner, outer, nu = 1, 2, self.NU
+        more = {**self.POINT, **more}
         share = inner**2 / (outer**2 - inner**2)
         A = (1 + nu) * (1 - 2 * nu) * share
         B = (1 + nu) * share * outer**2
@@ -139,6 +147,7 @@ class Lame(TestCase):
 
     def sphere(self, **more):
         inner, outer, nu = 1, 2, self.NU
+        more = {**self.POINT, **more}
         share = inner**3 / (outer**3 - inner**3)
         A = (1 - 2 * nu) * share
         B = (1 + nu) / 2 * share * outer**3
@@ -159,12 +168,14 @@ class Lame(TestCase):
 
     def test_cylinder(self):
         self.check_ladder(
-            [self.cylinder(**{"Geometry/Global refinements": g}) for g in (2, 3)]
+            [self.cylinder(**{"Geometry/Global refinements": g}) for g in (2, 3)],
+            displacement=1.43 / 0.75,
         )
 
     def test_sphere(self):
         self.check_ladder(
-            [self.sphere(**{"Geometry/Global refinements": g}) for g in (3, 4)]
+            [self.sphere(**{"Geometry/Global refinements": g}) for g in (3, 4)],
+            displacement=0.8,
         )
 
     def test_finer_run(self):
@@ -425,13 +436,6 @@ class Scenes(TestCase):
             ({"Geometry/Translation": "-0.5, 0"}, "The mesh crosses the axis"),
             ({"Boundary 0/Role": "free"}, "Boundary 0 lies on the axis", "u_r = 0"),
             ({"Boundary 2/Role": "free"}, "rigid motion free: translation along y"),
-            (
-                {
-                    "Output/Points": "1, 1",
-                    "Error control/Quantity": "point0_y",
-                },
-                "displacement of elastic bodies of revolution",
-            ),
             (
                 {"Dimension": 3, "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1"},
                 "is that of meshes in 2D",

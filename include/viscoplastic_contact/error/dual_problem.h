@@ -23,6 +23,9 @@ namespace Viscoplastic
     /// Cartesian with ghosts.
     Vector<double>    force;
     DistributedVector density;
+    /// The traction that loads w in the place of a force at a point of the
+    /// boundary: equal for u_h but for h^2; empty if it has no such load.
+    const DistributedVector *load = nullptr;
     /// a(w, w)^{1/2}.
     double norm = 0.;
   };
@@ -99,6 +102,11 @@ namespace Viscoplastic
     }
 
   private:
+    /// Spread the force at a point, by relevant entries, over the faces of the
+    /// boundary around its nodes. Collective.
+    void
+    make_load_density(const std::vector<double> &force);
+
     /// l, in frames.
     DistributedVector
     right_side(const ContactState &contact) const;
@@ -115,5 +123,7 @@ namespace Viscoplastic
     const QuantityOfInterest      &quantity;
     std::optional<PointProbe<dim>> probe;
     DistributedVector              point_load; // l of a displacement
+    /// Its nodal density on the boundary, Cartesian with ghosts.
+    DistributedVector load_density;
   };
 } // namespace Viscoplastic

@@ -69,16 +69,19 @@ namespace Viscoplastic
      * errors of a displacement and a dual solution with their signs; arguments
      * and result as of estimate().
      *
-     *     int e_u : C e_w + int r(e_u) : C eps(w_h)
+     *     int e_u : C e_w - int r(e_u) : C eps(w_h)
      *
      * since u_h solves the equations of the law and not those of its tangents:
      * its error is a-orthogonal to w_h but for the remainder r of the law,
-     * which is of the order of the first term.
+     * which is of the order of the first term. Its sign is that of tangents at
+     * the solution u, not at u_h: they are smooth, and so is the w that eps* of
+     * w_h is close to.
      *
      * Signs leave little of the sum, so that two things count here that do not
      * in squares. Means at a boundary miss half of what a strain varies by in a
      * cell: eps* is extrapolated there, so that linear strains on boxes are met
-     * everywhere. And under mean dilatation pressures do work on what div u_h
+     * everywhere; but not from cells where is_curved(), as at the corners of
+     * clamped boundaries, whose product it would take away. And under mean dilatation pressures do work on what div u_h
      * and div w_h vary by in cells, delta:
      *
      *     - int e_u : C I delta_w/3 - int e_w : C I delta_u/3,
@@ -118,13 +121,12 @@ namespace Viscoplastic
       std::vector<HangingNode> hanging_nodes;
     };
 
-    /// Cells around a node, twice as large as one of them: their mean strain
-    /// and its energy, by volume and in all, what their means vary by around
-    /// it, and the sum of their eta_K^2.
+    /// Cells around a node, twice as large as one of them: the energy of their
+    /// mean strain, by volume and in all, what their means vary by around it,
+    /// and the sum of their eta_K^2.
     struct Patch
     {
-      SymmetricTensor<2, 3> mean;
-      double                density, energy, variation, error;
+      double density, energy, variation, error;
     };
 
     /// That around the vertex of cell @p c opposite to @p vertex, from what is
@@ -133,6 +135,17 @@ namespace Viscoplastic
     patch(const Part        &part,
           const unsigned int c,
           const unsigned int vertex) const;
+
+    /// Whether strains go on from a cell at its vertex to the one across the
+    /// patch as they do at singular points: K + O - 2 P of the means in the
+    /// cell, across the patch and in it is zero for linear strains, and for
+    /// those that vary in one direction, as in bending or around holes. From
+    /// what is recovered at the node between them; no where cells are not
+    /// those of a regular mesh.
+    bool
+    is_curved(const unsigned int       cell,
+              const unsigned int       vertex,
+              const DistributedVector &u) const;
 
     /// Raise eta_K^2 by index of cell at singular points.
     void

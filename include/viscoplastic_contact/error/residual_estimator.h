@@ -84,6 +84,9 @@ namespace Viscoplastic
       /// AdmissibleSpace::make_relative() of u; null without contact between
       /// bodies.
       const DistributedVector *relative_u = nullptr;
+      /// The nodal density of a load on the boundary beside that of the data,
+      /// Cartesian with ghosts.
+      const DistributedVector *load_density = nullptr;
     };
 
     /// eta_K^2 for each active cell, zero on cells of other ranks. Collective.

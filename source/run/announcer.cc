@@ -22,8 +22,7 @@ namespace Viscoplastic
     for (const std::string &effect : scene.effects())
       out << "  " << effect << '\n';
     if (const auto changed = scene.changed_defaults(); !changed.empty())
-      out << "Changed defaults: " << enumeration(changed)
-          << '\n';
+      out << "Changed defaults: " << enumeration(changed) << '\n';
     for (const std::string &warning : scene.warnings)
       console.remark("Warning: " + warning);
     out << std::flush;

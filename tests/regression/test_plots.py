@@ -643,7 +643,10 @@ class Numbers(TestCase):
         names = {"boundary 3": "roof", "boundary 4": "roof (left)", "point 10": "crown"}
         for text, expected in (
             ("reaction_y of roof", "reaction_3_y"),
-            ("contact_force_x of roof (left)/reaction_x of roof", "contact_force_4_x/reaction_3_x"),
+            (
+                "contact_force_x of roof (left)/reaction_x of roof",
+                "contact_force_4_x/reaction_3_x",
+            ),
             ("displacement_y of crown+point1_y", "point10_y+point1_y"),
             ("reaction_y of roofing", "reaction_y of roofing"),
         ):

@@ -549,10 +549,14 @@ class Stagnation(TestCase):
         self.assertIn("where h is halved, the part of the mesh", self.words(0.05, *parts))
         self.assertEqual(self.words(0.2, *parts), "")
         parts = lambda h: 0.5 * h, lambda k: 0.04 * k**0.1
-        self.assertIn("where k is halved, the part of the steps", self.words(0.05, *parts))
+        self.assertIn(
+            "where k is halved, the part of the steps", self.words(0.05, *parts)
+        )
 
     def test_initial_data_stay_as_they_are(self):
-        self.assertIn("of the mesh", self.words(0.05, lambda h: 0.01 * h, lambda k: k, 0.1))
+        self.assertIn(
+            "of the mesh", self.words(0.05, lambda h: 0.01 * h, lambda k: k, 0.1)
+        )
 
 
 class Tolerances(TestCase):

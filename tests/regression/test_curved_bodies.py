@@ -18,7 +18,9 @@ def gives_way(dim):
         if dim == 2:
             shape = (1 + nu) * ((1 - 2 * nu) * b**2 + of**2) / abs(b**2 - of**2)
         else:
-            shape = ((1 - 2 * nu) * b**3 + (1 + nu) / 2 * of**3) / abs(b**3 - of**3)
+            shape = ((1 - 2 * nu) * b**3 + (1 + nu) / 2 * of**3) / abs(
+                b**3 - of**3
+            )
         result.append(b / E * shape)
     return sum(result)
 

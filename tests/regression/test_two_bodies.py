@@ -47,9 +47,7 @@ class Blocks(TestCase):
                 )
                 # the compliance gives way by p/c
                 more = 0 if law == "bilateral" else 0.02
-                self.assertClose(
-                    result["point0_y"][-1], -0.0139 - more, absolute=1e-12
-                )
+                self.assertClose(result["point0_y"][-1], -0.0139 - more, absolute=1e-12)
 
     def test_hanging_nodes(self):
         """On either side, and on ranks that do not have both."""
@@ -292,7 +290,9 @@ class Limits(TestCase):
             ),
         )
         scale = one["contact_force_y"][-1]
-        self.assertClose(two["contact_force_y"], one["contact_force_y"], 0, 1e-9 * scale)
+        self.assertClose(
+            two["contact_force_y"], one["contact_force_y"], 0, 1e-9 * scale
+        )
         self.assertClose(two["contact_area"], one["contact_area"], absolute=1e-12)
         self.assertLess(one["contact_area"][-1], 0.9)
         self.assertClose(two["max_pressure"], one["max_pressure"], 1e-8)
@@ -465,7 +465,9 @@ class Slip(TestCase):
             },
         )
         force = result["contact_force_y"][-1]
-        modulus, radius = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2), 1 / (1 / 2 + 1 / 4)
+        modulus, radius = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2), 1 / (
+            1 / 2 + 1 / 4
+        )
         pressure = np.sqrt(force * modulus / np.pi / radius)
         width = 2 * np.sqrt(4 * force * radius / np.pi / modulus)
         # measured: 0.4 % more, for bodies that are 7 widths deep
@@ -567,9 +569,9 @@ class Known(TestCase):
             "Error control/Error bar": "true",
         }
         for n, m in (4, 3), (4, 8):
-            load["Geometry/Arguments"] = (
-                f"{n}, {n} : 0, 0 : 1, 1 : true | {m}, {m} : 0, 1 : 1, 2 : true"
-            )
+            load[
+                "Geometry/Arguments"
+            ] = f"{n}, {n} : 0, 0 : 1, 1 : true | {m}, {m} : 0, 1 : 1, 2 : true"
             finest = run(
                 "two_blocks_2d",
                 {

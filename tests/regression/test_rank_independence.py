@@ -57,7 +57,9 @@ class Scene:
 SCENES = {
     "plane": {
         # more than the 2000 unknowns that multigrid leaves to its coarsest level
-        "verification/slab": Scene({**cells(48, 24, to="2, 1"), **phases("1: 6, 2: 6")}),
+        "verification/slab": Scene(
+            {**cells(48, 24, to="2, 1"), **phases("1: 6, 2: 6")}
+        ),
         "verification/conveyor_2d": Scene(phases("1: 5, 2: 5")),
         "verification/coulomb_block_2d": Scene(phases("1: 2, 2: 4, 4: 8")),
         "verification/half_clamped_block": Scene(refined(1)),
@@ -134,6 +136,9 @@ SCENES = {
         "verification/literature/leaning_bar": Scene(),
         "verification/literature/punch_with_friction": Scene(
             {"Geometry/Boundary refinements": "4: 3"}
+        ),
+        "verification/literature/contact_patch": Scene(
+            {"Boundary 23/Pressure": "0.01*t*x"}
         ),
         "verification/literature/roller_on_block": Scene(
             {

@@ -421,6 +421,37 @@ class Slip(TestCase):
             r"Note: at t = 2 two bodies have slid along each other by 3\.\d times the",
         )
 
+    def test_fields_on_the_other_side(self):
+        """A constant pressure is that on either side; vectors are the reverse."""
+        for ranks in 1, 2:
+            faces = [
+                run(
+                    "two_blocks_3d",
+                    {**TIGHT, "Output/Fields every": 1},
+                    ranks=ranks,
+                ).fields(series)
+                for series in ("contact", "opposite")
+            ]
+            self.assertNotEqual(*(len(face.points) for face in faces))
+            for face in faces:
+                pressure = face.point_data["contact_pressure"]
+                self.assertClose(pressure, 0.01, absolute=1e-8)
+        moved = self.slide(
+            **{
+                "Output/Fields every": 1,
+                "Boundary 22/Friction coefficient": 0.01,
+                "Boundary 23/Displacement": "0.1*max(t - 1, 0); -0.01*min(t, 1)",
+            }
+        )
+        here, there = (moved.fields(series) for series in ("contact", "opposite"))
+        x = there.points[:, 0]
+        inside, outside = (x > 0.9) & (x < 1.1), (x < 0.2) | (x > 1.8)
+        slip = here.point_data["slip"][:, 0].mean()
+        self.assertGreater(slip, 0.09)
+        self.assertClose(there.point_data["slip"][inside, 0], -slip, 0.05)
+        for field in "slip", "contact_pressure", "stick":
+            self.assertEqual(abs(there.point_data[field][outside]).max(), 0)
+
     def test_estimates_of_quantities_between_the_bodies(self):
         """Their duals are of the jump: the errors against a finer mesh, and the same
         on ranks."""

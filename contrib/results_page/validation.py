@@ -310,7 +310,39 @@ def slab_on_bed(run, save):
     ]
 
 
-CASES = (hertz, partial_slip, punch, greco, slip_zone, creep, slab_on_bed)
+def two_bodies(run, save):
+    patch = run("literature/contact_patch")
+    roller = run("literature/roller_on_block")
+    nafems = "A. Konter, NAFEMS (2006), benchmark 1"
+    return [
+        Row(
+            "contact patch test",
+            "R. L. Taylor, P. Papadopoulos (1991)",
+            "pressure",
+            0.01,
+            patch["max_pressure"][-1],
+            patch,
+        ),
+        Row(
+            "roller on a block",
+            nafems,
+            "$p_0$, N/mm2",
+            3585.37,
+            roller["max_pressure"][-1],
+            roller,
+        ),
+        Row(
+            "roller on a block",
+            nafems,
+            "half width $a$, mm",
+            6.21,
+            roller["contact_area"][-1],
+            roller,
+        ),
+    ]
+
+
+CASES = (hertz, partial_slip, punch, greco, slip_zone, creep, slab_on_bed, two_bodies)
 
 
 def make(runner, images):

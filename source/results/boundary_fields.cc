@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/la_parallel_vector.h>
+
 #include <viscoplastic_contact/base/number_range.h>
+#include <viscoplastic_contact/discretization/held_traction.h>
 #include <viscoplastic_contact/results/boundary_fields.h>
 
 #include <algorithm>
@@ -17,6 +20,22 @@ namespace Viscoplastic
     for (const RecordedField field : all_fields)
       if (is_of_boundary(field))
         fields.insert(field);
+    for (const auto &[id, condition] : stress_space.space.scene.boundary)
+      if (condition.against)
+        secondary_of[*condition.against] = id;
+    make_fields(face);
+    if (!secondary_of.empty())
+      carry_across();
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryFields<dim>::make_fields(const ContactFace<dim> *face)
+  {
+    if (has(RecordedField::friction_work))
+      friction_work = state.friction_work;
     if (has(RecordedField::slip))
       {
         slip = state.u;
@@ -75,6 +94,77 @@ namespace Viscoplastic
 
 
   template <int dim>
+  void
+  BoundaryFields<dim>::carry_across()
+  {
+    const AdmissibleSpace<dim>  &space = stress_space.space;
+    std::set<types::boundary_id> primaries, secondaries;
+    for (const auto &[primary, secondary] : secondary_of)
+      {
+        primaries.insert(primary);
+        secondaries.insert(secondary);
+      }
+    const auto areas  = boundary_weights(space, primaries),
+               shares = boundary_weights(space, secondaries);
+    // What a node p opposite counts at a node q: Q_pq int phi_p.
+    const auto visit = [&](const auto &act) {
+      for (const auto &of_boundary : space.mortar_rows)
+        for (const auto &[node, row] : of_boundary.second)
+          if (const auto p = node * dim; space.owned.is_element(p))
+            for (const auto &[other, weight] : row.nodes)
+              act(p, other * dim, weight * shares(p));
+    };
+    LinearAlgebra::distributed::Vector<double> sums(space.owned,
+                                                    space.relevant,
+                                                    space.communicator),
+      weights(sums);
+    visit([&](const auto, const auto q, const double weight) {
+      weights(q) += weight;
+    });
+    weights.compress(VectorOperation::add);
+    for (const auto &[field, sign] : {std::make_pair(&slip, -1.),
+                                      {&slip_rate, -1.},
+                                      {&bound, 1.},
+                                      {&utilization, 1.},
+                                      {&slipping, 1.},
+                                      {&pressure, 1.},
+                                      {&gap, 1.},
+                                      {&friction_work, 1.}})
+      {
+        if (field->size() == 0)
+          continue;
+        sums                            = 0.;
+        const double             factor = sign;
+        const DistributedVector &values = *field;
+        visit([&](const auto p, const auto q, const double weight) {
+          for (unsigned int d = 0; d < dim; ++d)
+            sums(q + d) +=
+              factor * weight *
+              values.begin()[space.relevant.index_within_set(p) + d];
+        });
+        sums.compress(VectorOperation::add);
+        // Where nothing lies opposite, nothing sticks.
+        const double      elsewhere = field == &slipping ? 1. : 0.;
+        DistributedVector result    = space.owned_vector();
+        for (std::size_t i = 0; i < space.owned.n_elements(); ++i)
+          {
+            const std::size_t first = i - i % dim;
+            result.begin()[i] =
+              areas.local_element(first) == 0. ?
+                values.begin()[space.relevant.index_within_set(
+                  space.owned.nth_index_in_set(i))] :
+              weights.local_element(first) > 1e-6 * areas.local_element(first) ?
+                sums.local_element(i) / weights.local_element(first) :
+                elsewhere;
+          }
+        space.distribute_hanging_nodes(result);
+        *field = result;
+      }
+  }
+
+
+
+  template <int dim>
   std::string
   BoundaryFields<dim>::name(const RecordedField field)
   {
@@ -122,7 +212,7 @@ namespace Viscoplastic
     const AdmissibleSpace<dim>   &space = stress_space.space;
     const auto                   &cell  = space.cells[c];
     const BoundaryCondition<dim> &condition =
-      space.scene.boundary.at(cell->face(f)->boundary_id());
+      condition_at(cell->face(f)->boundary_id());
     const auto           first_dof = cell->vertex_dof_index(v, 0);
     const auto           node      = space.relevant.index_within_set(first_dof);
     const Tensor<1, dim> normal    = condition.normal_varies ?
@@ -204,7 +294,7 @@ namespace Viscoplastic
               break;
             }
           case RecordedField::friction_work:
-            result.push_back(scalar(state.friction_work));
+            result.push_back(scalar(friction_work));
             break;
           case RecordedField::normal_traction:
             result.push_back(stress_vector() * normal);

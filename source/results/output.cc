@@ -159,6 +159,8 @@ namespace Viscoplastic
     std::vector<std::string> names{"solution"};
     if (scene.has_contact())
       names.emplace_back("contact");
+    if (scene.has_contact_pairs())
+      names.emplace_back("opposite");
     for (const std::string &name : names)
       {
         write_pvd(name);
@@ -254,7 +256,11 @@ namespace Viscoplastic
       write_boundary(laws.stress_space.space);
     std::vector<std::string> remarks{write_body(laws, state, squared_estimate)};
     if (scene.has_contact())
-      remarks.push_back(write_contact(laws.stress_space, state, face));
+      remarks.push_back(
+        write_contact("contact", laws.stress_space, state, face));
+    if (scene.has_contact_pairs())
+      remarks.push_back(
+        write_contact("opposite", laws.stress_space, state, face));
     write_in_background();
     remarks.erase(std::remove(remarks.begin(), remarks.end(), ""),
                   remarks.end());
@@ -497,7 +503,8 @@ namespace Viscoplastic
 
   template <int dim>
   std::string
-  Output<dim>::write_contact(const StressSpace<dim> &stress_space,
+  Output<dim>::write_contact(const std::string      &name,
+                             const StressSpace<dim> &stress_space,
                              const State<dim>       &state,
                              const ContactFace<dim> *face)
   {
@@ -534,9 +541,14 @@ namespace Viscoplastic
           const auto cell_face = space.cells[c]->face(f);
           if (!cell_face->at_boundary())
             continue;
-          const auto &condition =
-            space.scene.boundary.at(cell_face->boundary_id());
-          if (condition.role != BoundaryRole::contact)
+          const auto     id       = cell_face->boundary_id();
+          Tensor<1, dim> normal   = boundary.condition_at(id).normal;
+          const bool     is_other = boundary.is_other_side(id);
+          if (is_other)
+            normal *= -1.;
+          if (name == "opposite" ?
+                !is_other :
+                space.scene.boundary.at(id).role != BoundaryRole::contact)
             continue;
           DataOutBase::Patch<dim - 1, dim> patch;
           patch.patch_index    = output.patches.size();
@@ -553,13 +565,12 @@ namespace Viscoplastic
               unsigned int row = 0;
               for (unsigned int d = 0; d < dim; ++d)
                 patch.data(row++, i) = u[d];
-              for (const double value :
-                   boundary.values(c, f, v, condition.normal))
+              for (const double value : boundary.values(c, f, v, normal))
                 patch.data(row++, i) = value;
             }
           output.patches.push_back(patch);
         }
-    return write_vtu("contact", std::move(output));
+    return write_vtu(name, std::move(output));
   }
 
 

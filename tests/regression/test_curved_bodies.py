@@ -18,7 +18,9 @@ def gives_way(dim):
         if dim == 2:
             shape = (1 + nu) * ((1 - 2 * nu) * b**2 + of**2) / abs(b**2 - of**2)
         else:
-            shape = ((1 - 2 * nu) * b**3 + (1 + nu) / 2 * of**3) / abs(b**3 - of**3)
+            shape = ((1 - 2 * nu) * b**3 + (1 + nu) / 2 * of**3) / abs(
+                b**3 - of**3
+            )
         result.append(b / E * shape)
     return sum(result)
 
@@ -125,6 +127,30 @@ class ShrinkFit(TestCase):
                 self.assertClose(result["point0_x"][-1], inside, 0.008)
                 if law != "bilateral":
                     self.assertClose(result["max_pressure"][-1], pressure, 0.008)
+
+    def test_slip_and_creep_on_changing_meshes(self):
+        """The same on ranks; the outer ring is pressed out of round."""
+        adaptive = {
+            "Geometry/Global refinements": 1,
+            "Boundary 1/Friction law": "coulomb",
+            "Boundary 1/Friction coefficient": 0.2,
+            "Boundary 21/Role": "traction",
+            "Boundary 21/Pressure": "2e-3*t*x^2",
+            "Material 0/Law": "maxwell",
+            "Material 0/maxwell/Viscosity": 3,
+            "Time/Phases": "2: 6",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Every n steps": 2,
+        }
+        alone, *others = (fit(adaptive, ranks) for ranks in (1, 2, 3))
+        self.check_identities(alone, 1e-9)
+        self.assertGreater(alone["cells"][-1], alone["cells"][0])
+        self.assertGreater(alone["slip_area"][-1], 1)
+        self.assertLess(alone["slip_area"][-1], 3)
+        for result in others:
+            self.assertClose(result["cells"], alone["cells"])
+            for column in "max_pressure", "stored_energy", "slip_area":
+                self.assertClose(result[column], alone[column], relative=1e-7)
 
     def test_spheres_with_hanging_nodes(self):
         """On the face of either, where nodes in the middle of edges are not on it."""

@@ -54,6 +54,27 @@ class Published(TestCase):
         depth = load * wave / 2 / bed * (1 + np.cosh(np.pi)) / np.sinh(np.pi)
         self.assertClose(slab["max_penetration"][-1], depth, relative=0.05)
 
+    def test_contact_patch(self):
+        """Taylor and Papadopoulos: a constant pressure passes between two bodies and
+        goes on beside them, with the points on either side."""
+        other_way = {
+            "Boundary 22/Role": "free",
+            "Boundary 4/Role": "contact",
+            "Boundary 4/Against": 22,
+            "Boundary 4/Contact law": "unilateral",
+            "Boundary 4/Friction law": "none",
+        }
+        for changes in {}, other_way:
+            patch = run("literature/contact_patch", changes)
+            self.assertClose(patch["max_pressure"][-1], 0.01, absolute=1e-12)
+            for point, depth in (0, 2), (1, 1):
+                self.assertClose(
+                    patch[f"point{point}_y"][-1],
+                    -depth * 0.01 * (1 - 0.3**2),
+                    absolute=1e-12,
+                )
+            self.assertLess(patch["estimate_space"][-1], 1e-12)
+
     def test_roller_on_block(self):
         """NAFEMS: Hertz's pressure and width between two bodies; friction changes
         the pressure by little."""
@@ -136,7 +157,9 @@ class Published(TestCase):
                 if friction < 0.5:
                     self.assertLess(bar["contraction"].max(), 1)
                     self.assertNotIn(warning, bar.stdout)
-                    self.assertLess(p[last] - p[last + 1], 2.1 * (p[last - 1] - p[last]))
+                    self.assertLess(
+                        p[last] - p[last + 1], 2.1 * (p[last - 1] - p[last])
+                    )
                     continue
                 critical = np.diff(q[pushed]) / np.diff(p[pushed])
                 self.assertClose(critical, 0.5, absolute=0.1)

@@ -54,6 +54,80 @@ def errors(scene, law, level, n_steps, overrides=None, ranks=1, change=str):
     }
 
 
+def slipping_bodies(dim, law, level):
+    """Two bodies whose tractions at y = 1 meet and of which the upper one slips where
+    x > 1/2, by max(x - 1/2, 0)^3, which takes no traction with it; the friction bound
+    is that of the solution there, and more elsewhere. 4 cells meet 6. In space the
+    same at any z."""
+    m, size = "max(x - 0.5, 0)", "0.01*t"
+    upper = "if(y > 1, 1, 0)"
+    third = dim == 3
+    u = [
+        f"{size}*(x^2*y + y^2 + {upper}*{m}^3)",
+        f"{size}*(x*y^2 - 13*y - {upper}*{m}^2*(y - 1))",
+        *["0"] * third,
+    ]
+    xx, yy, zz, xy = (
+        f"{size}*(8*x*y - 13 + {upper}*8*{m}^2)",
+        f"{size}*(8*x*y - 39)",
+        f"{size}*(4*x*y - 13 + {upper}*2*{m}^2)",
+        f"{size}*(x^2 + 2*y + y^2 - {upper}*2*{m}*(y - 1))",
+    )
+    force = [
+        f"-{size}*(10*y + 2 + {upper}*14*{m})",
+        f"-{size}*(10*x - {upper}*2*(y - 1)*if(x > 0.5, 1, 0))",
+        *["0"] * third,
+    ]
+    cells = (4, 4), (6, 6)
+    boxes = []
+    for (nx, ny), y in zip(cells, (0, 1)):
+        boxes.append(
+            f"{nx}, {ny}{', 2' if third else ''} : 0, {y}{', 0' if third else ''} : "
+            f"1, {y + 1}{', 0.5' if third else ''} : true"
+        )
+    result = {
+        "Dimension": dim,
+        "Geometry/Generator": "subdivided_hyper_rectangle | subdivided_hyper_rectangle",
+        "Geometry/Arguments": " | ".join(boxes),
+        "Geometry/Global refinements": level,
+        "Loads/Body force": "; ".join(force),
+        "Exact solution/Data": "scene",
+        "Exact solution/Displacement": "; ".join(u),
+        "Exact solution/Stress": "; ".join([xx, yy, zz, xy, *["0", "0"] * third]),
+        "Material/Volumetric integration": "full",
+        "Time/Phases": "1: 1",
+        "Output/Fields every": 0,
+        "Error control/Error bar": "true",
+        "Solver/Contact tolerance": 1e-8,
+    }
+    for n in 0, 1:
+        result[f"Material {n}/Young's modulus"] = 2.5
+        result[f"Material {n}/Poisson's ratio"] = 0.25
+    for n in 0, 20:
+        for side, sign in (0, "-"), (1, ""):
+            result[f"Boundary {n + side}/Role"] = "traction"
+            result[f"Boundary {n + side}/Traction"] = "; ".join(
+                [f"{sign}{xx}", f"{sign}{xy}", *["0"] * third]
+            )
+        for side in (4, 5) if third else ():
+            result[f"Boundary {n + side}/Role"] = "symmetry"
+    result["Boundary 2/Role"] = "clamped"
+    result["Boundary 23/Role"] = "displacement"
+    result["Boundary 23/Displacement"] = "; ".join(u)
+    result["Boundary 3/Role"] = "free"
+    more = "(1 + max(0.5 - x, 0))"
+    contact = {
+        "Role": "contact",
+        "Against": 3,
+        "Friction law": law,
+        "Contact law": "bilateral" if law == "tresca" else "unilateral",
+        "Friction bound": f"{size}*(x^2 + 3)*{more}",
+        "Friction coefficient": f"(x^2 + 3)/(39 - 8*x)*{more}",
+    }
+    contact.pop("Friction coefficient" if law == "tresca" else "Friction bound")
+    return {**result, **{f"Boundary 22/{name}": v for name, v in contact.items()}}
+
+
 class Ladders(TestCase):
     def ladder(self, name, runs, expected):
         """Errors of runs of which each halves what is refined; the order
@@ -156,9 +230,7 @@ class Meshes(Ladders):
     both stress histories."""
 
     def check(self, name, scene, overrides, expected=BOTH):
-        runs = [
-            errors(scene, "perzyna", g, 14 * 2**g, overrides) for g in LEVELS
-        ]
+        runs = [errors(scene, "perzyna", g, 14 * 2**g, overrides) for g in LEVELS]
         self.ladder(f"{scene} {name}", runs, expected)
 
     def test_distorted(self):
@@ -296,7 +368,9 @@ class Refused(TestCase):
             "tangential stress",
         )
         self.refused("tresca_2d", {"Boundary 2/Friction bound": "0.2"}, "oppose")
-        self.refused("tresca_2d", {"Boundary 0/Role": "clamped"}, "'Boundary 0'", "clamped")
+        self.refused(
+            "tresca_2d", {"Boundary 0/Role": "clamped"}, "'Boundary 0'", "clamped"
+        )
         self.refused("tresca_2d", {"Boundary 0/Role": "symmetry"}, "'Boundary 0'")
         self.refused("tresca_2d", {"Boundary 2/Friction law": "none"}, "no friction")
 
@@ -328,6 +402,35 @@ class Refused(TestCase):
         file = reference.directory / "reference_2.bin"
         file.write_bytes(file.read_bytes()[:1000])
         self.refused("slab", {**SLAB, **there}, "reference_2.bin")
+
+
+class TwoBodies(TestCase):
+    def test_slip_along_the_interface(self):
+        """First order of all errors on meshes that do not match, with an error bar
+        that is right about it."""
+        for dim, law, levels, ranks in (
+            (2, "tresca", (1, 3), 1),
+            (2, "coulomb", (1, 3), 2),
+            (3, "tresca", (0, 2), 3),
+            (3, "coulomb", (0, 2), 1),
+        ):
+            with self.subTest(dim=dim, law=law):
+                coarse, fine = (
+                    run("pair", slipping_bodies(dim, law, level), ranks, text="")
+                    for level in levels
+                )
+                # measured: 1.00, 1.00 and 1.12 to 1.21
+                for norm in "energy", "stress", "multiplier":
+                    column = f"error_{norm}"
+                    order = np.log2(coarse[column][-1] / fine[column][-1]) / 2
+                    self.assertGreater(order, 0.99)
+                # the nodes on either side of where it begins
+                self.assertClose(
+                    2 ** (dim - 2) * fine["slip_area"][-1], 0.5, absolute=0.07
+                )
+                effectivity = fine["estimate_space"][-1] / fine["error_energy"][-1]
+                self.assertGreater(effectivity, 1)
+                self.assertLess(effectivity, 1.1)
 
 
 if __name__ == "__main__":

@@ -138,6 +138,9 @@ SCENES = {
         "verification/literature/punch_with_friction": Scene(
             {"Geometry/Boundary refinements": "4: 3"}
         ),
+        "verification/literature/contact_patch": Scene(
+            {"Boundary 23/Pressure": "0.01*t*x"}
+        ),
         "verification/literature/roller_on_block": Scene(
             {
                 "Geometry/Arguments": "16, 16 : 0, -1 : 1, 0 : true | "

@@ -47,9 +47,7 @@ class Blocks(TestCase):
                 )
                 # the compliance gives way by p/c
                 more = 0 if law == "bilateral" else 0.02
-                self.assertClose(
-                    result["point0_y"][-1], -0.0139 - more, absolute=1e-12
-                )
+                self.assertClose(result["point0_y"][-1], -0.0139 - more, absolute=1e-12)
 
     def test_hanging_nodes(self):
         """On either side, and on ranks that do not have both."""
@@ -292,7 +290,9 @@ class Limits(TestCase):
             ),
         )
         scale = one["contact_force_y"][-1]
-        self.assertClose(two["contact_force_y"], one["contact_force_y"], 0, 1e-9 * scale)
+        self.assertClose(
+            two["contact_force_y"], one["contact_force_y"], 0, 1e-9 * scale
+        )
         self.assertClose(two["contact_area"], one["contact_area"], absolute=1e-12)
         self.assertLess(one["contact_area"][-1], 0.9)
         self.assertClose(two["max_pressure"], one["max_pressure"], 1e-8)
@@ -421,6 +421,37 @@ class Slip(TestCase):
             r"Note: at t = 2 two bodies have slid along each other by 3\.\d times the",
         )
 
+    def test_fields_on_the_other_side(self):
+        """A constant pressure is that on either side; vectors are the reverse."""
+        for ranks in 1, 2:
+            faces = [
+                run(
+                    "two_blocks_3d",
+                    {**TIGHT, "Output/Fields every": 1},
+                    ranks=ranks,
+                ).fields(series)
+                for series in ("contact", "opposite")
+            ]
+            self.assertNotEqual(*(len(face.points) for face in faces))
+            for face in faces:
+                pressure = face.point_data["contact_pressure"]
+                self.assertClose(pressure, 0.01, absolute=1e-8)
+        moved = self.slide(
+            **{
+                "Output/Fields every": 1,
+                "Boundary 22/Friction coefficient": 0.01,
+                "Boundary 23/Displacement": "0.1*max(t - 1, 0); -0.01*min(t, 1)",
+            }
+        )
+        here, there = (moved.fields(series) for series in ("contact", "opposite"))
+        x = there.points[:, 0]
+        inside, outside = (x > 0.9) & (x < 1.1), (x < 0.2) | (x > 1.8)
+        slip = here.point_data["slip"][:, 0].mean()
+        self.assertGreater(slip, 0.09)
+        self.assertClose(there.point_data["slip"][inside, 0], -slip, 0.05)
+        for field in "slip", "contact_pressure", "stick":
+            self.assertEqual(abs(there.point_data[field][outside]).max(), 0)
+
     def test_estimates_of_quantities_between_the_bodies(self):
         """Their duals are of the jump: the errors against a finer mesh, and the same
         on ranks."""
@@ -465,7 +496,9 @@ class Slip(TestCase):
             },
         )
         force = result["contact_force_y"][-1]
-        modulus, radius = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2), 1 / (1 / 2 + 1 / 4)
+        modulus, radius = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2), 1 / (
+            1 / 2 + 1 / 4
+        )
         pressure = np.sqrt(force * modulus / np.pi / radius)
         width = 2 * np.sqrt(4 * force * radius / np.pi / modulus)
         # measured: 0.4 % more, for bodies that are 7 widths deep
@@ -567,9 +600,9 @@ class Known(TestCase):
             "Error control/Error bar": "true",
         }
         for n, m in (4, 3), (4, 8):
-            load["Geometry/Arguments"] = (
-                f"{n}, {n} : 0, 0 : 1, 1 : true | {m}, {m} : 0, 1 : 1, 2 : true"
-            )
+            load[
+                "Geometry/Arguments"
+            ] = f"{n}, {n} : 0, 0 : 1, 1 : true | {m}, {m} : 0, 1 : 1, 2 : true"
             finest = run(
                 "two_blocks_2d",
                 {

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Contact that opens and closes, and friction of the pressure that comes out.
 
-Small scenes against an independent solver of the same discretization
-(independent_contact.py), which shares no algorithm with the program.
+Small scenes against independent solvers of the same discretization
+(independent_contact.py, of two bodies independent_pair.py), which share no algorithm
+with the program.
 """
 
 import numpy as np
 
 import independent_contact
+import independent_pair
 from harness import TestCase, main, run
 
 CONTACT_LAWS = {
@@ -520,9 +522,7 @@ class Held(TestCase):
                 result = self.run_block({**belt, "Solver/Coulomb pressure": pressure})
                 still = result["t"] < 0.7
                 self.assertLess(result["max_displacement"][still].max(), 1e-12)
-                self.assertClose(
-                    result["max_displacement"][-1], carried, relative=0.05
-                )
+                self.assertClose(result["max_displacement"][-1], carried, relative=0.05)
                 if pressure == "fixed point":
                     continue
                 self.assertClose(result["bound_lag"][-2:], [1, 0.5], absolute=1e-6)
@@ -1003,7 +1003,9 @@ class Refused(TestCase):
         results = {unit: in_unit(unit) for unit in (1, 3, 7)}
         # the first step comes to rest above its tolerance, the second below
         for row in 1, 2:
-            norms = [results[unit]["energy_norm"][row] / unit**0.5 for unit in results]
+            norms = [
+                results[unit]["energy_norm"][row] / unit**0.5 for unit in results
+            ]
             spread = (max(norms) - min(norms)) / norms[0]
             for result in results.values():
                 self.assertIn("rounding leaves an error of the solver", result.stdout)
@@ -1085,7 +1087,9 @@ class Refused(TestCase):
                 result["contact_force_y"], (lift - weight) * result["t"], relative=1e-5
             )
             self.assertClose(
-                result["friction_force_x"], 1.903e-05 * 0.154 * result["t"], relative=3e-4
+                result["friction_force_x"],
+                1.903e-05 * 0.154 * result["t"],
+                relative=3e-4,
             )
 
     def test_foundations(self):
@@ -1139,6 +1143,31 @@ class Refused(TestCase):
             },
             "there is no `gap' where no boundary has unilateral contact",
         )
+
+
+class Pairs(TestCase):
+    def test_drawn(self):
+        """Two bodies whose meshes do not match; each fourth scene has ties."""
+        openings = 0
+        for seed in range(12):
+            scene = independent_pair.draw(seed)
+            with self.subTest(seed, law=scene.law):
+                result = run("pair", independent_pair.entries(scene), text="")
+                steps = independent_pair.solve(scene)
+                forces = np.array([step.force for step in steps])
+                columns = {"contact_force_y": -forces[:, 1]}
+                if scene.law != "none":
+                    columns["friction_force_x"] = forces[:, 0]
+                for name in "contact_area", "max_pressure":
+                    columns[name] = [getattr(step, name) for step in steps]
+                columns["strain_energy"] = [step.energy for step in steps]
+                for name, expected in columns.items():
+                    # measured: 7e-12
+                    scale = abs(forces if "force" in name else np.array(expected)).max()
+                    self.assertClose(result[name][1:], expected, absolute=1e-8 * scale)
+                areas = columns["contact_area"]
+                openings += min(areas) < 0.999 * max(areas)
+        self.assertGreater(openings, 2)
 
 
 if __name__ == "__main__":

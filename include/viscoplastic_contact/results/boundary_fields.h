@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/results/body_fields.h>
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,7 +14,9 @@ namespace Viscoplastic
   /**
    * Fields of the boundary in a state, as BodyFields are of the body: those of
    * contact and friction, which have values at the nodes of Gamma_3, and
-   * tractions, which are those of the mean stress of the cell behind a face.
+   * tractions, which are those of the mean stress of the cell behind a face. On
+   * the other side of contact between two bodies there are the same fields:
+   * means over the nodes opposite, of vectors the reverse.
    */
   template <int dim>
   class BoundaryFields
@@ -36,6 +39,21 @@ namespace Viscoplastic
     static std::vector<std::string>
     names(const std::set<RecordedField> &fields);
 
+    /// Whether a boundary is the other side of contact between two bodies.
+    bool
+    is_other_side(const types::boundary_id id) const
+    {
+      return secondary_of.count(id) == 1;
+    }
+
+    /// The condition on a boundary: that of the contact there, on either side.
+    const BoundaryCondition<dim> &
+    condition_at(const types::boundary_id id) const
+    {
+      return stress_space.space.scene.boundary.at(
+        is_other_side(id) ? secondary_of.at(id) : id);
+    }
+
     /// The values at a vertex of an owned cell, on a face with an outward unit
     /// normal. Fields of contact need a face of Gamma_3.
     std::vector<double>
@@ -54,6 +72,12 @@ namespace Viscoplastic
         double                   *values) const;
 
   private:
+    void
+    make_fields(const ContactFace<dim> *face);
+    /// Make the fields on the other sides of those at the nodes of Gamma_3.
+    void
+    carry_across();
+
     bool
     has(const RecordedField field) const
     {
@@ -63,9 +87,11 @@ namespace Viscoplastic
     const StressSpace<dim> &stress_space;
     const State<dim>       &state;
     std::set<RecordedField> fields;
+    /// Of boundaries that are the other side.
+    std::map<types::boundary_id, types::boundary_id> secondary_of;
     /// Of friction points, at the nodes. A node that other conditions prescribe
     /// has no point; fields that are not asked for are empty.
     DistributedVector slip, slip_rate, density, bound, utilization, slipping,
-      pressure, gap;
+      pressure, gap, friction_work;
   };
 } // namespace Viscoplastic

@@ -21,8 +21,8 @@ namespace Viscoplastic
 
   /**
    * Results in one directory: fields of the body (solution.pvd) and of Gamma_3
-   * (contact.pvd) as VTU series, and what is needed to reproduce the run
-   * (parameters.prm, run.json).
+   * (contact.pvd; opposite.pvd on other bodies) as VTU series, and what is
+   * needed to reproduce the run (parameters.prm, run.json).
    */
   template <int dim>
   class Output
@@ -97,8 +97,10 @@ namespace Viscoplastic
     write_body(const FlowLaws<dim>  &laws,
                const State<dim>     &state,
                const Vector<double> *squared_estimate);
+    /// Of Gamma_3 ("contact"), or of the other sides of it ("opposite").
     std::string
-    write_contact(const StressSpace<dim> &stress_space,
+    write_contact(const std::string      &name,
+                  const StressSpace<dim> &stress_space,
                   const State<dim>       &state,
                   const ContactFace<dim> *face);
     /// Have the piece of this rank and, on rank 0, the record of all of them

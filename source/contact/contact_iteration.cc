@@ -238,7 +238,16 @@ namespace Viscoplastic
     const Tensor<1, 3>          f        = r + diagonal[node] * old;
     const Tensor<2, 3>         &inverse  = inverse_diagonal[node];
     std::optional<Tensor<1, 3>> now;
-    if (!bounds || !bounds->nodes_obey_law())
+    // Where one of two pieces gives way, what either may hold drifts
+    // with the law of the node alone; it finds the sets, and sweeps between
+    // with the bounds at hand leave the rest to corrections.
+    const bool bounds_rest =
+      report.iterations >= unsettled_corrections &&
+      report.iterations % 2 == 1 && !face.has_plain_friction(node) &&
+      std::any_of(face.points.begin() + face.first_point[node],
+                  face.points.begin() + face.first_point[node + 1],
+                  [](const auto &point) { return point.gives_way(); });
+    if (!bounds || !bounds->nodes_obey_law() || bounds_rest)
       now = Viscoplastic::relax_node(face, node, inverse, f, state);
     else
       now = law->relax_node(face,

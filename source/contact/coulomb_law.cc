@@ -186,6 +186,7 @@ namespace Viscoplastic
       {
         const unsigned int        obstacle = face.first_obstacle(node);
         std::optional<NodeForces> forces;
+        std::vector<Tensor<1, 3>> of_force;
         for (unsigned int p = face.first_point[node]; p < obstacle; ++p)
           for (unsigned int o = obstacle; o < face.first_point[node + 1]; ++o)
             {
@@ -201,12 +202,15 @@ namespace Viscoplastic
                   truncation.tilt.assign(face.n_nodes(), identity);
                 }
               if (!forces)
-                forces.emplace(face, node, state, this, true);
+                {
+                  forces.emplace(face, node, state, this);
+                  of_force = forces->pressures_of_force();
+                }
               truncation.tilt[node] -=
                 coefficient *
                 outer_product(node_force(face.points[p],
                                          state.slip[p] / state.slip[p].norm()),
-                              forces->pressure_of_force(o));
+                              of_force[o - obstacle]);
             }
         // Slips that turn press the pieces that they do not move along; what
         // these give way by is a pressure already.
@@ -232,7 +236,7 @@ namespace Viscoplastic
   {
     for (unsigned int node = 0; node < face.n_nodes(); ++node)
       {
-        const NodeForces forces(face, node, state, this, true);
+        const NodeForces forces(face, node, state, this);
         if (!forces.is_free() && !face.has_plain_friction(node))
           continue;
         const unsigned int obstacle = face.first_obstacle(node);

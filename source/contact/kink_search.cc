@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <viscoplastic_contact/contact/contact_points.h>
 #include <viscoplastic_contact/contact/kink_search.h>
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/lapack_full_matrix.h>
 
 #include <viscoplastic_contact/base/number_range.h>
 #include <viscoplastic_contact/contact/node_forces.h>
@@ -13,9 +15,38 @@ namespace Viscoplastic
   {
     /// Directions that are held by less than this part of others are not.
     constexpr double least_hold = 1e-12;
-    /// Springs press by how deep the node is, whatever others hold: of forces
-    /// that leave a choice theirs has next to no weight.
-    constexpr double weight_of_springs = 1e-8;
+    /// Where a node can move in what gives way, pressures hold what they can
+    /// before friction of another piece does: they count that much more.
+    constexpr double preference_of_pressures = 1e8;
+    /// Friction this near to its bound stays at it.
+    constexpr double at_limit = 1e-8;
+
+
+
+    /// Least norm solutions of least squares, column by column.
+    FullMatrix<double>
+    pseudo_inverse(const FullMatrix<double> &matrix)
+    {
+      FullMatrix<double> result(matrix.n(), matrix.m());
+      if (matrix.empty())
+        return result;
+      FullMatrix<double> product(matrix.m(), matrix.m());
+      matrix.mTmult(product, matrix);
+      LAPACKFullMatrix<double> gram(matrix.m());
+      gram = product;
+      gram.compute_inverse_svd(least_hold);
+      Vector<double> unit(matrix.m()), y(matrix.m()), x(matrix.n());
+      for (unsigned int j = 0; j < matrix.m(); ++j)
+        {
+          unit    = 0.;
+          unit[j] = 1.;
+          gram.vmult(y, unit);
+          matrix.Tvmult(x, y);
+          for (unsigned int i = 0; i < matrix.n(); ++i)
+            result(i, j) = x[i];
+        }
+      return result;
+    }
 
 
 
@@ -44,8 +75,7 @@ namespace Viscoplastic
   NodeForces::NodeForces(const ContactLayout       &face,
                          const unsigned int         node,
                          const ContactState        &state,
-                         const CoulombCoefficients *law,
-                         const bool                 with_springs)
+                         const CoulombCoefficients *law)
     : face(face)
     , node(node)
     , begin(face.first_point[node])
@@ -53,7 +83,6 @@ namespace Viscoplastic
     , obstacle(face.first_obstacle(node))
     , state(state)
     , law(law)
-    , with_springs(with_springs)
   {
     SymmetricTensor<2, 3> rows;
     for (unsigned int p = begin; p < end; ++p)
@@ -69,7 +98,7 @@ namespace Viscoplastic
           ++n_held;
         }
 
-    SymmetricTensor<2, 3> sum;
+    SymmetricTensor<2, 3> of_friction, of_pressures;
     for (unsigned int o = obstacle; o < end; ++o)
       {
         Tensor<1, 3> unit = face.points[o].map[0];
@@ -81,23 +110,19 @@ namespace Viscoplastic
                                  state.slip[p] / state.slip[p].norm());
         push.push_back(held * unit);
         if (takes_part(o))
-          sum +=
-            symmetrize(outer_product(push.back(), push.back())) / weight_of(o);
+          of_pressures += symmetrize(outer_product(push.back(), push.back()));
       }
     for (unsigned int p = begin; p < obstacle; ++p)
       if (takes_part(p))
         for (unsigned int i = 0; i < face.points[p].n_tangents; ++i)
-          sum += symmetrize(
+          of_friction += symmetrize(
             outer_product(face.points[p].map[i], face.points[p].map[i]));
-    gram = eigenvectors(sum);
-  }
-
-
-
-  double
-  NodeForces::weight_of(const unsigned int o) const
-  {
-    return face.points[o].gives_way() ? weight_of_springs : 1.;
+    largest     = eigenvectors(of_pressures + of_friction)[0].first;
+    any_springs = false;
+    for (unsigned int o = obstacle; o < end; ++o)
+      any_springs |= is_spring(o);
+    pressure_scale = is_free() && any_springs ? preference_of_pressures : 1.;
+    gram           = eigenvectors(pressure_scale * of_pressures + of_friction);
   }
 
 
@@ -220,7 +245,8 @@ namespace Viscoplastic
         {
           lambda[p - begin] = slip(face.points[p], solution);
           if (p >= obstacle)
-            lambda[p - begin][0] = push[p - obstacle] * solution;
+            lambda[p - begin][0] =
+              pressure_scale * (push[p - obstacle] * solution);
         }
     std::vector<Tensor<1, 2>> z = lambda, old;
     clip(lambda);
@@ -230,7 +256,7 @@ namespace Viscoplastic
     // with is admissible, and the force that it misses counts as an error.
     if (lambda != z)
       {
-        const double L        = gram[0].first;
+        const double L        = largest;
         double       momentum = 1.;
         z                     = lambda;
         for (unsigned int step = 0; step < 3000; ++step)
@@ -286,12 +312,135 @@ namespace Viscoplastic
 
 
 
-  Tensor<1, 3>
-  NodeForces::pressure_of_force(const unsigned int o) const
+  std::vector<Tensor<1, 3>>
+  NodeForces::pressures_of_force() const
   {
-    return takes_part(o) ?
-             held * invert_gram(push[o - obstacle]) / weight_of(o) :
-             Tensor<1, 3>();
+    std::vector<Tensor<1, 3>> result(end - obstacle);
+    if (end - obstacle == 1 &&
+        (begin == obstacle || face.has_plain_friction(node)))
+      {
+        const Tensor<1, 3> &normal = face.points[obstacle].map[0];
+        if (state.sticks[obstacle])
+          result[0] = normal / normal.norm_square();
+        return result;
+      }
+
+    // What holds the node: changes of its multipliers of least norm that make
+    // up for those of the force and keep friction at the bounds it has reached.
+    struct Column
+    {
+      unsigned int point, component;
+    };
+    std::vector<Column>       columns;
+    std::vector<unsigned int> limits;
+    for (unsigned int p = begin; p < end; ++p)
+      if (takes_part(p) &&
+          (!any_springs ||
+           (p >= obstacle ? state.multiplier[p][0] : state.bound[p]) > 0.))
+        {
+          for (unsigned int i = 0; i < face.points[p].n_tangents; ++i)
+            columns.push_back({p, i});
+          if (p < obstacle && law != nullptr && any_springs &&
+              state.multiplier[p].norm() >= state.bound[p] * (1. - at_limit))
+            limits.push_back(p);
+        }
+    FullMatrix<double> rows(3 + limits.size(), columns.size());
+    for (unsigned int c = 0; c < columns.size(); ++c)
+      {
+        const auto [p, i]  = columns[c];
+        const double scale = p >= obstacle ? std::sqrt(pressure_scale) : 1.;
+        const Tensor<1, 3> of =
+          p >= obstacle ? push[p - obstacle] : face.points[p].map[i];
+        for (unsigned int d = 0; d < 3; ++d)
+          rows(d, c) = scale * of[d];
+        for (unsigned int a = 0; a < limits.size(); ++a)
+          {
+            const unsigned int q = limits[a];
+            if (p >= obstacle)
+              rows(3 + a, c) = -scale * law->of_pressure[q][p - obstacle];
+            else if (p == q)
+              rows(3 + a, c) =
+                state.multiplier[q][i] / state.multiplier[q].norm();
+          }
+      }
+    const FullMatrix<double> changes = pseudo_inverse(rows);
+    // of_spring[k][j]: what a unit of the pressure k of a spring makes of j.
+    std::vector<std::vector<double>> of_spring(
+      end - obstacle, std::vector<double>(end - obstacle, 0.));
+    for (unsigned int c = 0; c < columns.size(); ++c)
+      if (const unsigned int p = columns[c].point; p >= obstacle)
+        {
+          for (unsigned int d = 0; d < 3; ++d)
+            result[p - obstacle][d] = std::sqrt(pressure_scale) * changes(c, d);
+          result[p - obstacle] = held * result[p - obstacle];
+          for (unsigned int o = obstacle; o < end; ++o)
+            if (is_spring(o))
+              {
+                double &change = of_spring[o - obstacle][p - obstacle];
+                change         = -result[p - obstacle] * push[o - obstacle];
+                for (unsigned int a = 0; a < limits.size(); ++a)
+                  change += std::sqrt(pressure_scale) * changes(c, 3 + a) *
+                            law->of_pressure[limits[a]][o - obstacle];
+              }
+        }
+
+    // Springs press by how far the node moves. In the directions that are free
+    // their forces, with the friction that follows from a unit of pressure, are
+    // in balance with the node's force: dual vectors tell which is which.
+    std::vector<unsigned int> springs;
+    std::vector<Tensor<1, 3>> normals, units;
+    Tensor<2, 3>              tilt, free;
+    for (unsigned int d = 0; d < 3; ++d)
+      tilt[d][d] = free[d][d] = 1.;
+    free -= held;
+    for (unsigned int p = begin; p < obstacle; ++p)
+      if (slips(p))
+        for (unsigned int o = obstacle; o < end; ++o)
+          if (takes_part(o))
+            tilt -=
+              law->of_pressure[p][o - obstacle] *
+              outer_product(node_force(face.points[p],
+                                       state.slip[p] / state.slip[p].norm()),
+                            result[o - obstacle]);
+    for (unsigned int o = obstacle; o < end; ++o)
+      if (is_spring(o))
+        {
+          const Tensor<1, 3> normal = free * face.points[o].map[0];
+          if (!(normal.norm() > 1e-8 * face.points[o].map[0].norm()))
+            continue;
+          Tensor<1, 3> unit = face.points[o].map[0];
+          for (unsigned int p = begin; p < obstacle; ++p)
+            if (slips(p))
+              {
+                double bound = law->of_pressure[p][o - obstacle];
+                for (unsigned int j = obstacle; j < end; ++j)
+                  bound += law->of_pressure[p][j - obstacle] *
+                           of_spring[o - obstacle][j - obstacle];
+                unit +=
+                  bound * node_force(face.points[p],
+                                     state.slip[p] / state.slip[p].norm());
+              }
+          springs.push_back(o - obstacle);
+          normals.push_back(normal);
+          units.push_back(free * unit);
+        }
+    FullMatrix<double> products(springs.size(), springs.size());
+    for (unsigned int i = 0; i < springs.size(); ++i)
+      for (unsigned int k = 0; k < springs.size(); ++k)
+        products(k, i) = normals[i] * units[k];
+    const FullMatrix<double> dual = pseudo_inverse(products);
+    for (unsigned int k = 0; k < springs.size(); ++k)
+      {
+        Tensor<1, 3> b;
+        for (unsigned int i = 0; i < springs.size(); ++i)
+          b += dual(i, k) * normals[i];
+        result[springs[k]] = b * tilt;
+      }
+    std::vector<Tensor<1, 3>> all(result);
+    for (unsigned int j = 0; j < end - obstacle; ++j)
+      for (const unsigned int k : springs)
+        all[j] += of_spring[k][j] * result[k];
+    return all;
   }
 
 
@@ -299,15 +448,14 @@ namespace Viscoplastic
   std::vector<double>
   NodeForces::pressures(const Tensor<1, 3> &residual) const
   {
-    Tensor<1, 3> remaining = residual;
-    for (unsigned int p = begin; p < obstacle; ++p)
-      if (slips(p) && law->given[p] > 0.)
-        remaining -=
-          node_force(face.points[p],
-                     state.slip[p] * (law->given[p] / state.slip[p].norm()));
+    Tensor<1, 3> change = residual;
+    for (unsigned int p = begin; p < end; ++p)
+      change -= node_force(face.points[p], state.multiplier[p]);
+    const auto          of_force = pressures_of_force();
     std::vector<double> result;
     for (unsigned int o = obstacle; o < end; ++o)
-      result.push_back(std::max(0., pressure_of_force(o) * remaining));
+      result.push_back(
+        std::max(0., state.multiplier[o][0] + of_force[o - obstacle] * change));
     return result;
   }
 } // namespace Viscoplastic

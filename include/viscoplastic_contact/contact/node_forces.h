@@ -13,30 +13,32 @@ namespace Viscoplastic
    * cone |lambda| <= g + sum mu p, where the other piece may hold what this one
    * presses. A point that slips adds mu s/|s| to the force of a unit of
    * pressure. All of these sets are convex, so there is a best fit; where it
-   * leaves a choice, as at a corner that sticks, that of least norm is taken.
+   * leaves a choice, as at a corner that sticks, that of least norm is taken,
+   * or where the node can move, that whose pressures hold what they can.
    */
   class NodeForces
   {
   public:
-    /// All arguments stay in use. @p law: null where bounds are given. With
-    /// @p with_springs obstacles that give way count as if they held the node.
+    /// All arguments stay in use. @p law: null where bounds are given.
     NodeForces(const ContactLayout       &face,
                unsigned int               node,
                const ContactState        &state,
-               const CoulombCoefficients *law,
-               bool                       with_springs = false);
+               const CoulombCoefficients *law);
 
     /// Set the node's multipliers, and with a law its bounds, in @p state to
     /// what fits @p residual best. Returns what is missing of it.
     Tensor<1, 3>
     fit(const Tensor<1, 3> &residual, ContactState &state) const;
 
-    /// The pressure of an obstacle is this vector times the node's force, as
-    /// long as no law limits it, but for what given bounds make of it.
-    Tensor<1, 3>
-    pressure_of_force(unsigned int obstacle) const;
+    /// By how much the pressures of the obstacles, as fit() finds them, change
+    /// with the node's force: each by its vector times the change. The node may
+    /// move as far as nothing holds it, so that springs press more or less,
+    /// what is at its bound of friction goes with them, and so on.
+    std::vector<Tensor<1, 3>>
+    pressures_of_force() const;
 
-    /// The pressures in the force @p residual, obstacle by obstacle.
+    /// The pressures in the force @p residual by these, from the multipliers
+    /// that fit() has found on.
     std::vector<double>
     pressures(const Tensor<1, 3> &residual) const;
 
@@ -62,12 +64,15 @@ namespace Viscoplastic
     {
       if (!face.points[p].is_obstacle)
         return state.sticks[p] || (law != nullptr && !slips(p));
-      return state.sticks[p] && (with_springs || !face.points[p].gives_way());
+      return state.sticks[p] && !face.points[p].gives_way();
     }
 
-    /// Of the square of an obstacle's pressure in what is least.
-    double
-    weight_of(unsigned int o) const;
+    /// Whether an obstacle presses by how far the node is in it.
+    bool
+    is_spring(const unsigned int o) const
+    {
+      return state.sticks[o] && face.points[o].gives_way();
+    }
 
     /// What a slipping point has of its bound, and any point of its bound,
     /// whatever the obstacles that take part press.
@@ -96,14 +101,18 @@ namespace Viscoplastic
     const unsigned int         node, begin, end, obstacle;
     const ContactState        &state;
     const CoulombCoefficients *law;
-    const bool                 with_springs;
 
     /// The force of a unit of pressure, obstacle by obstacle.
     std::vector<Tensor<1, 3>> push;
     /// Onto the directions that are held, and their number.
     Tensor<2, 3> held;
     unsigned int n_held = 0;
-    /// Eigenvalues and vectors of G.
+    /// How much more pressures count than friction in what is least.
+    double pressure_scale;
+    /// Whether an obstacle here gives way.
+    bool any_springs;
+    /// Eigenvalues and vectors of G with this, and the largest without.
     std::array<std::pair<double, Tensor<1, 3>>, 3> gram;
+    double                                         largest;
   };
 } // namespace Viscoplastic

@@ -336,8 +336,8 @@ namespace
           const double expected =
             (lambda * (xx + yy) + 2. * mu * xx + 4. * mu * xy) *
             cell->measure();
-          EXPECT_NEAR(more[i] - products[i], expected, 1e-9);
-          EXPECT_NEAR(half_more[i] - half[i], 2. * expected, 1e-9);
+          EXPECT_NEAR(products[i] - more[i], expected, 1e-9);
+          EXPECT_NEAR(half[i] - half_more[i], 2. * expected, 1e-9);
         }
   }
 

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/bounding_box.h>
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/numerics/rtree.h>
 
+#include <viscoplastic_contact/discretization/interface_sides.h>
 #include <viscoplastic_contact/discretization/mortar_interpolation.h>
-#include <viscoplastic_contact/discretization/plane_faces.h>
 #include <viscoplastic_contact/linear_solvers/multigrid_level.h>
 
-#include <boost/serialization/array.hpp>
 #include <boost/serialization/map.hpp>
 #include <boost/serialization/utility.hpp>
 
@@ -32,24 +29,6 @@ namespace Viscoplastic
     /// MortarRow::bulge among the entries of a row, for the way over ranks and
     /// hanging nodes.
     constexpr Node bulge_entry = numbers::invalid_dof_index;
-
-
-
-    /// A face of the primary side, for other ranks; each of its vertices is an
-    /// independent node, or what it hangs on.
-    template <int dim>
-    struct PrimaryFace : SurfaceFace<dim>
-    {
-      std::array<Row, SurfaceFace<dim>::n> nodes;
-      double                               softness = 0.;
-
-      template <class Archive>
-      void
-      serialize(Archive &archive, const unsigned int)
-      {
-        archive &this->vertices &this->normals &this->lifts &nodes &softness;
-      }
-    };
 
 
 
@@ -85,31 +64,12 @@ namespace Viscoplastic
 
 
 
+    /// Assembles the rows of MortarRows.
     template <int dim>
-    class Sides
+    class MortarAssembly : private InterfaceSides<dim>
     {
     public:
-      Sides(const DoFHandler<dim>           &dof_handler,
-            const AffineConstraints<double> &hanging,
-            const ContactPair<dim>          &pair)
-        : dof_handler(dof_handler)
-        , hanging(hanging)
-        , pair(pair)
-        , project(pair.normals != nullptr ? Point<dim>::unit_vector(0) :
-                                            pair.normal)
-        , communicator(dof_handler.get_communicator())
-        , owned(dof_handler.locally_owned_dofs())
-      {
-        const Node n_nodes = dof_handler.n_dofs() / dim;
-        // Ranks without nodes begin where the next one does.
-        begins = Utilities::MPI::all_gather(communicator,
-                                            owned.n_elements() > 0 ?
-                                              owned.nth_index_in_set(0) / dim :
-                                              n_nodes);
-        begins.push_back(n_nodes);
-        for (std::size_t r = begins.size() - 1; r-- > 0;)
-          begins[r] = std::min(begins[r], begins[r + 1]);
-      }
+      using InterfaceSides<dim>::InterfaceSides;
 
       MortarRows
       rows() const
@@ -162,241 +122,25 @@ namespace Viscoplastic
         return result;
       }
 
-      template <typename Softness>
-      std::vector<PlaceOpposite<dim>>
-      opposite(const std::vector<InterfacePlace<dim>> &places,
-               const Softness                         &softness) const
-      {
-        const std::vector<PrimaryFace<dim>> primary = primary_faces(softness);
-        const auto                          tree    = tree_of(primary);
-        std::vector<PlaceOpposite<dim>>     result;
-        for (const InterfacePlace<dim> &place : places)
-          {
-            result.emplace_back();
-            const Projection<dim> along(place.normal);
-            const Point<d>        x = along(place.position);
-            for (const auto &[box, i] :
-                 tree |
-                   boost::geometry::index::adaptors::queried(
-                     boost::geometry::index::intersects(
-                       box_before(place.position, place.normal, place.reach))))
-              if (const PlaneFace<d> seen = primary[i].seen(along);
-                  faces(place.normal, primary[i]) && contains(seen, x))
-                {
-                  const Point<d> xi = reference_position<d>(seen, x);
-                  Integrals      sum;
-                  for (unsigned int v = 0; v < n; ++v)
-                    sum.add(GeometryInfo<d>::d_linear_shape_function(xi, v),
-                            primary[i].nodes[v]);
-                  for (const auto &[node, weight] : sum.products)
-                    result.back().nodes.push_back({node, weight});
-                  result.back().distance =
-                    primary[i].position(xi) - place.position;
-                  if (pair.normals != nullptr)
-                    result.back().distance += primary[i].bulge(xi);
-                  result.back().softness = primary[i].softness;
-                  break;
-                }
-          }
-        return result;
-      }
-
     private:
-      static constexpr unsigned int d = dim - 1;
-      static constexpr unsigned int n = GeometryInfo<dim>::vertices_per_face;
-
-      /// Call @p act (cell, face) for the faces with an id, on owned cells and
-      /// ghosts; of flat sides those that look along @p sign times the normal.
-      template <typename Action>
-      void
-      for_each_face(const types::boundary_id id,
-                    const double             sign,
-                    const Action            &act) const
-      {
-        for (const auto &cell : dof_handler.active_cell_iterators())
-          if (!cell->is_artificial())
-            for (const unsigned int f : cell->face_indices())
-              if (cell->at_boundary(f) && cell->face(f)->boundary_id() == id &&
-                  (pair.normals != nullptr ||
-                   sign * ((cell->face(f)->center() - cell->center()) *
-                           pair.normal) >
-                     0.))
-                act(cell, f);
-      }
-
-      template <typename Cell>
-      Node
-      node_at(const Cell        &cell,
-              const unsigned int f,
-              const unsigned int v) const
-      {
-        return cell->face(f)->vertex_dof_index(v, 0) / dim;
-      }
-
-      bool
-      owns(const Node node) const
-      {
-        return owned.is_element(node * dim);
-      }
-
-      bool
-      hangs(const Node node) const
-      {
-        return hanging.is_constrained(node * dim);
-      }
-
-      unsigned int
-      owner(const Node node) const
-      {
-        return std::upper_bound(begins.begin(), begins.end(), node) -
-               begins.begin() - 1;
-      }
-
-      Row
-      resolve(const Node node) const
-      {
-        if (!hangs(node))
-          return {{node, 1.}};
-        Row result;
-        for (const auto &[dof, weight] :
-             *hanging.get_constraint_entries(node * dim))
-          result.push_back({dof / dim, weight});
-        return result;
-      }
-
-      template <typename Cell>
-      SurfaceFace<dim>
-      surface_face(const Cell &cell, const unsigned int f) const
-      {
-        if (pair.normals != nullptr)
-          return pair.normals->face(cell, f);
-        SurfaceFace<dim> result;
-        for (unsigned int v = 0; v < n; ++v)
-          result.vertices[v] = cell->face(f)->vertex(v);
-        result.normals.fill(pair.normal);
-        return result;
-      }
-
-      /// Where to look for faces: of flat sides in the plane across the normal,
-      /// at any distance.
-      Point<dim>
-      place_of(const Point<dim> &x) const
-      {
-        if (pair.normals != nullptr)
-          return x;
-        Point<dim>     result;
-        const Point<d> in_plane = project(x);
-        for (unsigned int i = 0; i < d; ++i)
-          result[i] = in_plane[i];
-        return result;
-      }
-
-      BoundingBox<dim>
-      box_before(const Point<dim>     &x,
-                 const Tensor<1, dim> &normal,
-                 const double          reach) const
-      {
-        return BoundingBox<dim>(
-          std::vector<Point<dim>>{place_of(x - reach * normal),
-                                  place_of(x + reach * normal)});
-      }
-
-      BoundingBox<dim>
-      box_before(const SurfaceFace<dim> &face) const
-      {
-        const double reach =
-          pair.normals != nullptr ? SurfaceNormals<dim>::reach(face) : 0.;
-        BoundingBox<dim> result =
-          box_before(face.vertices[0], face.normals[0], reach);
-        for (unsigned int v = 1; v < n; ++v)
-          result.merge_with(
-            box_before(face.vertices[v], face.normals[v], reach));
-        return result;
-      }
-
-      BoundingBox<dim>
-      box_of(const SurfaceFace<dim> &face) const
-      {
-        std::vector<Point<dim>> places;
-        for (const Point<dim> &x : face.vertices)
-          places.push_back(place_of(x));
-        return BoundingBox<dim>(places);
-      }
-
-      /// Whether a face of the other side looks towards a place with this
-      /// normal, and is not seen from behind or edgeways.
-      bool
-      faces(const Tensor<1, dim> &normal, const SurfaceFace<dim> &other) const
-      {
-        if (pair.normals == nullptr)
-          return true;
-        return normal * other.normal(reference_center<d>()) < -0.2;
-      }
-
-      /// The faces of the primary side that may lie opposite to owned faces of
-      /// the secondary one. Collective.
-      template <typename Softness>
-      std::vector<PrimaryFace<dim>>
-      primary_faces(const Softness &softness) const
-      {
-        std::vector<BoundingBox<dim>> here;
-        for_each_face(pair.secondary,
-                      1.,
-                      [&](const auto &cell, const unsigned int f) {
-                        if (!cell->is_locally_owned())
-                          return;
-                        const auto box = box_before(surface_face(cell, f));
-                        if (here.empty())
-                          here.push_back(box);
-                        else
-                          here[0].merge_with(box);
-                      });
-        const auto boxes = Utilities::MPI::all_gather(communicator, here);
-
-        std::map<unsigned int, std::vector<PrimaryFace<dim>>> to_send;
-        for_each_face(
-          pair.primary, -1., [&](const auto &cell, const unsigned int f) {
-            if (!cell->is_locally_owned())
-              return;
-            PrimaryFace<dim> face;
-            static_cast<SurfaceFace<dim> &>(face) = surface_face(cell, f);
-            const BoundingBox<dim> box            = box_of(face);
-            bool                   is_complete    = false;
-            for (unsigned int rank = 0; rank < boxes.size(); ++rank)
-              if (!boxes[rank].empty() && boxes[rank][0].get_neighbor_type(
-                                            box) != NeighborType::not_neighbors)
-                {
-                  if (!is_complete)
-                    {
-                      face.softness = softness(cell, f);
-                      for (unsigned int v = 0; v < n; ++v)
-                        face.nodes[v] = resolve(node_at(cell, f, v));
-                      is_complete = true;
-                    }
-                  to_send[rank].push_back(face);
-                }
-          });
-        std::vector<PrimaryFace<dim>> result;
-        for (const auto &received :
-             Utilities::MPI::some_to_some(communicator, to_send))
-          result.insert(result.end(),
-                        received.second.begin(),
-                        received.second.end());
-        return result;
-      }
-
-      auto
-      tree_of(const std::vector<PrimaryFace<dim>> &faces) const
-      {
-        std::vector<std::pair<BoundingBox<dim>, std::size_t>> boxes;
-        for (std::size_t i = 0; i < faces.size(); ++i)
-          {
-            BoundingBox<dim> box = box_of(faces[i]);
-            box.extend(1e-10 * box.side_length(0)); // see contains()
-            boxes.emplace_back(box, i);
-          }
-        return pack_rtree(boxes);
-      }
+      using Sides = InterfaceSides<dim>;
+      using Sides::begins;
+      using Sides::box_before;
+      using Sides::communicator;
+      using Sides::faces;
+      using Sides::d;
+      using Sides::for_each_face;
+      using Sides::hangs;
+      using Sides::n;
+      using Sides::node_at;
+      using Sides::owner;
+      using Sides::owns;
+      using Sides::pair;
+      using Sides::primary_faces;
+      using Sides::project;
+      using Sides::resolve;
+      using Sides::surface_face;
+      using Sides::tree_of;
 
       /// A face of the primary side in the plane of one of the secondary side.
       PlaneFace<d>
@@ -624,14 +368,6 @@ namespace Viscoplastic
               rows[node].push_back({other, weight});
           }
       }
-
-      const DoFHandler<dim>           &dof_handler;
-      const AffineConstraints<double> &hanging;
-      const ContactPair<dim>          &pair;
-      const Projection<dim>            project;
-      const MPI_Comm                   communicator;
-      const IndexSet                   owned;
-      std::vector<Node>                begins;
     };
   } // namespace
 
@@ -643,42 +379,17 @@ namespace Viscoplastic
                        const AffineConstraints<double> &hanging_nodes,
                        const ContactPair<dim>          &pair)
   {
-    return Sides<dim>(dof_handler, hanging_nodes, pair).rows();
+    return MortarAssembly<dim>(dof_handler, hanging_nodes, pair).rows();
   }
 
 
 
-  template <int dim>
-  std::vector<PlaceOpposite<dim>>
-  places_opposite(const DoFHandler<dim>                  &dof_handler,
-                  const AffineConstraints<double>        &hanging_nodes,
-                  const ContactPair<dim>                 &pair,
-                  const std::vector<InterfacePlace<dim>> &places,
-                  const std::function<double(
-                    const typename DoFHandler<dim>::active_cell_iterator &,
-                    const unsigned int)>                 &softness)
-  {
-    return Sides<dim>(dof_handler, hanging_nodes, pair)
-      .opposite(places, softness);
-  }
-
-
-
-#define INSTANTIATE(dim)                                                      \
-  template MortarRows mortar_interpolation(const DoFHandler<dim> &,           \
-                                           const AffineConstraints<double> &, \
-                                           const ContactPair<dim> &);         \
-  template std::vector<PlaceOpposite<dim>> places_opposite(                   \
-    const DoFHandler<dim> &,                                                  \
-    const AffineConstraints<double> &,                                        \
-    const ContactPair<dim> &,                                                 \
-    const std::vector<InterfacePlace<dim>> &,                                 \
-    const std::function<                                                      \
-      double(const typename DoFHandler<dim>::active_cell_iterator &,          \
-             const unsigned int)> &);
-
-  INSTANTIATE(2)
-  INSTANTIATE(3)
-
-#undef INSTANTIATE
+  template MortarRows
+  mortar_interpolation(const DoFHandler<2> &,
+                       const AffineConstraints<double> &,
+                       const ContactPair<2> &);
+  template MortarRows
+  mortar_interpolation(const DoFHandler<3> &,
+                       const AffineConstraints<double> &,
+                       const ContactPair<3> &);
 } // namespace Viscoplastic

@@ -19,6 +19,75 @@ namespace Viscoplastic
   namespace
   {
     constexpr unsigned int all_parts = numbers::invalid_unsigned_int;
+
+
+
+    /// Call @p act (part of the body, place, direction) for the directions
+    /// along which springs pull at places of owned faces.
+    template <int dim, typename Action>
+    void
+    for_each_spring(const AdmissibleSpace<dim> &space,
+                    const BodyParts            &parts,
+                    const Action               &act)
+    {
+      FEFaceValues<dim> face_values(space.dof_handler.get_fe(),
+                                    QGauss<dim - 1>(2),
+                                    update_quadrature_points |
+                                      update_normal_vectors);
+      for (const auto &cell : space.cells)
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (!cell->face(f)->at_boundary())
+              continue;
+            const auto &condition =
+              space.scene.boundary.at(cell->face(f)->boundary_id());
+            if (!condition.has_springs())
+              continue;
+            const unsigned int part =
+              parts.of_cell.empty() ?
+                0 :
+                parts.of_cell[cell->id().get_coarse_cell_id()];
+            face_values.reinit(cell, f);
+            for (const unsigned int q : face_values.quadrature_point_indices())
+              {
+                const Point<dim> &x = face_values.quadrature_point(q);
+                const auto        K =
+                  condition.spring_stiffness(x, face_values.normal_vector(q));
+                if (const double size = K.norm(); size > 0.)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    act(part, x, K * Point<dim>::unit_vector(d) / size);
+              }
+          }
+    }
+
+
+
+    /// The sentence that refuses a scene which leaves @p motions free.
+    template <int dim>
+    std::string
+    refusal(const Scene<dim>  &scene,
+            const unsigned int n_parts,
+            const std::string &motions,
+            const bool         may_be_held_by_contact)
+    {
+      std::ostringstream result;
+      result << "The boundary conditions leave a rigid motion free";
+      if (n_parts > 1)
+        result << " of one of the " << n_parts
+               << (scene.has_contact_pairs() ? " bodies" :
+                                               " parts of the body");
+      if (scene.stage() > 0)
+        result << " from t = " << scene.stage_ends[scene.stage() - 1]
+               << " on, when materials are added or removed";
+      result << ": " << motions
+             << ". Prescribe displacements that prevent it (clamped, "
+                "displacement, symmetry, bilateral or glued contact; "
+             << (may_be_held_by_contact ?
+                   "unilateral contact holds a body along its normal, and "
+                   "along its face by friction that is not zero)." :
+                   "friction does not count).");
+      return result.str();
+    }
   } // namespace
 
 
@@ -142,38 +211,13 @@ namespace Viscoplastic
             of_part.join(communicator);
             needs_springs |= !of_part.unseen().empty();
           }
-        FEFaceValues<dim> face_values(dof_handler.get_fe(),
-                                      QGauss<dim - 1>(2),
-                                      update_quadrature_points |
-                                        update_normal_vectors);
-        for (const auto &cell : cells)
-          for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary())
-              {
-                const auto &condition =
-                  scene.boundary.at(cell->face(f)->boundary_id());
-                if (!condition.has_springs())
-                  continue;
-                const unsigned int part =
-                  parts.of_cell.empty() ?
-                    0 :
-                    parts.of_cell[cell->id().get_coarse_cell_id()];
-                face_values.reinit(cell, f);
-                for (const unsigned int q :
-                     face_values.quadrature_point_indices())
-                  {
-                    const auto K =
-                      condition.spring_stiffness(face_values.quadrature_point(
-                                                   q),
-                                                 face_values.normal_vector(q));
-                    if (const double size = K.norm(); size > 0.)
-                      for (unsigned int d = 0; d < dim; ++d)
-                        add_row(seen[group(part)],
-                                part,
-                                face_values.quadrature_point(q),
-                                K * Point<dim>::unit_vector(d) / size);
-                  }
-              }
+        for_each_spring(*this,
+                        parts,
+                        [&](const unsigned int    part,
+                            const Point<dim>     &x,
+                            const Tensor<1, dim> &direction) {
+                          add_row(seen[group(part)], part, x, direction);
+                        });
       }
 
     for (SeenMotions &of_part : seen)
@@ -198,25 +242,9 @@ namespace Viscoplastic
             if (motions.empty())
               free_motions = free;
           }
-        std::ostringstream what;
-        what << "The boundary conditions leave a rigid motion free";
-        if (parts.n > 1)
-          what << " of one of the " << parts.n
-               << (are_coupled ? " bodies" : " parts of the body");
-        if (scene.stage() > 0)
-          what << " from t = " << scene.stage_ends[scene.stage() - 1]
-               << " on, when materials are added or removed";
-        AssertThrow(motions.empty(),
-                    ExcMessage(
-                      what.str() + ": " + motions +
-                      ". Prescribe displacements that prevent it "
-                      "(clamped, displacement, symmetry, bilateral or "
-                      "glued contact; " +
-                      (may_be_held_by_contact ?
-                         "unilateral contact holds a body along its "
-                         "normal, and along its face by friction that is "
-                         "not zero)." :
-                         "friction does not count).")));
+        AssertThrow(
+          motions.empty(),
+          ExcMessage(refusal(scene, parts.n, motions, may_be_held_by_contact)));
       }
   }
 

@@ -150,9 +150,16 @@ def tolerance(results, about):
     if not wanted > 0.0:
         return ""
     found = about.get("estimated_error_of_quantity") or about["estimated_error"]
-    kept = "has" if found["relative"] <= wanted else "has <b>not</b>"
     words = data(wanted, f"{short(100.0 * wanted)} %")
-    return f"<p>The tolerance of {words} {kept} been kept.</p>\n"
+    verdict = "has been kept"
+    if found["relative"] > wanted:
+        verdict = "has <b>not</b> been kept"
+    elif "prescribed_jump" in about:
+        verdict = (
+            "has been met by the estimate alone: prescribed displacements jump, and no "
+            "error bar tells the true error"
+        )
+    return f"<p>The tolerance of {words} {verdict}.</p>\n"
 
 
 def short(value):

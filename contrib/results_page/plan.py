@@ -321,6 +321,31 @@ LONG_CREEP = {
             "Step control/Tolerance": "0",
         },
     ),
+    # Pressed from one side, held by symmetry at the other.
+    "strip on a rough foundation, norton": (
+        "verification/slab",
+        "point0_x",
+        (0.05, 0.001),
+        2,
+        {
+            **_creep(0.0004),
+            "Geometry/Arguments": "16, 4 : 0, 0 : 4, 1 : true",
+            "Geometry/Global refinements": "1",
+            "Material/Young's modulus": "1000",
+            "Material/Stress history": "quadrature points",
+            "Material/Volumetric integration": "automatic",
+            "Material/Law": "norton",
+            "Material/norton/Rate factor": "1e3",
+            "Material/norton/Exponent": "3",
+            "Material/norton/Stress cap": "1",
+            "Initial state/Equilibrate": "true",
+            "Boundary 0/Traction": "0.05; 0",
+            "Boundary 1/Role": "symmetry",
+            "Boundary 2/Friction bound": "0.02*(1 + 0.5*sin(3*x))",
+            "Boundary 3/Role": "free",
+            "Output/Points": "0, 1",
+        },
+    ),
 }
 # Four scenes drawn at random, as their files say.
 DRAWN = {

@@ -154,21 +154,21 @@ namespace Viscoplastic
     catch (...) // muParser's are no std::exception
       {
         std::cerr.rdbuf(original);
-        const std::string why  = message_of_parser(printed.str());
+        std::string why = message_of_parser(printed.str());
+        if (why.empty())
+          why = reason_of_current_exception();
         const std::string name = unknown_name(why, variables);
-        AssertThrow(false,
-                    ExpressionError(
-                      "The expression '" + excerpt(Utilities::trim(text)) +
-                        "' of '" + entry + "' cannot be parsed: " +
-                        (name.empty() ?
-                           as_sentence(excerpt(
-                             why.empty() ? reason_of_current_exception() : why,
-                             200)) :
-                           "there is no '" + excerpt(name) +
-                             "'; its variables are " + list_of(variables) +
-                             ", and pi and functions such as sin, exp, min "
-                             "and if are known."),
-                      entry));
+        AssertThrow(
+          false,
+          ExpressionError("The expression '" + excerpt(Utilities::trim(text)) +
+                            "' of '" + entry + "' cannot be parsed: " +
+                            (name.empty() ?
+                               as_sentence(excerpt(why, 200)) :
+                               "there is no '" + excerpt(name) +
+                                 "'; its variables are " + list_of(variables) +
+                                 ", and pi and functions such as sin, exp, min "
+                                 "and if are known."),
+                          entry));
       }
     return parser;
   }

@@ -133,6 +133,46 @@ namespace Viscoplastic
            "a gap of zero or more, or set 'Initial state/Equilibrate'.";
       AssertThrow(deepest <= 1e-8 * size, ExcMessage(message.str()));
     }
+
+
+
+    /// Collective.
+    template <int dim>
+    DisplacementJump<dim>
+    largest_jump(const AdmissibleSpace<dim> &space, const double t)
+    {
+      DistributedVector in_frames = space.owned_vector(),
+                        u         = space.ghosted_vector();
+      space.set_prescribed(t, in_frames);
+      space.to_cartesian(in_frames, u);
+      DisplacementJump<dim> result;
+      result.t = t;
+      LargestPlace<dim> largest;
+      for (const auto &cell : space.cells)
+        for (const unsigned int f : cell->face_indices())
+          if (const auto face = cell->face(f); face->at_boundary())
+            for (const unsigned int v : face->vertex_indices())
+              {
+                const Point<dim> x     = face->vertex(v);
+                const auto       first = face->vertex_dof_index(v, 0);
+                Tensor<1, dim>   value;
+                for (unsigned int d = 0; d < dim; ++d)
+                  value[d] =
+                    u.begin()[space.relevant.index_within_set(first + d)];
+                for (const auto &[direction, datum] : prescribed(
+                       space.scene.condition(face->boundary_id()), x, t))
+                  {
+                    result.largest = std::max(result.largest, std::abs(datum));
+                    largest.add(std::abs(direction * value - datum), x);
+                  }
+              }
+      largest.reduce(space.communicator);
+      result.largest  = Utilities::MPI::max(result.largest, space.communicator);
+      result.size     = largest.value();
+      result.position = largest.position();
+      result.boundaries = boundaries_at(space, result.position);
+      return result;
+    }
   } // namespace
 
 
@@ -197,39 +237,18 @@ namespace Viscoplastic
 
 
   template <int dim>
-  DisplacementJump<dim>
-  largest_jump(const AdmissibleSpace<dim> &space, const double t)
+  std::optional<DisplacementJump<dim>>
+  first_jump(const AdmissibleSpace<dim> &space)
   {
-    DistributedVector in_frames = space.owned_vector(),
-                      u         = space.ghosted_vector();
-    space.set_prescribed(t, in_frames);
-    space.to_cartesian(in_frames, u);
-    DisplacementJump<dim> result;
-    LargestPlace<dim>     largest;
-    for (const auto &cell : space.cells)
-      for (const unsigned int f : cell->face_indices())
-        if (const auto face = cell->face(f); face->at_boundary())
-          for (const unsigned int v : face->vertex_indices())
-            {
-              const Point<dim> x     = face->vertex(v);
-              const auto       first = face->vertex_dof_index(v, 0);
-              Tensor<1, dim>   value;
-              for (unsigned int d = 0; d < dim; ++d)
-                value[d] =
-                  u.begin()[space.relevant.index_within_set(first + d)];
-              for (const auto &[direction, datum] :
-                   prescribed(space.scene.condition(face->boundary_id()), x, t))
-                {
-                  result.largest = std::max(result.largest, std::abs(datum));
-                  largest.add(std::abs(direction * value - datum), x);
-                }
-            }
-    largest.reduce(space.communicator);
-    result.largest    = Utilities::MPI::max(result.largest, space.communicator);
-    result.size       = largest.value();
-    result.position   = largest.position();
-    result.boundaries = boundaries_at(space, result.position);
-    return result;
+    const TimeSchedule &schedule = space.scene.schedule;
+    for (double t = 0.; t < schedule.end_time();)
+      {
+        t               = schedule.phase_at(t).end;
+        const auto jump = largest_jump(space, t);
+        if (jump.size > 1e-6 * jump.largest)
+          return jump;
+      }
+    return {};
   }
 
 
@@ -246,8 +265,8 @@ namespace Viscoplastic
                              const ContactFace<3> *,
                              const DistributedVector &,
                              ContactState &);
-  template DisplacementJump<2>
-  largest_jump<2>(const AdmissibleSpace<2> &, const double);
-  template DisplacementJump<3>
-  largest_jump<3>(const AdmissibleSpace<3> &, const double);
+  template std::optional<DisplacementJump<2>>
+  first_jump<2>(const AdmissibleSpace<2> &);
+  template std::optional<DisplacementJump<3>>
+  first_jump<3>(const AdmissibleSpace<3> &);
 } // namespace Viscoplastic

@@ -66,8 +66,10 @@ namespace Viscoplastic
   bool
   QuantityEstimator<dim>::is_of_creep(const Scene<dim> &scene)
   {
+    using Kind = QuantityOfInterest::Kind;
     return scene.has_viscosity() && scene.quantity &&
-           scene.quantity->kind == QuantityOfInterest::Kind::displacement;
+           (scene.quantity->kind == Kind::displacement ||
+            scene.quantity->kind == Kind::reaction);
   }
 
 
@@ -119,7 +121,12 @@ namespace Viscoplastic
           k * (flow->rate(stress + change, strain + e, stiffness, point) -
                flow->rate(stress, strain, stiffness, point)));
       };
-    return space_estimator.multiply_recovered(state, dual, linearization);
+    Vector<double> products =
+      space_estimator.multiply_recovered(state, dual, linearization);
+    // The longer step moves the body more by the same force.
+    if (discretization.scene().quantity->is_force())
+      products *= linearization.share;
+    return products;
   }
 
 
@@ -282,7 +289,7 @@ namespace Viscoplastic
         estimate.dual_error = std::sqrt(sums[1]);
         // Forces forget what has crept, but nothing is known of the signs then.
         estimate.space_of_creep = least;
-        if (quantity.is_force() && errors.energy_norm > 0.)
+        if (quantity.is_force() && !tangent && errors.energy_norm > 0.)
           estimate.space_of_creep =
             std::min(1., errors.creep_path / errors.energy_norm) * sums[2];
         estimate.unsigned_space = sums[2];

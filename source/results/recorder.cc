@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
 #include <viscoplastic_contact/results/recorder.h>
@@ -43,6 +44,9 @@ namespace Viscoplastic
   {
     if (discretization != nullptr)
       effects.note_change_of_mesh();
+    else if (budget != nullptr)
+      if (const auto jump = first_jump(on_mesh.space))
+        run.jump_position = jump->position;
     discretization = &on_mesh;
     probes.clear();
     for (const Point<dim> &x : scene.output_points)

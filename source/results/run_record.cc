@@ -191,6 +191,9 @@ namespace Viscoplastic
           record_of_errors(summary->quantity_errors, "largest_value");
         errors["quantity"] = summary->quantity;
       }
+    if (summary != nullptr && summary->jump_position)
+      for (unsigned int d = 0; d < dim; ++d)
+        record["prescribed_jump"].push_back((*summary->jump_position)[d]);
     if (summary != nullptr && !summary->doubtful_steps.empty())
       record["doubtful_steps"] = summary->doubtful_steps;
     if (!remarks.empty())

@@ -247,8 +247,17 @@ namespace Viscoplastic
           print_parts(out, run, run.quantity_errors);
         }
       if (run.tolerance && run.controlled_errors().relative() <= *run.tolerance)
-        out << "The tolerance of " << 100. * *run.tolerance
-            << " % has been kept.\n";
+        {
+          out << "The tolerance of " << 100. * *run.tolerance << " % has been ";
+          if (run.jump_position)
+            out << "met by the estimate alone: prescribed displacements jump "
+                   "at x = ("
+                << *run.jump_position
+                << "), as a warning says, and no error bar tells the true "
+                   "error.\n";
+          else
+            out << "kept.\n";
+        }
     }
   } // namespace
 

@@ -107,28 +107,21 @@ namespace Viscoplastic
   void
   Announcer<dim>::warn_of_jumps(const AdmissibleSpace<dim> &space)
   {
-    const TimeSchedule &schedule = space.scene.schedule;
-    for (double t = 0.; t < schedule.end_time();)
-      {
-        t                                = schedule.phase_at(t).end;
-        const DisplacementJump<dim> jump = largest_jump(space, t);
-        if (jump.size <= 1e-6 * jump.largest)
-          continue;
-        std::vector<std::string> names;
-        for (const types::boundary_id id : jump.boundaries)
-          names.push_back(space.scene.names.of("boundary", id));
-        std::ostringstream text;
-        text << "Warning: what is prescribed of displacements jumps by "
-             << jump.size << space.scene.unit(Quantity::length) << " at x = ("
-             << jump.position << "), where " << enumeration(names)
-             << " meet (t = " << t << space.scene.unit(Quantity::time)
-             << "). No displacement of finite energy does that: forces, "
-                "energies and errors grow with each finer mesh, and no error "
-                "bar tells their limit. Let the data agree where boundaries "
-                "meet.";
-        console.remark(text.str());
-        return;
-      }
+    const auto jump = first_jump(space);
+    if (!jump)
+      return;
+    std::vector<std::string> names;
+    for (const types::boundary_id id : jump->boundaries)
+      names.push_back(space.scene.names.of("boundary", id));
+    std::ostringstream text;
+    text << "Warning: what is prescribed of displacements jumps by "
+         << jump->size << space.scene.unit(Quantity::length) << " at x = ("
+         << jump->position << "), where " << enumeration(names)
+         << " meet (t = " << jump->t << space.scene.unit(Quantity::time)
+         << "). No displacement of finite energy does that: forces, energies "
+            "and errors grow with each finer mesh, and no error bar tells "
+            "their limit. Let the data agree where boundaries meet.";
+    console.remark(text.str());
   }
 
 

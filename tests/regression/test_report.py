@@ -23,7 +23,7 @@ sys.path[:0] = [str(SOURCE / "contrib"), str(SOURCE / "contrib" / "python")]
 from plotting.body_base import field
 from plotting.history import finite
 from plotting.results import Results
-from reporting import bill, body, thinning, written
+from reporting import bill, body, tables, thinning, written
 from reporting.markup import formula
 from reporting.surface import Surface
 from viscoplastic_contact.study import price_report
@@ -431,6 +431,16 @@ class Parts(TestCase):
             (r"costs \$5", "costs $5"),
         ):
             self.assertEqual(formula(text), expected, text)
+
+    def test_tolerance_where_no_error_bar_is_true(self):
+        results = SimpleNamespace(data={("Error control", "Tolerance"): "0.3"})
+        for share, jump, words in (
+            (0.2, {}, "has been kept"),
+            (0.2, {"prescribed_jump": [1, 0]}, "met by the estimate alone"),
+            (0.4, {"prescribed_jump": [1, 0]}, "has <b>not</b> been kept"),
+        ):
+            about = {"estimated_error": {"relative": share}, **jump}
+            self.assertIn(words, tables.tolerance(results, about))
 
     def test_bill_of_a_resumed_run(self):
         """The record has the seconds since the restart, the statistics all."""

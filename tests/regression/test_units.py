@@ -190,7 +190,9 @@ def documented_units():
 def documented_name(column):
     name = re.sub(r"_[xyz]$", "_x", column)
     name = re.sub(r"^(|reaction_)(point|edge)\d+", r"\1\2<i>", name)
-    return re.sub(r"^reaction_\d+", "reaction_<id>", name)
+    return re.sub(
+        r"^(reaction|friction_force|contact_force)_\d+", r"\1_<id>", name
+    )
 
 
 class Labels(TestCase):
@@ -374,6 +376,7 @@ class Scaled:
         its unit in the comment before it."""
         lines, comment = [], ""
         self.has_counts = "set Generator = subdivided" in described
+        self.is_shell = "set Generator = quarter_hyper_shell" in described
         exponent = {"n": 1.0, "m": 1.0}
         # Where materials have numbers, the one without is not used.
         if re.search(r"(?m)^subsection Material \d", described):
@@ -432,14 +435,19 @@ class Scaled:
         if name == "Phases":
             return re.sub(rf"({NUMBER})( *:)", lambda m: number(m[1]) + m[2], value)
         if name == "Arguments":
-            # Numbers of cells come first, of each body.
+            # Numbers of cells come first, of each body, or after the radii.
             bodies = []
             for body in value.split("|"):
-                counts, colon, lengths = (
-                    body.partition(":") if self.has_counts else ("", "", body)
+                parts = body.split(":")
+                counts = 0 if self.has_counts else 3 if self.is_shell else None
+                bodies.append(
+                    ":".join(
+                        part
+                        if i == counts
+                        else re.sub(NUMBER, lambda m: number(m[0]), part)
+                        for i, part in enumerate(parts)
+                    )
                 )
-                lengths = re.sub(NUMBER, lambda m: number(m[0]), lengths)
-                bodies.append(counts + colon + lengths)
             return "|".join(bodies)
         if name in ("Points", "Lines", "Translation", "Landing times", "Voigt matrix"):
             return re.sub(NUMBER, lambda m: number(m[0]), value)

@@ -4,6 +4,7 @@
 #include <viscoplastic_contact/discretization/contact_face.h>
 #include <viscoplastic_contact/discretization/loads.h>
 
+#include <optional>
 #include <set>
 
 namespace Viscoplastic
@@ -39,21 +40,23 @@ namespace Viscoplastic
                           const DistributedVector    &u,
                           ContactState               &contact);
 
-  /// Where what boundaries prescribe of u at a common node differs most.
+  /// Where what boundaries prescribe of u at a common node differs most at
+  /// time t.
   template <int dim>
   struct DisplacementJump
   {
-    double size = 0.;
+    double t = 0., size = 0.;
     /// Of what is prescribed anywhere.
     double                       largest = 0.;
     Point<dim>                   position;
     std::set<types::boundary_id> boundaries;
   };
 
-  /// Find that at time t. No displacement of finite energy jumps on the
-  /// boundary: that of a mesh does within a cell, and its energy grows with
-  /// each finer one. Collective.
+  /// Find that at the first end of a phase at which they differ; absent: at
+  /// none. No displacement of finite energy jumps on the boundary: that of a
+  /// mesh does within a cell, and its energy grows with each finer one.
+  /// Collective.
   template <int dim>
-  DisplacementJump<dim>
-  largest_jump(const AdmissibleSpace<dim> &space, const double t);
+  std::optional<DisplacementJump<dim>>
+  first_jump(const AdmissibleSpace<dim> &space);
 } // namespace Viscoplastic

@@ -26,11 +26,11 @@ namespace Viscoplastic
    *   sizes are the indicators by which meshes are refined.
    * - mesh, in what has crept: rates that have been wrong for long have moved
    *   the body, which the residual of its present stress does not know. For
-   *   displacements the larger of a(e_u, e_w) and of the product C e_u : e_w of
-   *   recovered strains counts (RecoveryEstimator::multiply()), with the
-   *   tangents C of one step of backward Euler from the beginning to now and
-   *   the dual solution w of their matrix. Forces forget strain that has
-   *   relaxed.
+   *   displacements and reactions the larger of a(e_u, e_w) and of the product
+   *   C e_u : e_w of recovered strains counts (RecoveryEstimator::multiply()),
+   *   with the tangents C of one step of backward Euler from the beginning to
+   *   now and the dual solution w of their matrix. Other forces forget strain
+   *   that has relaxed.
    * - time steps: R_z(w) = -(D, eps(w)) with the sum D of the defects of all
    *   steps (see ErrorEstimator).
    * - slip that turns or comes to rest within a step is wrong by defects d_c
@@ -66,7 +66,8 @@ namespace Viscoplastic
     using TangentSolver =
       std::function<BulkSolver &(const TangentMatrix<dim> &, const bool)>;
 
-    /// Whether the quantity is a displacement of a body that creeps.
+    /// Whether the quantity is a displacement or a reaction of a body that
+    /// creeps.
     static bool
     is_of_creep(const Scene<dim> &scene);
 
@@ -101,7 +102,7 @@ namespace Viscoplastic
                      const DualSolution<dim> &dual,
                      QuantityEstimate        &estimate) const;
 
-    /// What the errors of rates have done to a displacement by the end of a
+    /// What the errors of rates have done to the quantity by the end of a
     /// step, by active cell. Collective.
     Vector<double>
     products_of_creep(const State<dim> &state,
@@ -118,7 +119,7 @@ namespace Viscoplastic
     const SpaceEstimator<dim> &space_estimator;
     const TangentSolver        solver_of_tangents;
     const DualProblem<dim>     dual_problem;
-    /// Of creep; null if the quantity is no displacement.
+    /// Of creep; null if the quantity is no displacement or reaction.
     std::unique_ptr<TangentMatrix<dim>> tangent;
   };
 } // namespace Viscoplastic

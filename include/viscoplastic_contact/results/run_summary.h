@@ -59,8 +59,10 @@ namespace Viscoplastic
     /// The errors of the quantity of interest of this name; empty without one.
     std::string  quantity;
     ErrorSummary quantity_errors;
-    /// The tolerance of a run that keeps one.
-    std::optional<double> tolerance;
+    /// The tolerance of a run that keeps one, and where prescribed
+    /// displacements jump, so that no error bar is true; absent: nowhere.
+    std::optional<double>     tolerance;
+    std::optional<Point<dim>> jump_position;
 
     /// The errors that a tolerance is for.
     const ErrorSummary &

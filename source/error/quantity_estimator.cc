@@ -305,10 +305,21 @@ namespace Viscoplastic
         if (end.space_estimate.squared_indicators.size() > 0)
           end.space_estimate.squared_indicators = std::move(indicators);
       }
+    const Vector<double> &of_geometry = end.space_estimate.geometry;
+    double                geometry    = 0.;
+    if (of_geometry.size() > 0) // on all ranks
+      {
+        geometry = std::sqrt(
+          Utilities::MPI::sum(of_geometry.l1_norm(), d.space.communicator));
+        Vector<double> &indicators = end.space_estimate.squared_indicators;
+        if (indicators.size() > 0 && geometry > 0.)
+          indicators.add(dual.norm / geometry, of_geometry);
+      }
     estimate.space_correction = estimate.settled_space + mesh;
     estimate.time_correction  = estimate.settled_time + time;
     estimate.space = std::max(safety * std::abs(estimate.space_correction),
-                              estimate.space_of_creep);
+                              estimate.space_of_creep) +
+                     geometry * estimate.dual_norm;
     // A part of all forces changes forces by that part, also where the dual
     // solution is zero, as where all points slip.
     const auto of_swing = [&](const double energy_norm, const double share) {

@@ -420,6 +420,56 @@ namespace Viscoplastic
 
 
   template <int dim>
+  Vector<double>
+  ResidualEstimator<dim>::estimate_geometry(const Fields &fields) const
+  {
+    std::vector<double> eta(cells.size()); // squared
+    for (const BoundaryFace &face : boundary_faces)
+      {
+        if (face.offset == 0. && face.opposite.empty())
+          continue;
+        const LocalCell &cell  = cells[face.cell];
+        const FaceShape &shape = shapes[cell.shape].faces[face.face];
+        const double     stiffness =
+          cell.stiffness.smallest_deviatoric_eigenvalue();
+        double square = 0., area = 0.;
+        for (unsigned int q = 0; q < n_face_points; ++q)
+          {
+            Tensor<1, dim> density, u;
+            for (unsigned int v = 0; v < n_vertices; ++v)
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  const std::size_t i   = cell.nodes[v] + d;
+                  const double      phi = face_values[face.face][q][v];
+                  density[d] += phi * fields.multiplier_density->begin()[i];
+                  u[d] += phi * fields.u.begin()[i];
+                }
+            double delta = density.norm() > 0. ? face.offset : 0.;
+            if (density.norm() == 0. && face.condition->is_unilateral() &&
+                !face.opposite.empty() && !face.opposite[q].nodes.empty())
+              {
+                const auto &opposite = face.opposite[q];
+                for (const auto &[node, weight] : opposite.nodes)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    u[d] -= weight * fields.u.begin()[node + d];
+                delta =
+                  std::max(0.,
+                           u * opposite.normal - opposite.distance -
+                             face.condition->gap(face.positions[q], *fields.t) +
+                             face.offset + largest_offset);
+              }
+            const double k = stiffness / face.diameter;
+            square += shape.weights[q] * 2. * k * k * delta * delta / stiffness;
+            area += shape.weights[q];
+          }
+        eta[face.cell] += shapes[cell.shape].volume / area / 6. * square;
+      }
+    return local.by_active_index(eta);
+  }
+
+
+
+  template <int dim>
   double
   ResidualEstimator<dim>::compliance_product(const Stiffness      &stiffness,
                                              const Tensor<1, dim> &normal,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/qprojector.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/grid/manifold.h>
 
 #include <viscoplastic_contact/base/messages.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
@@ -31,7 +33,10 @@ namespace Viscoplastic
     make_initial_stress();
     make_expansion();
     if (!stress_space.space.mortar_rows.empty())
-      find_other_bodies();
+      {
+        find_other_bodies();
+        compare_with_manifold();
+      }
     subface_shape_of.clear();
   }
 
@@ -293,6 +298,47 @@ namespace Viscoplastic
               ++there;
             }
       }
+  }
+
+
+
+  template <int dim>
+  void
+  ResidualEstimator<dim>::compare_with_manifold()
+  {
+    const AdmissibleSpace<dim> &space = stress_space.space;
+    if (!space.surface_normals)
+      return;
+    const Point<dim - 1> middle = reference_center<dim - 1>();
+    for (BoundaryFace &face : boundary_faces)
+      {
+        const auto &condition = *face.condition;
+        if (!face.is_other_side &&
+            !(condition.against && condition.normal_varies))
+          continue;
+        const auto &cell    = space.cells[face.cell];
+        const auto  on_mesh = cell->face(face.face);
+        // A mesh that knows no more than its vertices is the geometry.
+        if (dynamic_cast<const FlatManifold<dim> *>(&on_mesh->get_manifold()) !=
+            nullptr)
+          continue;
+        const SurfaceFace<dim> surface =
+          space.surface_normals->face(cell, face.face);
+        // Hanging nodes are on the chord; the face beside them counts.
+        if (std::any_of(surface.lifts.begin(),
+                        surface.lifts.end(),
+                        [](const auto &lift) { return lift.norm() > 0.; }))
+          continue;
+        face.offset =
+          std::abs((on_mesh->center(/* respect_manifold = */ true) -
+                    surface.position(middle) - surface.bulge(middle)) *
+                   surface.normal(middle));
+        // Rounding of the coordinates.
+        if (face.offset < 1e-12 * face.diameter)
+          face.offset = 0.;
+        largest_offset = std::max(largest_offset, face.offset);
+      }
+    largest_offset = Utilities::MPI::max(largest_offset, space.communicator);
   }
 
 

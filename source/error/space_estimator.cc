@@ -121,6 +121,12 @@ namespace Viscoplastic
         squared += locking.squared_error;
         result.rate_defect = locking.rate;
       }
+    if (residual_estimator->has_curved_contact())
+      {
+        result.geometry =
+          residual_estimator->estimate_geometry(of_state.fields(0.));
+        squared += result.geometry;
+      }
     result.total = total_estimate(squared, triangulation);
     if (d.scene().has_viscosity() && d.stress_space.n_samples == 1)
       result.rate_defect = cell_mean_defect(*cells, d.laws, state);

@@ -81,8 +81,9 @@ namespace Viscoplastic
      * in squares. Means at a boundary miss half of what a strain varies by in a
      * cell: eps* is extrapolated there, so that linear strains on boxes are met
      * everywhere; but not from cells where is_curved(), as at the corners of
-     * clamped boundaries, whose product it would take away. And under mean dilatation pressures do work on what div u_h
-     * and div w_h vary by in cells, delta:
+     * clamped boundaries, whose product it would take away. And under mean
+     * dilatation pressures do work on what div u_h and div w_h vary by in
+     * cells, delta:
      *
      *     - int e_u : C I delta_w/3 - int e_w : C I delta_u/3,
      *

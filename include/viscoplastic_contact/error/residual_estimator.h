@@ -93,6 +93,27 @@ namespace Viscoplastic
     Vector<double>
     estimate(const Fields &fields) const;
 
+    /**
+     * What the shapes of curved bodies that touch each other miss of their
+     * geometry, as squared errors by active cell like those of estimate(). The
+     * surfaces in contact, SurfaceFace::bulge(), are off those of the manifold
+     * by delta in the middle of a face, and so is the gap where they touch: as
+     * of prescribed displacements that are wrong by as much,
+     *
+     *     eta_K^2 = sum_e 1/6 h (2 k^2 delta^2/2 mu)_e,   k = 2 mu/h_e.
+     *
+     * Bodies that do not touch, but may within delta, count by the rest.
+     */
+    Vector<double>
+    estimate_geometry(const Fields &fields) const;
+
+    /// Whether estimate_geometry() can have anything. The same on all ranks.
+    bool
+    has_curved_contact() const
+    {
+      return largest_offset > 0.;
+    }
+
     /// For each active cell, zero on cells of other ranks.
     struct Products
     {
@@ -165,6 +186,9 @@ namespace Viscoplastic
       std::vector<Spring> springs;
       /// Whether another body has contact with this one here.
       bool is_other_side = false;
+      /// How far the curved surface in contact is from the manifold in the
+      /// middle of the face.
+      double offset = 0.;
 
       /// Where another body was opposite to a point at first: relevant nodes
       /// with weights, the normal, the distance along it, and h_e/(2 mu) of
@@ -198,6 +222,8 @@ namespace Viscoplastic
     make_expansion();
     void
     find_other_bodies();
+    void
+    compare_with_manifold();
 
     /// Face @p f of a cell with this number.
     void
@@ -299,6 +325,8 @@ namespace Viscoplastic
     std::vector<FaceShape>    subface_shapes;
     std::vector<SubfaceSide>  subface_sides;
     std::vector<InteriorFace> interior_faces;
+    /// BoundaryFace::offset, of all ranks.
+    double                    largest_offset = 0.;
     std::vector<BoundaryFace> boundary_faces;
     /// Shape functions at the points of each face.
     std::array<std::array<std::array<double, n_vertices>, n_face_points>,

@@ -21,6 +21,9 @@ namespace Viscoplastic
     /// What cell means leave out of G, see cell_mean_defect(), or volumetric
     /// locking holds back; zero where neither is.
     double rate_defect = 0.;
+    /// The part of it that curved faces of bodies that touch miss of the
+    /// geometry, squared by active cell; empty without them.
+    Vector<double> geometry;
     /// The squared share of each active cell by which the mesh is refined;
     /// empty in scenes on a fixed mesh.
     Vector<double> squared_indicators;

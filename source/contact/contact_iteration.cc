@@ -324,10 +324,18 @@ namespace Viscoplastic
     else
       {
         // The correction as it is descends, because it solves a positive
-        // definite system with the gradient of J.
-        bulk.set_truncation(truncation);
-        report.linear_iterations += bulk.correct(force, loose_tolerance, w);
-        result = along(w);
+        // definite system with the gradient of J; obstacles may end it.
+        const KinkStep past = step_past_obstacles(bulk,
+                                                  face,
+                                                  inverse_diagonal,
+                                                  truncation,
+                                                  force,
+                                                  loose_tolerance,
+                                                  least_limited_step,
+                                                  state);
+        w                   = past.correction;
+        result              = past.search;
+        report.linear_iterations += past.linear_iterations;
       }
     bulk.take_step(result.step);
     face.add(result.step, w, x);

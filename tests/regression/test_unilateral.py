@@ -900,6 +900,38 @@ class AtRest(TestCase):
     def run_block(self, changes, ranks=1):
         return run("block", {**self.BLOCK, **changes}, ranks, text="")
 
+    def test_pushed_without_load(self):
+        """By a foundation, far beside what strains: forces of rounding of the way
+        are no load that the error of a step could be measured by."""
+        scene = {
+            "Geometry/Generator": "half_hyper_ball",
+            "Geometry/Arguments": "0, 0 : 1",
+            "Geometry/Global refinements": 1,
+            "Material/Young's modulus": 2.261,
+            "Material/Poisson's ratio": -0.5,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": "0.005894*(1 + t)",
+            "Boundary 0/Friction law": "coulomb",
+            "Boundary 0/Friction coefficient": "0.3*exp(-y^2)*abs(sin(7*t))",
+            "Boundary 0/Gap": "0.007404*abs(x - 0.4) - 0.009272*sin(4*t)",
+            "Boundary 0/Foundation normal": "1, -0.3",
+            "Boundary 1/Friction law": "tresca",
+            "Boundary 1/Friction bound": "0.009248*abs(x - 0.4)",
+            "Boundary 1/Gap": "0.002976 + 0.01441*t^2",
+            "Solver/Coulomb pressure": "lagged",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "0.1: 2",
+            "Error control/Tolerance": 0.3,
+            "Step control/Smallest step": 0.005,
+            "Mesh refinement/Cell budget": 200,
+        }
+        for side in 0, 1:
+            scene[f"Boundary {side}/Role"] = "contact"
+            scene[f"Boundary {side}/Contact law"] = "unilateral"
+        result = run("pushed", scene, text="")
+        self.assertLess(result["algebraic_error"].max(), 1.01e-5)
+        self.assertNotIn("rounding leaves an error", result.stdout)
+
     def test_foundation_that_slides_below(self):
         """It touches without load: pressures of rounding are no bounds."""
         for pressure in "lagged", "fixed point":

@@ -173,9 +173,9 @@ def has_computed_pressure(entries):
 def has_large_friction(entries):
     """Whether Coulomb's law may have several solutions, each one certified."""
     return has_computed_pressure(entries) and any(
-        float(re.match(r"[\d.e+-]*\d", value)[0]) > 3
+        float(re.match(r"\d[\d.]*", str(value))[0]) > 3
         for entry, value in entries.items()
-        if entry.endswith("Friction coefficient") and value[0].isdigit()
+        if entry.endswith("Friction coefficient") and str(value)[:1].isdigit()
     )
 
 

@@ -70,24 +70,26 @@ namespace Viscoplastic
                   Vector<double>                  &change,
                   ContactState                    &state)
     {
-      for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      for (unsigned int p = 0; p < face.points.size(); ++p)
         {
-          const unsigned int p = face.first_point[node];
-          if (!face.has_plain_friction(node) || state.sticks[p] ||
-              state.bound[p] == 0.)
+          const ContactLayout::Point &point = face.points[p];
+          if (point.is_obstacle || state.sticks[p] || state.bound[p] == 0.)
             continue;
+          const unsigned int node = point.node;
           const Tensor<1, 3> here = face.node_values(x, node);
           const Tensor<1, 3> part =
-            motion_with_slip(face.points[p],
-                             state.slip_with(face.points[p], p, here));
+            motion_with_slip(point, state.slip_with(point, p, here));
           if (part * (diagonal[node] * part) >
               Utilities::fixed_power<2>(rounding))
+            continue;
+          state.sticks[p] = true;
+          // Where pieces meet, others may hold the node just there.
+          if (!face.has_plain_friction(node))
             continue;
           face.set_node_values(here - part, node, x);
           face.set_node_values(face.node_values(change, node) - part,
                                node,
                                change);
-          state.sticks[p] = true;
         }
     }
   } // namespace
@@ -324,10 +326,18 @@ namespace Viscoplastic
     else
       {
         // The correction as it is descends, because it solves a positive
-        // definite system with the gradient of J.
-        bulk.set_truncation(truncation);
-        report.linear_iterations += bulk.correct(force, loose_tolerance, w);
-        result = along(w);
+        // definite system with the gradient of J; obstacles may end it.
+        const KinkStep past = step_past_obstacles(bulk,
+                                                  face,
+                                                  inverse_diagonal,
+                                                  truncation,
+                                                  force,
+                                                  loose_tolerance,
+                                                  least_limited_step,
+                                                  state);
+        w                   = past.correction;
+        result              = past.search;
+        report.linear_iterations += past.linear_iterations;
       }
     bulk.take_step(result.step);
     face.add(result.step, w, x);

@@ -405,4 +405,56 @@ namespace Viscoplastic
     state = old_state;
     return {};
   }
+
+
+
+  KinkStep
+  step_past_obstacles(ContactSolve                    &bulk,
+                      const ContactLayout             &face,
+                      const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                      const FaceTruncation            &truncation,
+                      const Vector<double>            &force,
+                      const double                     tolerance,
+                      const double                     least,
+                      const ContactState              &state)
+  {
+    // What is met after so many times the way to the first obstacle is held as
+    // well; more would hold all of a body that falls far.
+    constexpr double near = 2.;
+    KinkStep         result;
+    result.linear_iterations = 0;
+    result.correction.reinit(face.n_dofs());
+    const auto solve = [&](const FaceTruncation &blocked) {
+      bulk.set_truncation(blocked, /* may_rebuild = */ false);
+      result.linear_iterations +=
+        bulk.correct(force, tolerance, result.correction);
+      result.search = search_along(bulk, face, state, result.correction);
+    };
+    solve(truncation);
+
+    FaceTruncation best = truncation;
+    ContactState   held = state;
+    for (;;)
+      {
+        const double first = largest_step(face, held, result.correction, 1.);
+        if (!(first < least))
+          return result;
+        for (unsigned int p = 0; p < face.points.size(); ++p)
+          if (face.points[p].is_obstacle && !face.points[p].gives_way() &&
+              !held.sticks[p])
+            {
+              const Approach to = approach(face, state, result.correction, p);
+              held.sticks[p] = to.goes > 0. && to.may <= near * first * to.goes;
+            }
+        const double   before = result.search.energy_change;
+        FaceTruncation next   = make_truncation(face, held, inverse_diagonal);
+        solve(next);
+        if (!(result.search.energy_change < before))
+          {
+            solve(best);
+            return result;
+          }
+        best = std::move(next);
+      }
+  }
 } // namespace Viscoplastic

@@ -19,6 +19,8 @@ namespace Viscoplastic
     /// each time that the step is solved; softer ones would magnify rounding
     /// of resultants beyond what StepSolver counts as rounding.
     constexpr double spring_stiffness = 1e-3;
+    /// Of the forces that hold a body back from all of its way.
+    constexpr double rounding_of_forces = 1e-14;
     /// A body that still moves after so many solves is not held.
     constexpr unsigned int max_proximal_steps = 200;
     /// Where it has not come to rest after so many, something that is much
@@ -373,9 +375,13 @@ namespace Viscoplastic
             0.01 * std::max(right.l1_norm(), right_side.l1_norm()) ||
           in_springs <= rounding * norm(whole);
         report.error += in_springs;
-        // A body under no loads that moves without strain has no other size.
+        // A body under no loads, but for what rounding of its way makes of old
+        // stresses, that moves without strain has no other size.
+        right = springs;
+        right.scale(whole);
         const double reference =
-          right_side.l1_norm() > 0. ?
+          right_side.l1_norm() >
+              rounding_of_forces / spring_stiffness * right.l1_norm() ?
             size :
             std::max(size, report.rounding_error / tolerance);
         report.relative_error = reference > 0. ? report.error / reference : 0.;

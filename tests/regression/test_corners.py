@@ -321,6 +321,55 @@ class Corners(TestCase):
                         results[0][name], results[1][name], 1e-5, 1e-9, name
                     )
 
+    def test_edge_of_a_soft_and_a_rigid_plane(self):
+        """What sticks along the edge shares the force with the pressures, which is
+        a matter of choice; steps and meshes that errors choose are not, nor what
+        both planes hold together."""
+        scene = {
+            "Dimension": 3,
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : true",
+            "Boundary 0/Contact law": "unilateral",
+            "Boundary 0/Friction coefficient": 0.4,
+            "Boundary 1/Role": "traction",
+            "Boundary 1/Pressure": "0.01*min(t, 1)",
+            "Boundary 2/Contact law": "normal compliance",
+            "Boundary 2/Compliance": 20,
+            "Boundary 2/Friction coefficient": 0.7,
+            "Boundary 3/Role": "traction",
+            "Boundary 3/Pressure": "0.02*min(t, 1)",
+            "Boundary 4/Role": "free",
+            "Boundary 5/Role": "displacement",
+            "Boundary 5/Displacement": "-0.01*min(t, 1); -0.015*min(t, 1);"
+            "0.03*max(t - 1, 0)",
+            "Time/Phases": "1: 2, 1.5: 2",
+            "Step control/Tolerance": 0.15,
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Every n steps": 1,
+            "Mesh refinement/Maximal level": 2,
+            "Mesh refinement/Cell budget": 150,
+            "Solver/Contact tolerance": 1e-10,
+        }
+        for side in 0, 2:
+            scene[f"Boundary {side}/Role"] = "contact"
+            scene[f"Boundary {side}/Friction law"] = "coulomb"
+        alone, *others = [run("edge", scene, ranks, text="") for ranks in (1, 2, 3)]
+        self.assertGreater(alone["cells"][-1], 8 * alone["cells"][0])
+        for result in alone, *others:
+            self.check_identities(result)
+            self.assertLess(result["contact_iterations"].max(), 20)
+        for result in others:
+            for name in "t", "cells":
+                self.assertClose(result[name], alone[name], 1e-9, what=name)
+            for name in (
+                "stored_energy",
+                "friction_dissipation",
+                "friction_force_z",
+                "contact_force_2_y",
+                "reaction_5_x",
+            ):
+                self.assertClose(result[name], alone[name], 1e-6, what=name)
+
     def test_flat_plate_between_foundations(self):
         """A plate ten thousand times as long as thick, whose edge lies on two
         foundations with mu = 1: Newton's method jams, and what solves with

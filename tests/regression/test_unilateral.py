@@ -489,6 +489,41 @@ class Held(TestCase):
                 self.assertClose(found["contact_force_y"][-1], -0.002582, relative=1e-6)
                 self.assertLess(found["contact_iterations"].max(), 40)
 
+    def test_stiff_part_that_comes_down_on_one_node_after_the_other(self):
+        """The first node that meets the floor ends a correction at once, with the
+        rest still to come: bent to the floor, a body as stiff would store more than
+        its fall sets free, and the node alone would rise again."""
+        scene = {
+            "Dimension": 3,
+            "Geometry/Generator": "subdivided_hyper_rectangle",
+            "Geometry/Arguments": "5, 1, 2 : 0, 0, 0 : 1, 0.204, 0.204 : true",
+            "Geometry/Material ids": "if(x > 0.2, 2, 1)",
+            "Material 1/Young's modulus": 0.8573,
+            "Material 1/Poisson's ratio": -0.5,
+            "Material 1/Law": "maxwell",
+            "Material 1/maxwell/Viscosity": "0.008126*(2 + x^2)",
+            "Material 2/Young's modulus": 0.8888e5,
+            "Boundary 0/Role": "symmetry",
+            "Boundary 1/Role": "free",
+            "Boundary 2/Role": "symmetry",
+            "Boundary 3/Role": "free",
+            "Boundary 4/Role": "contact",
+            "Boundary 4/Contact law": "unilateral",
+            "Boundary 4/Gap": "7.707e-5*x^2 - 1.061e-4*t^2",
+            "Boundary 4/Friction law": "tresca",
+            "Boundary 4/Friction bound": "3.861e-5*abs(sin(7*t))",
+            "Boundary 5/Role": "free",
+            "Loads/Body force": "0; 0; -0.0002962*min(4*t, 1)",
+            "Time/Phases": "0.02: 4",
+            "Time/Stiffness policy": "backward Euler",
+            "Error control/Tolerance": 0.3,
+            "Step control/Smallest step": 0.005,
+            "Mesh refinement/Cell budget": 60,
+        }
+        result = run("stiff_part", scene, text="")
+        self.check_identities(result, tolerance=1e-5, balance=1e-2)
+        self.assertLess(result["contact_iterations"].max(), 30)
+
     def test_relieved_of_all_loads(self):
         """The error is relative to what there was, not to the nothing that is
         left, and so are the bounds of friction."""
@@ -864,6 +899,38 @@ class AtRest(TestCase):
 
     def run_block(self, changes, ranks=1):
         return run("block", {**self.BLOCK, **changes}, ranks, text="")
+
+    def test_pushed_without_load(self):
+        """By a foundation, far beside what strains: forces of rounding of the way
+        are no load that the error of a step could be measured by."""
+        scene = {
+            "Geometry/Generator": "half_hyper_ball",
+            "Geometry/Arguments": "0, 0 : 1",
+            "Geometry/Global refinements": 1,
+            "Material/Young's modulus": 2.261,
+            "Material/Poisson's ratio": -0.5,
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": "0.005894*(1 + t)",
+            "Boundary 0/Friction law": "coulomb",
+            "Boundary 0/Friction coefficient": "0.3*exp(-y^2)*abs(sin(7*t))",
+            "Boundary 0/Gap": "0.007404*abs(x - 0.4) - 0.009272*sin(4*t)",
+            "Boundary 0/Foundation normal": "1, -0.3",
+            "Boundary 1/Friction law": "tresca",
+            "Boundary 1/Friction bound": "0.009248*abs(x - 0.4)",
+            "Boundary 1/Gap": "0.002976 + 0.01441*t^2",
+            "Solver/Coulomb pressure": "lagged",
+            "Time/Scheme": "backward Euler",
+            "Time/Phases": "0.1: 2",
+            "Error control/Tolerance": 0.3,
+            "Step control/Smallest step": 0.005,
+            "Mesh refinement/Cell budget": 200,
+        }
+        for side in 0, 1:
+            scene[f"Boundary {side}/Role"] = "contact"
+            scene[f"Boundary {side}/Contact law"] = "unilateral"
+        result = run("pushed", scene, text="")
+        self.assertLess(result["algebraic_error"].max(), 1.01e-5)
+        self.assertNotIn("rounding leaves an error", result.stdout)
 
     def test_foundation_that_slides_below(self):
         """It touches without load: pressures of rounding are no bounds."""

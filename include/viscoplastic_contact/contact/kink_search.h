@@ -67,7 +67,7 @@ namespace Viscoplastic
                  Vector<double>       &change);
 
 
-  /// A correction that begins with bringing nodes to kinks of J.
+  /// A correction that is solved for with kinks of J in view.
   struct KinkStep
   {
     Vector<double> correction;
@@ -92,4 +92,22 @@ namespace Viscoplastic
                   const double                     tolerance,
                   Vector<double>                  &x,
                   ContactState                    &state);
+
+
+  /**
+   * The correction with @p truncation, and the search along it. Where an
+   * obstacle that a node does not touch ends it before the part @p least, such
+   * nodes are held at the distance that they have, and the solve is repeated
+   * until nothing else is in the way or J gets no lower. @p force: what is to
+   * be corrected.
+   */
+  KinkStep
+  step_past_obstacles(ContactSolve                    &bulk,
+                      const ContactLayout             &face,
+                      const std::vector<Tensor<2, 3>> &inverse_diagonal,
+                      const FaceTruncation            &truncation,
+                      const Vector<double>            &force,
+                      const double                     tolerance,
+                      const double                     least,
+                      const ContactState              &state);
 } // namespace Viscoplastic

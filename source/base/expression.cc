@@ -274,13 +274,19 @@ namespace Viscoplastic
   {
     if (!std::isfinite(result))
       {
-        const auto        *tables = with_tables<dim>(parser);
+        const auto *tables = with_tables<dim>(parser);
+        // The components of x, which other variables may follow.
+        auto names = Utilities::split_string_list(variables);
+        names.resize(dim);
+        std::string position;
+        for (const std::string &name : names)
+          position += (position.empty() ? "" : ",") + name;
         std::ostringstream message;
         message << "The expression '" << (parser ? excerpt(text) : "derived")
                 << "' of '" << entry << "' has the value " << result << " at "
-                << (variables == FunctionParser<dim>::default_variable_names() ?
+                << (position == FunctionParser<dim>::default_variable_names() ?
                       "x" :
-                      variables)
+                      position)
                 << " = (" << x << "), t = " << t
                 << (tables && !tables->last_gap().empty() ?
                       ": " + tables->last_gap() + "." :

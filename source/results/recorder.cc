@@ -2,6 +2,7 @@
 #include <viscoplastic_contact/discretization/compatibility.h>
 #include <viscoplastic_contact/discretization/energy.h>
 #include <viscoplastic_contact/discretization/initial_state.h>
+#include <viscoplastic_contact/error/kelly_estimator.h>
 #include <viscoplastic_contact/results/recorder.h>
 #include <viscoplastic_contact/results/run_phases.h>
 #include <viscoplastic_contact/time_stepping/step_control.h>
@@ -177,6 +178,12 @@ namespace Viscoplastic
       {
         const ErrorEstimate &estimate = step.end.errors;
         run.errors->update(estimate, estimate.energy_norm, t);
+        if (const auto &geometry = step.end.space_estimate.geometry;
+            geometry.size() > 0) // on all ranks
+          run.has_coarse_curves |=
+            total_estimate(
+              geometry, discretization->space.dof_handler.get_triangulation()) >
+            estimate.energy_norm;
         if (scene.quantity)
           run.quantity_errors.update(estimate.quantity,
                                      std::abs(estimate.quantity.value),

@@ -255,6 +255,10 @@ namespace Viscoplastic
                 << *run.jump_position
                 << "), as a warning says, and no error bar tells the true "
                    "error.\n";
+          else if (run.has_coarse_curves)
+            out << "met by the estimate alone: the mesh is too coarse for the "
+                   "curved faces in contact to find each other; take more "
+                   "'Geometry/Global refinements'.\n";
           else
             out << "kept.\n";
         }

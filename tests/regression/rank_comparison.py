@@ -17,7 +17,7 @@ COLUMN_FAMILIES = (
     ("energy_norm", "estimate_", "error_energy", "error_memory"),
     ("stored_energy", "strain_energy", "external_work"),
     ("stored_energy", "viscous_dissipation", "friction_dissipation"),
-    ("max_displacement", "point"),
+    ("max_displacement", "max_slip", "point"),
 )
 FIELD_FAMILIES = {
     "slip": ("solution displacement",),

@@ -412,7 +412,7 @@ namespace
     expect_refusal([] { parsed("sigma_eq + q"); },
                    "The expression 'sigma_eq + q' of 'Material/parsed/Strain "
                    "rate' cannot be parsed: there is no 'q'; its variables are "
-                   "sigma_eq, p, eps_eq and t, and pi");
+                   "sigma_eq, p, eps_eq, T and t, and pi");
     expect_refusal([] { parsed("x*sigma_eq"); }, "cannot be parsed");
     expect_refusal([] { parsed(""); },
                    "The expression of 'Material/parsed/Strain rate' is "

@@ -117,7 +117,7 @@ namespace
       [] { make_law("maxwell", "set Viscosity = viscous"); },
       "The expression 'viscous' of 'Material/maxwell/Viscosity' "
       "cannot be parsed: there is no 'viscous'; its variables are x, "
-      "y, z and t");
+      "y, z, T and t");
 
     const auto law = make_law("maxwell", "set Viscosity = x - t");
     EXPECT_EQ(law->point(Point<3>(3, 0, 0), 1.).parameters[0], 2.);
@@ -135,8 +135,8 @@ namespace
     expect_refusal(
       [] { make_law("maxwell", "set Viscosity = 1 + z^2", 2); },
       "The expression '1 + z^2' of 'Material/maxwell/Viscosity' "
-      "cannot be parsed: there is no 'z'; its variables are x, y and "
-      "t");
+      "cannot be parsed: there is no 'z'; its variables are x, y, T "
+      "and t");
   }
 
 

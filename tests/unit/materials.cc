@@ -163,8 +163,8 @@ namespace
     expect_refusal(
       [&] { Material<2>("Material 7", parameters, prm); },
       "The expression 'x - z' of 'Material 7/perzyna/Viscosity' "
-      "cannot be parsed: there is no 'z'; its variables are x, y and "
-      "t, and pi and functions such as sin, exp, min and if are "
+      "cannot be parsed: there is no 'z'; its variables are x, y, T "
+      "and t, and pi and functions such as sin, exp, min and if are "
       "known.");
     // The handler is at the top again.
     EXPECT_NO_THROW(Material<3>("Material 7", parameters, prm));

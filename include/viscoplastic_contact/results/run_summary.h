@@ -63,6 +63,9 @@ namespace Viscoplastic
     /// displacements jump, so that no error bar is true; absent: nowhere.
     std::optional<double>     tolerance;
     std::optional<Point<dim>> jump_position;
+    /// Whether curved bodies in contact have missed more of their geometry than
+    /// the whole solution is.
+    bool has_coarse_curves = false;
 
     /// The errors that a tolerance is for.
     const ErrorSummary &

@@ -136,6 +136,8 @@ def interaction_in_words(interaction, names):
     verdict = "add up, as far as this discretization can tell."
     if interaction.is_clear:
         verdict = "interact."
+    elif largest.change > largest.error:
+        verdict = "may interact, which this discretization cannot tell."
     return (
         f"{without(first)} {in_words(quantity, names)} changes by {percent(first.change_of(quantity))}, "
         f"w{without(second)[1:]} by {percent(second.change_of(quantity))}, without both "

@@ -179,7 +179,7 @@ class Variants:
         same = [
             f"{other}/{path[len(first):]}={text}"
             for path, text in sorted(self.values.items())
-            if path.startswith(first)
+            if path.startswith(first) and path != f"{first}Name"
             for other in sections[1:]
             if self.values[f"{other}/{path[len(first):]}"] != text
         ]
@@ -356,6 +356,7 @@ class Variants:
             if self.values[f"{name}/Role"] == "contact"
             and self.values[f"{name}/Contact law"]
             in ("unilateral", "normal compliance")
+            and not self.values.get(f"{name}/Against")
         ]
         if (
             len(unilateral) == 1

@@ -58,7 +58,7 @@ namespace Viscoplastic
        "results. With them a number may have any unit: `1 year', `25 MPa', "
        "`0.022 MPa/m', `1e-5 MPa^-5/day', also in expressions. Units are nm, "
        "um, mm, cm, m, km; ms, s, min, h, day, year (365.25 days); Pa, kPa, "
-       "MPa, GPa, bar; N, kN, MN; J; kg; and products of them."},
+       "MPa, GPa, bar; N, kN, MN; J, kJ; kg; K, mol; and products of them."},
       {"Material",
        "The material of all cells, and how stresses are discretized."}};
 

@@ -56,10 +56,13 @@ namespace Viscoplastic
       {
         loss << ", which is rounding of displacements";
         if (times > far)
-          loss << " of " << times
-               << " times the size of the body: contact hardly holds it, or "
-                  "not at all. Let the loads press the body onto its "
-                  "foundation, or prescribe displacements that hold it.";
+          loss << " of " << times << " times the size of the body: "
+               << (discretization->space.is_held_by_contact() ?
+                     "contact hardly holds it, or not at all. Let the loads "
+                     "press the body onto its foundation, or prescribe "
+                     "displacements that hold it." :
+                     "it flows without end, or gives way far too easily. Look "
+                     "at the units of its material and its loads.");
         else
           loss << " where the body is stiffest: materials whose stiffness "
                   "differs by less, or prescribed displacements where it is "

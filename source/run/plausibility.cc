@@ -341,7 +341,7 @@ namespace Viscoplastic
     const auto               with_unit = [&units](const double value) {
       return number(value) + units.suffix(Quantity::stress, dim);
     };
-    const auto ranges = ranges_of_materials(discretization, 0.);
+    const auto ranges = ranges_of_materials(discretization, stress.value);
     for (const auto &one : ranges)
       if (const std::string path = one.material->section + "/Young's modulus";
           stress.is_load && !one.material->is_anisotropic() &&
@@ -371,6 +371,17 @@ namespace Viscoplastic
               "); known materials have 1e4 Pa (gels), 1e6 Pa (rubber), 1e10 Pa "
               "(rock), 2e11 Pa (steel), up to 1.2e12 Pa (diamond).");
           }
+        // Nobody waits so long for a law to do what it does at once.
+        constexpr double at_once = 1e-9;
+        const double     end     = scene.schedule.end_time();
+        if (time.largest > 0. && time.largest < at_once * end)
+          result.push_back(
+            "the law of '" + material->section + "' relaxes " +
+            with_unit(stress.value) + " (" + stress.origin + ") within " +
+            number(time.largest) + units.suffix(Quantity::time, dim) + ", " +
+            number(end / time.largest) +
+            " times shorter than the run; look at the units of its parameters" +
+            (scene.temperature ? " and at the temperatures." : "."));
         if (stress.is_load && stress.value > 0.1 * modulus.largest)
           result.push_back(
             "the data reach " + with_unit(stress.value) + " (" + stress.origin +

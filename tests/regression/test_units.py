@@ -702,6 +702,10 @@ class Work(TestCase):
             (["Material/Young's modulus=25 GPa*1e6"], "(2.5e+16 Pa in the SI); known"),
             (["Material/Young's modulus=25"], "a strain of about 24 % with"),
             (["Material/Young's modulus=2.5e-4"], "(250 Pa in the SI)"),
+            (
+                ["Material/norton/Rate factor=3.65e10 MPa^-3/year"],
+                "times shorter than the run; look at the units of its parameters.",
+            ),
         ):
             text = self.program(
                 "--check",

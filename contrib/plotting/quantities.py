@@ -37,7 +37,8 @@ TENSORS = {
 
 # Columns of statistics.csv: pattern, words, kind of unit.
 COLUMNS = [
-    ("t|k", "time", "time"),
+    ("t", "time", "time"),
+    ("k", "step size $k$", "time"),
     ("step_limit", "limit of the step $2/r$", "time"),
     ("slip_area", "slipping part of the face", "area"),
     ("stick_area", "sticking part of the face", "area"),

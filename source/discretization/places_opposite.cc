@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <viscoplastic_contact/discretization/interface_sides.h>
-#include <viscoplastic_contact/discretization/mortar_interpolation.h>
+#include <viscoplastic_contact/discretization/places_opposite.h>
 
 #include <map>
 

@@ -127,8 +127,8 @@ namespace Viscoplastic
       using Sides::begins;
       using Sides::box_before;
       using Sides::communicator;
-      using Sides::faces;
       using Sides::d;
+      using Sides::faces;
       using Sides::for_each_face;
       using Sides::hangs;
       using Sides::n;

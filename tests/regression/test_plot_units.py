@@ -357,7 +357,9 @@ class Supported(TestCase):
     def test_no_loop_without_dissipation(self):
         statistics = {"t": np.arange(3.0), "reaction_1_x": np.arange(3.0)}
         results = SimpleNamespace(statistics=statistics)
-        options = SimpleNamespace(begin=None, until=None, force=None, displacement=None)
+        options = SimpleNamespace(
+            begin=None, until=None, log_time=False, force=None, displacement=None
+        )
         with self.assertRaisesRegex(NoPicture, "nothing dissipates"):
             hysteresis.draw(results, options)
 

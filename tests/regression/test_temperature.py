@@ -308,6 +308,27 @@ class Cylinder(TestCase):
             a, b = (result[name] for result in results)
             self.assertLess(abs(a - b).max(), 1e-7 * abs(a).max(), name)
 
+    def test_new_meshes(self):
+        """Carry what has flowed, here nothing, and take what expands from the data."""
+        scene = {
+            **self.ring(2),
+            "Exact solution/Displacement": "",
+            "Exact solution/Stress": "",
+            "Material/Law": "maxwell",
+            "Material/maxwell/Viscosity": 1e20,
+            "Time/Phases": "1: 4",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Every n steps": 1,
+            "Output/Additional fields": "irreversible strain",
+        }
+        for ranks in 1, 3:
+            result = compute(scene, ranks)
+            self.assertGreater(len(set(result["cells"])), 2)
+            fields = result.fields().cell_data
+            for component in "xx", "yy", "zz", "xy":
+                strain = abs(fields[f"irreversible_strain_{component}"]).max()
+                self.assertLess(strain, 1e-12 * ALPHA * self.T, component)
+
 
 class Arrhenius(TestCase):
     """Q in J/mol: one law at another temperature is the law with other

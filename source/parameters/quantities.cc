@@ -200,6 +200,11 @@ namespace Viscoplastic
                 const EntryUnit   &entry,
                 const Units       &units)
   {
+    for (const std::string name : {"\u00B0C", "degC"})
+      refuse_unless(text.find(name) == std::string::npos,
+                    "'" + name +
+                      "' is no unit here: temperatures are absolute, 20 "
+                      "\u00B0C is `293.15 K', and differences are in K");
     std::string result;
     std::size_t copied = 0;
     for (const NumberWithUnit &number : numbers_with_units(text))

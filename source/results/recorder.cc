@@ -153,6 +153,7 @@ namespace Viscoplastic
     run.strain.update(stress.max_strain, t);
     if (run.von_mises.update(stress.max_von_mises, t))
       run.von_mises_position = stress.von_mises_position;
+    run.pressure.update(quantities.contact.max_pressure, t);
     run.capped_volume.update(step.capped_volume, step.time_of_rate());
     run.largest_error.update(errors.error);
     run.largest_exact.update(errors.exact);

@@ -301,7 +301,9 @@ namespace Viscoplastic
 
     const double size   = body_size();
     const bool   is_far = run.displacement.value > size;
-    if (is_far || run.strain.value > 1.)
+    // Scenes without units are mathematics, where sizes mean nothing.
+    if (is_far ||
+        run.strain.value > (scene.parameters.units.are_declared() ? 0.1 : 1.))
       {
         std::ostringstream text;
         text << std::setprecision(3)
@@ -314,8 +316,12 @@ namespace Viscoplastic
         else
           text << " the norm of the strain is " << run.strain.value
                << " in the mean of a cell";
-        text << "; small strains are assumed, so that this is flow without end "
-                "or a load far too large, and only its onset means something.";
+        text << "; small strains are assumed, so that "
+             << (is_far || run.strain.value > 1. ?
+                   "this is flow without end or a load far too large, and only "
+                   "its onset means something." :
+                   "results may be wrong by about that, relatively, which no "
+                   "error bar has.");
         result.push_back(text.str());
       }
     return result;

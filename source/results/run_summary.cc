@@ -119,6 +119,10 @@ namespace Viscoplastic
                 with_place(run.von_mises,
                            Quantity::stress,
                            run.von_mises_position));
+      if (run.pressure.value > 0.)
+        print_row(out,
+                  "contact pressure",
+                  with.at_time(run.pressure, Quantity::stress));
       if (run.has_friction)
         print_row(out,
                   "slipping area",

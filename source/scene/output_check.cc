@@ -129,6 +129,25 @@ namespace Viscoplastic
       }
 
     std::vector<std::string> warnings;
+    for (const auto &[id, condition] : scene.boundary)
+      if (condition.against && !condition.is_glued() &&
+          !scene.output_points.empty())
+        {
+          const auto here     = locate_on_boundary(triangulation,
+                                               scene.output_points,
+                                               {id}),
+                     opposite = locate_on_boundary(triangulation,
+                                                   scene.output_points,
+                                                   {*condition.against});
+          for (std::size_t p = 0; p < scene.output_points.size(); ++p)
+            if (here.distances[p] == 0. && opposite.distances[p] == 0.)
+              warnings.push_back(
+                "'Output/Points': point " + std::to_string(p) +
+                " lies in both bodies, on boundary " + std::to_string(id) +
+                " and on what is against it; it is taken of the body whose "
+                "cell there has the center with the least coordinates. Move it "
+                "a little into the one that is meant.");
+        }
     if (!asked.point_fields.empty() && scene.output_points.empty())
       warnings.push_back(
         "'Output/Point fields' is not used without 'Output/Points'.");

@@ -659,6 +659,14 @@ class Tension(TestCase):
             through.stdout,
             r"Note: at t = 1 the norm of the strain is [0-9.]+ in the mean of a cell; small strains",
         )
+        # With units it is a body, and strains of a tenth are not small.
+        deep = {**self.SCENE, "Boundary 3/Displacement": "0; -0.2*t"}
+        units = {"Units/Length": "m", "Units/Time": "s", "Units/Stress": "MPa"}
+        self.assertNotIn("small strains", run("conveyor_2d", deep).stdout)
+        self.assertIn(
+            "small strains are assumed, so that results may be wrong by about that",
+            run("conveyor_2d", {**deep, **units}).stdout,
+        )
         # Turned about its middle: one half presses, the other pulls.
         bent = run(
             "conveyor_2d",

@@ -30,6 +30,9 @@ class Blocks(TestCase):
         self.assertClose(result["max_pressure"][-1], p, **close)
         self.assertClose(result[f"contact_force_{down}"][-1], p, **close)
         self.assertLess(result["estimate_space"][-1], 1e-12)
+        # its second point is on the interface
+        warned = "Warning: 'Output/Points': point 1 lies in both bodies"
+        self.assertEqual(warned in result.stdout, dim == 2)
         return result
 
     def test_plane(self):

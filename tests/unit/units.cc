@@ -325,6 +325,7 @@ namespace
            {"Time/Phases=1 yaer: 4",
             "there is no unit 'yaer'; did you mean 'year'?"},
            {"Time/Phases=1 foot: 4", "there is no unit 'foot'; units are nm"},
+           {"Time/Phases=20 degC: 4", "differences are in K"},
            {"Time/Phases=1year: 4",
             "a blank must stand between '1' and its unit."},
            {"Step control/Largest step=1 m", "'1 m' is a length"},

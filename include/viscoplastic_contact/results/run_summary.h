@@ -74,7 +74,7 @@ namespace Viscoplastic
       return quantity.empty() ? *errors : quantity_errors;
     }
 
-    Largest displacement, strain, von_mises, slip_area, slip_rate,
+    Largest displacement, strain, von_mises, pressure, slip_area, slip_rate,
       capped_volume, utilization;
     /// The part of the faces in bilateral contact on which the foundation
     /// pulls.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/symmetric_tensor.h>
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include <viscoplastic_contact/base/number_range.h>
@@ -315,22 +314,28 @@ namespace Viscoplastic
   std::vector<Tensor<1, 3>>
   NodeForces::pressures_of_force() const
   {
-    std::vector<Tensor<1, 3>> result(end - obstacle);
-    if (end - obstacle == 1 &&
-        (begin == obstacle || face.has_plain_friction(node)))
+    const unsigned int n = end - obstacle;
+    if (n == 1 && (begin == obstacle || face.has_plain_friction(node)))
       {
         const Tensor<1, 3> &normal = face.points[obstacle].map[0];
-        if (state.sticks[obstacle])
-          result[0] = normal / normal.norm_square();
-        return result;
+        return {state.sticks[obstacle] ? normal / normal.norm_square() :
+                                         Tensor<1, 3>()};
       }
+    PressureChanges changes = changes_of_what_holds();
+    const auto      springs = springs_of_force(changes);
+    for (unsigned int k = 0; k < n; ++k)
+      for (unsigned int j = 0; j < n; ++j)
+        changes.of_force[j] += changes.of_spring[k][j] * springs[k];
+    for (unsigned int k = 0; k < n; ++k)
+      changes.of_force[k] += springs[k];
+    return changes.of_force;
+  }
 
-    // What holds the node: changes of its multipliers of least norm that make
-    // up for those of the force and keep friction at the bounds it has reached.
-    struct Column
-    {
-      unsigned int point, component;
-    };
+
+
+  NodeForces::PressureChanges
+  NodeForces::changes_of_what_holds() const
+  {
     std::vector<Column>       columns;
     std::vector<unsigned int> limits;
     for (unsigned int p = begin; p < end; ++p)
@@ -344,7 +349,42 @@ namespace Viscoplastic
               state.multiplier[p].norm() >= state.bound[p] * (1. - at_limit))
             limits.push_back(p);
         }
-    FullMatrix<double> rows(3 + limits.size(), columns.size());
+    const FullMatrix<double> changes =
+      pseudo_inverse(equations(columns, limits));
+
+    const unsigned int n     = end - obstacle;
+    const double       scale = std::sqrt(pressure_scale);
+    PressureChanges    result{
+      std::vector<Tensor<1, 3>>(n),
+      std::vector<std::vector<double>>(n, std::vector<double>(n, 0.))};
+    for (unsigned int c = 0; c < columns.size(); ++c)
+      if (const unsigned int p = columns[c].point; p >= obstacle)
+        {
+          Tensor<1, 3> &of_force = result.of_force[p - obstacle];
+          for (unsigned int d = 0; d < 3; ++d)
+            of_force[d] = scale * changes(c, d);
+          of_force = held * of_force;
+          for (unsigned int o = obstacle; o < end; ++o)
+            if (is_spring(o))
+              {
+                double &of_spring =
+                  result.of_spring[o - obstacle][p - obstacle];
+                of_spring = -of_force * push[o - obstacle];
+                for (unsigned int a = 0; a < limits.size(); ++a)
+                  of_spring += scale * changes(c, 3 + a) *
+                               law->of_pressure[limits[a]][o - obstacle];
+              }
+        }
+    return result;
+  }
+
+
+
+  FullMatrix<double>
+  NodeForces::equations(const std::vector<Column>       &columns,
+                        const std::vector<unsigned int> &limits) const
+  {
+    FullMatrix<double> result(3 + limits.size(), columns.size());
     for (unsigned int c = 0; c < columns.size(); ++c)
       {
         const auto [p, i]  = columns[c];
@@ -352,78 +392,60 @@ namespace Viscoplastic
         const Tensor<1, 3> of =
           p >= obstacle ? push[p - obstacle] : face.points[p].map[i];
         for (unsigned int d = 0; d < 3; ++d)
-          rows(d, c) = scale * of[d];
+          result(d, c) = scale * of[d];
         for (unsigned int a = 0; a < limits.size(); ++a)
           {
             const unsigned int q = limits[a];
             if (p >= obstacle)
-              rows(3 + a, c) = -scale * law->of_pressure[q][p - obstacle];
+              result(3 + a, c) = -scale * law->of_pressure[q][p - obstacle];
             else if (p == q)
-              rows(3 + a, c) =
+              result(3 + a, c) =
                 state.multiplier[q][i] / state.multiplier[q].norm();
           }
       }
-    const FullMatrix<double> changes = pseudo_inverse(rows);
-    // of_spring[k][j]: what a unit of the pressure k of a spring makes of j.
-    std::vector<std::vector<double>> of_spring(
-      end - obstacle, std::vector<double>(end - obstacle, 0.));
-    for (unsigned int c = 0; c < columns.size(); ++c)
-      if (const unsigned int p = columns[c].point; p >= obstacle)
-        {
-          for (unsigned int d = 0; d < 3; ++d)
-            result[p - obstacle][d] = std::sqrt(pressure_scale) * changes(c, d);
-          result[p - obstacle] = held * result[p - obstacle];
-          for (unsigned int o = obstacle; o < end; ++o)
-            if (is_spring(o))
-              {
-                double &change = of_spring[o - obstacle][p - obstacle];
-                change         = -result[p - obstacle] * push[o - obstacle];
-                for (unsigned int a = 0; a < limits.size(); ++a)
-                  change += std::sqrt(pressure_scale) * changes(c, 3 + a) *
-                            law->of_pressure[limits[a]][o - obstacle];
-              }
-        }
+    return result;
+  }
 
-    // Springs press by how far the node moves. In the directions that are free
-    // their forces, with the friction that follows from a unit of pressure, are
-    // in balance with the node's force: dual vectors tell which is which.
+
+
+  std::vector<Tensor<1, 3>>
+  NodeForces::springs_of_force(const PressureChanges &changes) const
+  {
+    std::vector<Tensor<1, 3>> result(end - obstacle);
     std::vector<unsigned int> springs;
     std::vector<Tensor<1, 3>> normals, units;
     Tensor<2, 3>              tilt, free;
     for (unsigned int d = 0; d < 3; ++d)
       tilt[d][d] = free[d][d] = 1.;
     free -= held;
-    for (unsigned int p = begin; p < obstacle; ++p)
-      if (slips(p))
-        for (unsigned int o = obstacle; o < end; ++o)
-          if (takes_part(o))
-            tilt -=
-              law->of_pressure[p][o - obstacle] *
-              outer_product(node_force(face.points[p],
-                                       state.slip[p] / state.slip[p].norm()),
-                            result[o - obstacle]);
     for (unsigned int o = obstacle; o < end; ++o)
-      if (is_spring(o))
-        {
-          const Tensor<1, 3> normal = free * face.points[o].map[0];
-          if (!(normal.norm() > 1e-8 * face.points[o].map[0].norm()))
-            continue;
-          Tensor<1, 3> unit = face.points[o].map[0];
-          for (unsigned int p = begin; p < obstacle; ++p)
-            if (slips(p))
-              {
-                double bound = law->of_pressure[p][o - obstacle];
-                for (unsigned int j = obstacle; j < end; ++j)
-                  bound += law->of_pressure[p][j - obstacle] *
-                           of_spring[o - obstacle][j - obstacle];
-                unit +=
-                  bound * node_force(face.points[p],
-                                     state.slip[p] / state.slip[p].norm());
-              }
-          springs.push_back(o - obstacle);
-          normals.push_back(normal);
-          units.push_back(free * unit);
-        }
+      {
+        Tensor<1, 3>       unit   = face.points[o].map[0];
+        const Tensor<1, 3> normal = free * unit;
+        const bool         gives_way =
+          is_spring(o) && normal.norm() > 1e-8 * unit.norm();
+        for (unsigned int p = begin; p < obstacle; ++p)
+          if (slips(p))
+            {
+              const Tensor<1, 3> along =
+                node_force(face.points[p],
+                           state.slip[p] / state.slip[p].norm());
+              double bound = law->of_pressure[p][o - obstacle];
+              if (takes_part(o))
+                tilt -=
+                  bound * outer_product(along, changes.of_force[o - obstacle]);
+              for (unsigned int j = obstacle; gives_way && j < end; ++j)
+                bound += law->of_pressure[p][j - obstacle] *
+                         changes.of_spring[o - obstacle][j - obstacle];
+              unit += bound * along;
+            }
+        if (gives_way)
+          {
+            springs.push_back(o - obstacle);
+            normals.push_back(normal);
+            units.push_back(free * unit);
+          }
+      }
     FullMatrix<double> products(springs.size(), springs.size());
     for (unsigned int i = 0; i < springs.size(); ++i)
       for (unsigned int k = 0; k < springs.size(); ++k)
@@ -436,11 +458,7 @@ namespace Viscoplastic
           b += dual(i, k) * normals[i];
         result[springs[k]] = b * tilt;
       }
-    std::vector<Tensor<1, 3>> all(result);
-    for (unsigned int j = 0; j < end - obstacle; ++j)
-      for (const unsigned int k : springs)
-        all[j] += of_spring[k][j] * result[k];
-    return all;
+    return result;
   }
 
 

@@ -70,7 +70,8 @@ namespace Viscoplastic
         Tensor<1, 3>       values;
         for (unsigned int i = 0; i < n_dofs; ++i)
           values[i] = v.begin()[position[i]];
-        values = truncation.projector[n] * values;
+        // Twice, as FaceTruncation::project().
+        values = truncation.projector[n] * (truncation.projector[n] * values);
         for (unsigned int i = 0; i < n_dofs; ++i)
           v.begin()[position[i]] = values[i];
       }

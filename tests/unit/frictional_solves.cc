@@ -161,4 +161,36 @@ namespace
     for (unsigned int i = 0; i < 3; ++i)
       EXPECT_LE(iterations["unilateral"][i], iterations["bilateral"][i] + 2);
   }
+
+
+
+  TYPED_TEST(FrictionalSolves, RoundingOfBlockedForcesIsBlocked)
+  {
+    // Beside the space no iteration could reduce it, and one on nothing else
+    // ends in values that are not finite.
+    constexpr int           dim = TypeParam::value;
+    const BulkScenario<dim> scenario(2, 1, false, "unilateral");
+    const FaceRestriction  &restriction = scenario.face->restriction();
+    const ContactLayout    &face        = scenario.face->layout();
+    Tensor<1, 3>            normal({0.7, 0.3, dim == 3 ? 0.9 : 0.});
+    normal /= normal.norm();
+    FaceTruncation truncation;
+    truncation.projector.assign(face.n_nodes(),
+                                Tensor<2, 3>(unit_symmetric_tensor<3>()));
+    Vector<double> x(face.n_dofs());
+    for (unsigned int node = 0; node < face.n_nodes(); ++node)
+      if (face.n_node_dofs(node) == dim)
+        {
+          truncation.projector[node] -= outer_product(normal, normal);
+          face.set_node_values((1. + node / 3.) * normal, node, x);
+        }
+    DistributedVector v(scenario.start);
+    restriction.set(x, v);
+    restriction.project(truncation, v);
+    x = restriction.gather(v);
+    Vector<double> again(x);
+    truncation.project(face, again);
+    again -= x;
+    EXPECT_LE(again.l2_norm(), 1e-14 * x.l2_norm());
+  }
 } // namespace

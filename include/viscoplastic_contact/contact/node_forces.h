@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/lac/full_matrix.h>
+
 #include <viscoplastic_contact/contact/contact_layout.h>
 #include <viscoplastic_contact/contact/coulomb_coefficients.h>
 
@@ -50,6 +52,39 @@ namespace Viscoplastic
     }
 
   private:
+    /// A row of a point that takes part: a component of its multiplier.
+    struct Column
+    {
+      unsigned int point, component;
+    };
+
+    /// By how much pressures change: of_force[j] times a change of the node's
+    /// force, of_spring[k][j] times one of the pressure k of a spring.
+    struct PressureChanges
+    {
+      std::vector<Tensor<1, 3>>        of_force;
+      std::vector<std::vector<double>> of_spring;
+    };
+
+    /// Those of what holds the node: changes of its multipliers of least norm
+    /// that make up for those of force and springs and keep friction at the
+    /// bounds it has reached.
+    PressureChanges
+    changes_of_what_holds() const;
+
+    /// Their equations, for the multipliers in @p columns: the force, then the
+    /// bounds of the points in @p limits.
+    FullMatrix<double>
+    equations(const std::vector<Column>       &columns,
+              const std::vector<unsigned int> &limits) const;
+
+    /// By how much springs press more with the node's force, obstacle by
+    /// obstacle: by how far the node moves. In the directions that are free
+    /// their forces, with the friction that follows from a unit of pressure,
+    /// are in balance with it: dual vectors tell which is which.
+    std::vector<Tensor<1, 3>>
+    springs_of_force(const PressureChanges &changes) const;
+
     /// Whether friction at a point has the direction of a slip.
     bool
     slips(const unsigned int p) const

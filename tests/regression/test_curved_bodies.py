@@ -255,6 +255,7 @@ class ShrinkFit(TestCase):
                 ranks,
             )
             errors.append(abs(result["max_pressure"][-1] / pressure - 1))
+        # measured: 1.8e-2, 5.7e-3, 1.5e-3 on the next
         self.assertLess(errors[1], errors[0] / 3)
         self.assertLess(errors[2], 0.03)
 
@@ -271,7 +272,13 @@ class ShrinkFit(TestCase):
             result = fit({**rings, "Geometry/Global refinements": level}, ranks)
             errors.append(abs(result["max_pressure"][-1] / self.pressure - 1))
         self.assertLess(errors[1], errors[0] / 3)
-        self.assertLess(errors[1], 0.002)
+        # measured: 2.9e-4, 7e-5
+        self.assertLess(errors[1], 1e-4)
+        far = {f"Boundary {end}/Role": "displacement" for end in (22, 23)}
+        far.update({f"Boundary {end}/Displacement": "free; 0.4*t" for end in (22, 23)})
+        self.assertRegex(
+            fit({**rings, **far}).stdout, r"slid along each other by 4\.\d times the"
+        )
 
     def test_spheres_with_hanging_nodes(self):
         """On the face of either, where nodes in the middle of edges are not on it."""

@@ -2,6 +2,9 @@
 """Contact between two bodies that deform: exact states, and the limits in which
 they are one."""
 
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
 from harness import COUPLED, TestCase, main, run, scene_file
@@ -82,6 +85,79 @@ class Blocks(TestCase):
                     "Geometry/Plane model": "axisymmetric",
                     "Geometry/Boundary refinements": sides,
                     "Solver/Linear solver": solver,
+                },
+            )
+
+    def test_three_bodies_on_a_foundation(self):
+        """Two pairs, one with the points on the lower side, the other on the upper."""
+        nu = 0.25
+        third = {
+            "Geometry/Generator": " | ".join(["subdivided_hyper_rectangle"] * 3),
+            "Geometry/Arguments": "7, 6 : 0, 0 : 1, 1 : true | "
+            "5, 4 : 0, 1 : 1, 2 : true | 6, 3 : 0, 2 : 1, 3 : true",
+            "Material 2/Young's modulus": 4,
+            "Material 2/Poisson's ratio": nu,
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Friction law": "none",
+            "Boundary 23/Role": "free",
+            "Boundary 23/Pressure": "",
+            "Boundary 40/Role": "symmetry",
+            "Boundary 41/Role": "free",
+            "Boundary 42/Role": "contact",
+            "Boundary 42/Against": 23,
+            "Boundary 42/Contact law": "unilateral",
+            "Boundary 42/Friction law": "none",
+            "Boundary 43/Role": "traction",
+            "Boundary 43/Pressure": "0.01*t",
+            "Output/Points": "1, 3",
+        }
+        for ranks in 1, 3:
+            result = run("two_blocks_2d", {**TIGHT, **third}, ranks=ranks)
+            down = 0.0139 + 0.01 * (1 - nu**2) / 4
+            self.assertClose(result["point0_y"][-1], -down, absolute=1e-12)
+            self.assertClose(result["max_pressure"][-1], 0.01, absolute=1e-12)
+
+    def test_mesh_file(self):
+        """Bodies in one file, which share no nodes."""
+        nodes, elements = [], []
+        for body, (n, m, bottom) in enumerate(((7, 6, 0), (5, 4, 1))):
+            first = len(nodes) + 1
+            nodes += [(i / n, bottom + j / m) for j in range(m + 1) for i in range(n + 1)]
+
+            def at(i, j, first=first, n=n):
+                return first + i + j * (n + 1)
+
+            sides = (
+                [(at(0, j), at(0, j + 1)) for j in range(m)],
+                [(at(n, j), at(n, j + 1)) for j in range(m)],
+                [(at(i, 0), at(i + 1, 0)) for i in range(n)],
+                [(at(i, m), at(i + 1, m)) for i in range(n)],
+            )
+            for side, lines in enumerate(sides):
+                elements += [(1, 20 * body + side, line) for line in lines]
+            elements += [
+                (3, body, (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)))
+                for j in range(m)
+                for i in range(n)
+            ]
+        lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", len(nodes)]
+        lines += [f"{k} {x!r} {y!r} 0" for k, (x, y) in enumerate(nodes, 1)]
+        lines += ["$EndNodes", "$Elements", len(elements)]
+        lines += [
+            f"{k} {kind} 2 {tag} {tag} {' '.join(map(str, corners))}"
+            for k, (kind, tag, corners) in enumerate(elements, 1)
+        ]
+        lines.append("$EndElements")
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "bodies.msh"
+            file.write_text("\n".join(map(str, lines)) + "\n")
+            self.check(
+                2,
+                **{
+                    "Geometry/File": file,
+                    "Geometry/Generator": "",
+                    "Geometry/Arguments": "",
                 },
             )
 
@@ -652,8 +728,8 @@ class Known(TestCase):
         modulus = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2)
         width = (3 * force / 4 / modulus / (1 / 2 + 1 / 4)) ** (1 / 3)
         pressure = 3 * force / 2 / np.pi / width**2
-        self.assertClose(result["max_pressure"][-1], pressure, 0.03)
-        # the last ring of nodes, of a width of 0.01
+        # measured: 0.3 % and 6 %, of which the last ring of nodes has 0.01/a
+        self.assertClose(result["max_pressure"][-1], pressure, 0.01)
         self.assertClose(result["contact_area"][-1], np.pi * width**2, 0.1)
 
     def test_edge_of_an_elastic_punch(self):

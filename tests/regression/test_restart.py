@@ -172,12 +172,12 @@ class Identical(RestartCase):
             "Boundary 21/Pressure": "2e-3*t*x^2",
             "Material 0/Law": "maxwell",
             "Material 0/maxwell/Viscosity": 3,
-            "Time/Phases": "2: 6",
+            "Time/Phases": "2: 4",
             "Mesh refinement/Strategy": "residual",
-            "Mesh refinement/Every n steps": 2,
+            "Mesh refinement/Every n steps": 1,
         }
         for ranks in 1, 2:
-            self.check("shrink_fit_2d", overrides, (3,), ranks)
+            self.check("shrink_fit_2d", overrides, (2,), ranks)
 
     def test_moving_foundation(self):
         self.check("conveyor_2d", {"Time/Phases": "1: 5, 2: 5"}, (3, 7))

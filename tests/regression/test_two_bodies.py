@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from harness import COUPLED, TestCase, main, run, scene_file
+from runs import Job
 
 SOLVERS = ("direct", "multigrid", "algebraic multigrid")
 TIGHT = {"Solver/Contact tolerance": 1e-12}
@@ -811,6 +812,15 @@ class Known(TestCase):
 
 class Refused(TestCase):
     refused_scene = ("two_blocks_2d", {}, None)
+
+    def test_overlap(self):
+        """Doubted by --check."""
+        for gap, is_told in ((-0.3, True), (-0.01, False)):
+            overlap = {"Boundary 3/Gap": gap, "Initial state/Equilibrate": "true"}
+            with Job("two_blocks_2d", overlap) as job:
+                words = " ".join(job.run("--check").stdout.split())
+            sentence = "boundary 3 overlaps the other body by 0.3, 13 % of the size"
+            (self.assertIn if is_told else self.assertNotIn)(sentence, words)
 
     def test_sentences(self):
         for changes, sentence in (

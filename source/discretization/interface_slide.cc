@@ -25,11 +25,15 @@ namespace Viscoplastic
               whole += area;
               if (rows.count(dof / dim) == 0)
                 uncovered += area;
-              else
-                nodes.push_back({space.relevant.index_within_set(dof),
-                                 space.normal_at(dof, condition),
-                                 std::pow(area, 1. / (dim - 1))});
             }
+        for (const auto &node : space.boundary_nodes())
+          if (rows.count(node.first_dof / dim) == 1)
+            nodes.push_back(
+              {space.relevant.index_within_set(node.first_dof),
+               space.normal_at(node.first_dof, condition),
+               std::pow(weights(node.first_dof) /
+                          extent(space.scene.plane_model(), node.position),
+                        1. / (dim - 1))});
         shares[id] = Utilities::MPI::sum(uncovered, space.communicator) /
                      Utilities::MPI::sum(whole, space.communicator);
       }

@@ -191,6 +191,8 @@ namespace Viscoplastic
                               measure(part) * quadrature.weight(q) *
                                 (d == 2 ? 2. : 1.),
                               0.};
+                sample.JxW *=
+                  extent(pair.plane_model, here.position(sample.here));
                 if (pair.normals == nullptr)
                   sample.there = reference_position<d>(window, x);
                 else

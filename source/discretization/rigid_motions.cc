@@ -100,10 +100,9 @@ namespace Viscoplastic
     const BodyParts        parts       = find_parts(*this);
     const bool             are_coupled = scene.has_contact_pairs();
     // Parts that see each other are looked at together.
+    const unsigned int n_together = (are_coupled ? parts.n : 1) * n_motions;
     std::vector<SeenMotions> seen(are_coupled ? 1 : parts.n,
-                                  SeenMotions(are_coupled ?
-                                                parts.n * n_motions :
-                                                n_motions));
+                                  SeenMotions(n_together));
     const auto group = [&](const unsigned int part) {
       return are_coupled ? 0 : part;
     };
@@ -112,7 +111,7 @@ namespace Viscoplastic
       {
         part_of_node.assign(node_position.size(), 0);
         for (const auto &cell : dof_handler.active_cell_iterators())
-          if (!cell->is_artificial())
+          if (!cell->is_artificial() && scene.is_present(cell->material_id()))
             for (const unsigned int v : cell->vertex_indices())
               if (const auto dof = cell->vertex_dof_index(v, 0);
                   owned.is_element(dof))
@@ -146,7 +145,7 @@ namespace Viscoplastic
                              const unsigned int    part,
                              const Point<dim>     &position,
                              const Tensor<1, dim> &direction) {
-      RigidMotion row(are_coupled ? parts.n * n_motions : n_motions, 0.);
+      RigidMotion row(n_together, 0.);
       set_part(row, part, position, direction);
       to.add(row);
     };
@@ -160,7 +159,7 @@ namespace Viscoplastic
       if (of_node == couplings_of_node.end())
         return add_row(to, part, node.position, direction);
       const Coupling &coupling = couplings[of_node->second[0].first];
-      RigidMotion     row(parts.n * n_motions, 0.);
+      RigidMotion     row(n_together, 0.);
       set_part(row, part, node.position, direction);
       set_part(row,
                static_cast<unsigned int>(
@@ -197,12 +196,13 @@ namespace Viscoplastic
     // A ring resists all but the translation along its axis.
     if (scene.is_axisymmetric())
       for (SeenMotions &of_part : seen)
-        for (const unsigned int motion : {0u, 2u})
-          {
-            RigidMotion row(n_motions, 0.);
-            row[motion] = 1.;
-            of_part.add(row);
-          }
+        for (unsigned int motion = 0; motion < n_together; ++motion)
+          if (motion % n_motions != 1)
+            {
+              RigidMotion row(n_together, 0.);
+              row[motion] = 1.;
+              of_part.add(row);
+            }
 
     if (scene.has_springs())
       {

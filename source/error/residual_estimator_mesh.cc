@@ -184,14 +184,11 @@ namespace Viscoplastic
     const BoundaryCondition<dim> &condition)
   {
     BoundaryFace face{};
-    face.cell      = number;
-    face.face      = f;
-    face.condition = &condition;
-    face.diameter  = cell->face(f)->diameter();
-    for (const auto &of_boundary : stress_space.space.mortar_rows)
-      face.is_other_side |=
-        stress_space.space.scene.boundary.at(of_boundary.first).against ==
-        condition.id;
+    face.cell          = number;
+    face.face          = f;
+    face.condition     = &condition;
+    face.diameter      = cell->face(f)->diameter();
+    face.is_other_side = stress_space.space.scene.is_other_side(condition.id);
     const FaceShape &shape = shapes[cells[number].shape].faces[f];
     for (unsigned int q = 0; q < n_face_points; ++q)
       {

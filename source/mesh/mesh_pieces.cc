@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <vector>
 
 namespace Viscoplastic
 {
@@ -86,6 +88,44 @@ namespace Viscoplastic
 
 
   template <int dim>
+  double
+  largest_angle(const parallel::distributed::Triangulation<dim> &triangulation,
+                const types::boundary_id                         id)
+  {
+    // Ghosts are all cells around a vertex of an owned one.
+    std::map<unsigned int, std::vector<Tensor<1, dim>>> normals;
+    double                                              chord = 0.;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->at_boundary(f) && cell->face(f)->boundary_id() == id)
+            {
+              const auto           face = cell->face(f);
+              const Tensor<1, dim> a =
+                face->vertex(face->n_vertices() - 1) - face->vertex(0);
+              Tensor<1, dim> normal;
+              if constexpr (dim == 2)
+                normal = cross_product_2d(a);
+              else
+                normal = cross_product_3d(a, face->vertex(2) - face->vertex(1));
+              normal /= normal.norm();
+              if (normal * (face->center() - cell->center()) < 0.)
+                normal *= -1.;
+              for (const unsigned int v : face->vertex_indices())
+                {
+                  auto &others = normals[face->vertex_index(v)];
+                  for (const Tensor<1, dim> &other : others)
+                    chord = std::max(chord, (normal - other).norm());
+                  others.push_back(normal);
+                }
+            }
+    chord = Utilities::MPI::max(chord, triangulation.get_communicator());
+    return 2. * std::asin(std::min(1., chord / 2.)) * 180. / numbers::PI;
+  }
+
+
+
+  template <int dim>
   bool
   faces_towards(const parallel::distributed::Triangulation<dim> &triangulation,
                 const types::boundary_id                         id,
@@ -109,6 +149,12 @@ namespace Viscoplastic
   template PieceNormal<3>
   piece_normal(const parallel::distributed::Triangulation<3> &,
                const types::boundary_id);
+  template double
+  largest_angle(const parallel::distributed::Triangulation<2> &,
+                const types::boundary_id);
+  template double
+  largest_angle(const parallel::distributed::Triangulation<3> &,
+                const types::boundary_id);
   template bool
   faces_towards(const parallel::distributed::Triangulation<2> &,
                 const types::boundary_id,

@@ -146,6 +146,30 @@ namespace Viscoplastic
 
 
 
+    /// By how much two bodies overlap at first, at the nodes of a boundary.
+    /// Collective.
+    template <int dim>
+    double
+    largest_overlap(const AdmissibleSpace<dim>   &space,
+                    const BoundaryCondition<dim> &condition)
+    {
+      const MortarRows &rows   = space.mortar_rows.at(condition.id);
+      double            result = 0.;
+      for (const auto &node : space.boundary_nodes())
+        if (rows.count(node.first_dof / dim) == 1)
+          {
+            const auto &coupling = space.coupling_at(node.first_dof);
+            const auto  apart    = space.normal_at(node.first_dof, condition) *
+                                 (coupling.opposite - node.position) +
+                               coupling.bulge +
+                               condition.gap(node.position, 0.);
+            result = std::max(result, -apart);
+          }
+      return Utilities::MPI::max(result, space.communicator);
+    }
+
+
+
     /// The largest of the values, or norms, of data at places and times.
     template <int dim>
     class DataSampler
@@ -350,6 +374,17 @@ namespace Viscoplastic
                          with_unit(one.youngs_modulus.largest) +
                          ", its default, beside " + with_unit(stress.value) +
                          ", " + stress.origin + ".");
+    const double size = size_of_body(discretization);
+    for (const auto &[id, condition] : scene.boundary)
+      if (condition.against && condition.is_unilateral())
+        if (const double overlap =
+              largest_overlap(discretization.space, condition);
+            overlap > 0.05 * size)
+          result.push_back(
+            scene.names.of("boundary", id) + " overlaps the other body by " +
+            number(overlap) + units.suffix(Quantity::length, dim) + ", " +
+            number(std::round(100. * overlap / size)) +
+            " % of the size of both; small strains are assumed.");
     if (!units.are_declared())
       return result;
 

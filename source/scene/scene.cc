@@ -125,6 +125,17 @@ namespace Viscoplastic
 
   template <int dim>
   bool
+  Scene<dim>::is_other_side(const types::boundary_id id) const
+  {
+    return std::any_of(boundary.begin(), boundary.end(), [id](const auto &b) {
+      return b.second.against == id;
+    });
+  }
+
+
+
+  template <int dim>
+  bool
   Scene<dim>::has_contact_pairs() const
   {
     return std::any_of(boundary.begin(), boundary.end(), [](const auto &pair) {

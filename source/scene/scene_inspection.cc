@@ -59,10 +59,6 @@ namespace Viscoplastic
     make_materials(material_ids(triangulation));
     inspect_temperature(triangulation);
     find_stages(triangulation);
-    AssertThrow(!has_contact_pairs() || !has_stages(),
-                ExcMessage("Contact between two bodies ('Against') cannot be "
-                           "combined with materials that are added or "
-                           "removed."));
     for (const std::string &warning : check_output_places(*this, triangulation))
       warnings.push_back(warning);
     if (exact_solution)
@@ -112,10 +108,7 @@ namespace Viscoplastic
     const parallel::distributed::Triangulation<dim> &triangulation) const
   {
     const std::string model = "'Geometry/Plane model' = axisymmetric";
-    AssertThrow(!has_contact_pairs(),
-                ExcMessage(model + " does not go with contact between two "
-                                   "bodies ('Against')."));
-    double least = 0.; // beyond the axis, in units of a cell
+    double            least = 0.; // beyond the axis, in units of a cell
     for (const auto &cell : triangulation.active_cell_iterators())
       if (!cell->is_artificial())
         for (const unsigned int v : cell->vertex_indices())
@@ -192,6 +185,25 @@ namespace Viscoplastic
 
   template <int dim>
   void
+  Scene<dim>::inspect_curve(const types::boundary_id id, const double angle)
+  {
+    if (angle <= 30.)
+      return;
+    std::ostringstream message;
+    message << "The faces of boundary " << id
+            << ", which is in contact with another body, meet at an angle of "
+            << angle
+            << " degrees, and normals at their nodes are means of theirs: "
+               "give the parts beside an edge boundary ids of their own, and a "
+               "curve more cells.";
+    AssertThrow(angle <= 60., ExcMessage(message.str()));
+    warnings.push_back(message.str());
+  }
+
+
+
+  template <int dim>
+  void
   Scene<dim>::inspect_flatness(
     const parallel::distributed::Triangulation<dim> &triangulation)
   {
@@ -214,7 +226,11 @@ namespace Viscoplastic
           condition.normal_varies =
             condition.against.has_value() && piece.deviation > tolerance;
           if (condition.normal_varies)
-            continue;
+            {
+              for (const types::boundary_id side : {id, *condition.against})
+                inspect_curve(side, largest_angle(triangulation, side));
+              continue;
+            }
           std::ostringstream message;
           message << "Boundary " << id << " has the role "
                   << (condition.role == BoundaryRole::contact ? "contact" :
@@ -254,15 +270,7 @@ namespace Viscoplastic
           {
             const bool is_contact =
               other_id != id && other.role == BoundaryRole::contact;
-            const bool is_other_side =
-              other_id == *condition.against ||
-              (other.against && *other.against != *condition.against) ||
-              std::any_of(boundary.begin(),
-                          boundary.end(),
-                          [other_id = other_id](const auto &pair) {
-                            return pair.second.against == other_id;
-                          });
-            if (!is_contact && !is_other_side)
+            if (!is_contact && !is_other_side(other_id))
               continue;
             for (const auto &[vertex, ids] : ids_of_vertex)
               AssertThrow(other_id == id || ids.count(id) == 0 ||

@@ -54,11 +54,13 @@ namespace Viscoplastic
               {
                 const types::boundary_id      id = cell->face(f)->boundary_id();
                 const BoundaryCondition<dim> &condition = scene.boundary.at(id);
-                const bool is_contact = condition.role == BoundaryRole::contact;
+                const bool                    is_contact =
+                  condition.role == BoundaryRole::contact ||
+                  scene.is_other_side(id);
                 AssertThrow(!is_contact && !condition.has_springs(),
                             ExcMessage(
                               "Boundary " + std::to_string(id) + " has " +
-                              (is_contact ? "the role contact" : "springs") +
+                              (is_contact ? "contact" : "springs") +
                               " and a part in '" +
                               scene.material(cell->material_id()).section +
                               "', which is added or removed; the pieces " +

@@ -106,6 +106,67 @@ class ShrinkFit(TestCase):
             self.assertEqual(result["contact_area"][-1], 0)
             self.assertRegex(result.stdout, "met by the estimate alone: the mesh is too")
 
+    def test_error_bar_between_rings(self):
+        """Of equal rings under a pressure from outside, which are one ring: the face
+        between them adds no error, and what it has is in the estimate."""
+        a, _, c = RADII
+        nu = RATIOS[0]
+        mean = 0.001 * c**2 / (c**2 - a**2)
+        u = f"-t*{mean * (1 + nu)}*({1 - 2 * nu} + {a**2}/(x^2 + y^2))"
+        for law, friction, ranks in (
+            ("unilateral", "none", 1),
+            ("bilateral", "glued", 2),
+        ):
+            errors = []
+            for level in 1, 2:
+                result = fit(
+                    {
+                        "Geometry/Global refinements": level,
+                        "Boundary 1/Contact law": law,
+                        "Boundary 1/Friction law": friction,
+                        "Boundary 1/Gap": 0,
+                        "Boundary 21/Role": "traction",
+                        "Boundary 21/Pressure": "0.001*t",
+                        "Initial state/Equilibrate": "false",
+                        "Material 1/Young's modulus": MODULI[0],
+                        "Material 1/Poisson's ratio": nu,
+                        "Exact solution/Displacement": f"x*{u}; y*{u}",
+                        "Error control/Error bar": "true",
+                    },
+                    ranks,
+                )
+                errors.append(result["error_energy"][-1])
+                # measured: 1.17, 1.15
+                effectivity = result["estimate_space"][-1] / errors[-1]
+                self.assertGreater(effectivity, 1)
+                self.assertLess(effectivity, 1.25)
+            self.assertGreater(errors[0] / errors[1], 1.8)
+
+    def test_edges(self):
+        """Refused where faces of one boundary id meet at an edge, doubted where an
+        arc has few cells."""
+        box = {
+            "Dimension": 2,
+            "Geometry/Generator": "hyper_rectangle | hyper_rectangle",
+            "Geometry/Arguments": "0, 0 : 1, 1 : false | 0, 1 : 1, 2 : false",
+            "Boundary 0/Role": "free",
+            "Boundary 20/Role": "contact",
+            "Boundary 20/Against": 0,
+            "Boundary 20/Contact law": "unilateral",
+            "Boundary 20/Friction law": "none",
+            "Time/Phases": "1: 1",
+        }
+        box.update({f"Material {n}/Young's modulus": 1 for n in (0, 1)})
+        box.update({f"Material {n}/Poisson's ratio": 0.3 for n in (0, 1)})
+        self.assertRefused(
+            run("box", box, text="", check=False),
+            "The faces of boundary 20, which is",
+            "meet at an angle of 90 degrees",
+        )
+        few = {"Geometry/Arguments": "0, 0 : 1 : 2 : 2 : true | 0, 0 : 2 : 3 : 3 : true"}
+        words = " ".join(fit({**few, "Geometry/Global refinements": 0}).stdout.split())
+        self.assertIn("meet at an angle of 45 degrees", words)
+
     def test_whole_rings(self):
         result = fit_of_whole_rings(
             {
@@ -177,6 +238,47 @@ class ShrinkFit(TestCase):
             self.assertClose(result["cells"], alone["cells"])
             for column in "max_pressure", "stored_energy", "slip_area":
                 self.assertClose(result[column], alone[column], relative=1e-7)
+
+    def test_bodies_of_revolution(self):
+        """The section of the spheres, and that of rings of any height; on ranks, with
+        hanging nodes."""
+        spheres = {"Geometry/Plane model": "axisymmetric"}
+        pressure = 0.001 / gives_way(3)
+        errors = []
+        for level, ranks, sides in (1, 1, ""), (2, 3, ""), (2, 1, "20: 1, 2: 1"):
+            result = fit(
+                {
+                    **spheres,
+                    "Geometry/Global refinements": level,
+                    "Geometry/Boundary refinements": sides,
+                },
+                ranks,
+            )
+            errors.append(abs(result["max_pressure"][-1] / pressure - 1))
+        # measured: 1.8e-2, 5.7e-3, 1.5e-3 on the next
+        self.assertLess(errors[1], errors[0] / 3)
+        self.assertLess(errors[2], 0.03)
+
+        rings = {
+            **spheres,
+            "Geometry/Generator": "subdivided_hyper_rectangle"
+            " | subdivided_hyper_rectangle",
+            "Geometry/Arguments": "6, 3 : 1, 0 : 2, 1 : true"
+            " | 8, 4 : 2, 0 : 3, 1 : true",
+            "Output/Points": "2, 0.5",
+        }
+        errors = []
+        for level, ranks in (1, 2), (2, 1):
+            result = fit({**rings, "Geometry/Global refinements": level}, ranks)
+            errors.append(abs(result["max_pressure"][-1] / self.pressure - 1))
+        self.assertLess(errors[1], errors[0] / 3)
+        # measured: 2.9e-4, 7e-5
+        self.assertLess(errors[1], 1e-4)
+        far = {f"Boundary {end}/Role": "displacement" for end in (22, 23)}
+        far.update({f"Boundary {end}/Displacement": "free; 0.4*t" for end in (22, 23)})
+        self.assertRegex(
+            fit({**rings, **far}).stdout, r"slid along each other by 4\.\d times the"
+        )
 
     def test_spheres_with_hanging_nodes(self):
         """On the face of either, where nodes in the middle of edges are not on it."""

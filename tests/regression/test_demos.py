@@ -992,5 +992,32 @@ class TunnelLining(TestCase):
         )
 
 
+class LapJoint(TestCase):
+    """Two bodies: friction that slips at the ends of what bolts press together."""
+
+    def test_loop(self):
+        result = run("lap_joint_2d")
+        self.check_identities(result, COUPLED)
+        t, force = result["t"], result["friction_force_x"]
+        pull = 0.18e6 * np.interp(t, [0, 1, 2, 4, 6], [0, 0, 1, -1, 1])
+        self.assertClose(force, pull, absolute=1e-5 * 0.18e6)
+        self.assertClose(result["contact_force_y"][5:], -1e6, relative=1e-5)
+        # some of it sticks at any time, and slip begins anew when the load turns
+        self.assertGreater(result["stick_area"][1:].min(), 4e-3)
+        slips = result["slip_area"]
+        self.assertLess(slips[16], slips[15] / 3)
+        # from one pull to the next one the work done at the grip is turned to heat
+        cycle = t >= 2
+        grip, heat = result["point0_x"][cycle], result["friction_dissipation"][cycle]
+        work = -np.trapz(force[cycle], grip)
+        self.assertClose(heat[-1] - heat[0], work, relative=0.02)
+        # Masing: half of the cycle is the first pull, twice as large
+        first, back = (
+            abs(result["point0_x"][a] - result["point0_x"][b])
+            for a, b in ((15, 5), (35, 15))
+        )
+        self.assertClose(back / first, 2, relative=0.02)
+
+
 if __name__ == "__main__":
     main()

@@ -23,6 +23,7 @@ from harness import (
     as_prm,
     main,
     run_study,
+    scene_file,
     study_command,
     study_environment,
 )
@@ -287,6 +288,21 @@ class Variants(TestCase):
             ],
         )
 
+    def test_of_two_bodies(self):
+        """Either of them rigid; the pressure between them cannot be given."""
+        found = {
+            (variant.effect, variant.instead): variant.overrides
+            for variant in self.of(
+                scene_file("salt_pillar_rock_2d").read_text(), force="1e6*t"
+            )
+        }
+        overrides = found["deformation of sandstone", "rigid"]
+        self.assertIn("Material 1/Young's modulus=1e4*(15e9)", overrides)
+        self.assertIn(
+            "Material 0/Law=elastic", found["deformation of rock salt", "rigid"]
+        )
+        self.assertNotIn("computed pressure on seam", [effect for effect, _ in found])
+
     def test_anisotropy(self):
         found = self.words(
             SQUARE + "subsection Material\nset Voigt matrix = 3, 1, 1, 0, 0, 0; "
@@ -458,6 +474,22 @@ class Effects(TestCase):
             self.assertEqual(verdicts["viscous flow", "elastic"], "never acted")
             self.assertEqual(verdicts["slip on Boundary 2", "never"], "never acted")
             self.assertEqual(verdicts["friction on Boundary 2", "none"], "called for")
+
+    def test_of_two_bodies(self):
+        """What it costs that one of them is rigid."""
+        with Case(VERIFICATION / "two_blocks_2d.prm", Study__Budget=1e5) as scene:
+            process = scene.run("effects")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            (effect,) = [
+                effect
+                for effect in scene.about()["effects"]
+                if effect["effect"] == "deformation of Material 1"
+            ]
+            self.assertEqual(effect["verdict"], "called for")
+            changes = effect["changes"]
+            # u_y of the top is -p sum (1 - nu^2)/E
+            self.assertClose(changes["point0"]["change"], 0.0048 / 0.0139, relative=0.1)
+            self.assertNotIn("energy_norm", changes)
 
     def test_what_cannot_be_left_out(self):
         """Steps that only backward Euler can take."""

@@ -94,6 +94,40 @@ class Published(TestCase):
         self.assertGreater(rough, pressure)
         self.assertLess(rough, 1.03 * pressure)
 
+    def test_roller_on_a_stiff_plate(self):
+        """MOOSE, modules/contact/test/tests/pdass_problems/cylinder_friction.i: half of
+        a cylinder of radius 3 pressed by 0.006 onto a plate 10 000 times as stiff, with
+        the friction coefficient 0.4. The file of results has the pressure at the nodes,
+        0.25 degrees apart; by large strains."""
+        angle = "(1.4835*(0.08*x + 0.92*x^3))"
+        roller = {
+            "Geometry/Arguments": "40, 6 : 0, -1 : 1, 0 : true | 48, 40 : 0, 1 : 1, 2 : true",
+            "Geometry/Coordinates": f"if(y < 0.5, 0.4*x + 4.6*x^3, 3*sin{angle}); "
+            "if(y < 0.5, 1 + 0.2*y + 0.8*y^3, "
+            f"4 - 3*cos{angle}*(1 - 0.05*(y - 1) - 0.95*(y - 1)^3))",
+            "Material 0/Young's modulus": 1e10,
+            "Material 0/Poisson's ratio": 0,
+            "Material 1/Young's modulus": 1e6,
+            "Boundary 23/Role": "displacement",
+            "Boundary 23/Displacement": "0; -0.006*t",
+            "Time/Phases": "1: 3",
+        }
+        friction = {
+            "Boundary 22/Friction law": "coulomb",
+            "Boundary 22/Friction coefficient": 0.4,
+        }
+        smooth, rough = (
+            run("literature/roller_on_block", {**roller, **more})
+            for more in ({}, friction)
+        )
+        theirs = [18314.63, 18088.35, 17412.93, 16285.27, 14682.57, 12505.79, 7990.11]
+        self.assertClose(rough["max_pressure"][-1], theirs[0], relative=0.01)
+        # of a half: measured 1.0 % less
+        force = (sum(theirs) - theirs[0] / 2) * 3 * np.radians(0.25)
+        self.assertClose(-rough["contact_force_y"][-1], force, relative=0.015)
+        # friction counts
+        self.assertLess(smooth["max_pressure"][-1], 0.95 * rough["max_pressure"][-1])
+
     def test_punch_with_friction(self):
         """Spence: between two points of friction, and what the closed form leaves
         out (0.006)."""

@@ -193,6 +193,7 @@ SCENES = {
                 **phases("0.02: 2, 0.3: 3, 0.5: 6, 0.52: 2, 1.5: 8"),
             }
         ),
+        "demos/lap_joint_2d": Scene({**refined(0), **phases("1: 1, 2: 2, 4: 4, 6: 4")}),
         "demos/rod_seal_2d": Scene(
             {
                 "Geometry/File": SOURCE / "prm" / "demos" / "rod_seal_2d.msh",

@@ -162,6 +162,23 @@ class Identical(RestartCase):
         }
         self.check("salt_pillar_2d", overrides, (4,))
 
+    def test_adaptive_curved_pair(self):
+        """Normals at nodes, gaps and what lies opposite are made anew."""
+        overrides = {
+            "Geometry/Global refinements": 1,
+            "Boundary 1/Friction law": "coulomb",
+            "Boundary 1/Friction coefficient": 0.2,
+            "Boundary 21/Role": "traction",
+            "Boundary 21/Pressure": "2e-3*t*x^2",
+            "Material 0/Law": "maxwell",
+            "Material 0/maxwell/Viscosity": 3,
+            "Time/Phases": "2: 4",
+            "Mesh refinement/Strategy": "residual",
+            "Mesh refinement/Every n steps": 1,
+        }
+        for ranks in 1, 2:
+            self.check("shrink_fit_2d", overrides, (2,), ranks)
+
     def test_moving_foundation(self):
         self.check("conveyor_2d", {"Time/Phases": "1: 5, 2: 5"}, (3, 7))
 

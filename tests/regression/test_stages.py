@@ -332,7 +332,7 @@ class Refused(TestCase):
             ),
             (
                 {"Boundary 3/Role": "contact", "Boundary 3/Friction law": "none"},
-                "Boundary 3 has the role contact and a part in 'Material 2'",
+                "Boundary 3 has contact and a part in 'Material 2'",
             ),
             (
                 {

@@ -2,9 +2,13 @@
 """Contact between two bodies that deform: exact states, and the limits in which
 they are one."""
 
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
 from harness import COUPLED, TestCase, main, run, scene_file
+from runs import Job
 
 SOLVERS = ("direct", "multigrid", "algebraic multigrid")
 TIGHT = {"Solver/Contact tolerance": 1e-12}
@@ -13,14 +17,17 @@ TIGHT = {"Solver/Contact tolerance": 1e-12}
 class Blocks(TestCase):
     """two_blocks_2d and _3d: a constant pressure passes the interface as it is."""
 
-    def check(self, dim, ranks=1, **more):
+    def check(self, dim, ranks=1, is_round=False, **more):
         more = {path.replace("_", " "): value for path, value in more.items()}
         result = run(f"two_blocks_{dim}d", {**TIGHT, **more}, ranks=ranks)
         self.check_identities(result, 1e-12)
         p, close = 0.01, {"absolute": 1e-12}
         down = "xyz"[dim - 1]
         moduli = [(1, 0.3), (2, 0.2)]
-        if dim == 2:
+        area = 1
+        if is_round:
+            area = np.pi
+        elif dim == 2:
             moduli = [(E / (1 - nu**2), nu / (1 - nu)) for E, nu in moduli]
         self.assertClose(
             result[f"point0_{down}"][-1], -sum(p / E for E, nu in moduli), **close
@@ -28,7 +35,7 @@ class Blocks(TestCase):
         E, nu = moduli[1]
         self.assertClose(result["point0_x"][-1], nu * p / E, **close)
         self.assertClose(result["max_pressure"][-1], p, **close)
-        self.assertClose(result[f"contact_force_{down}"][-1], p, **close)
+        self.assertClose(result[f"contact_force_{down}"][-1], p * area, **close)
         self.assertLess(result["estimate_space"][-1], 1e-12)
         # its second point is on the interface
         warned = "Warning: 'Output/Points': point 1 lies in both bodies"
@@ -67,6 +74,96 @@ class Blocks(TestCase):
                             "Solver/Linear solver": solver,
                         },
                     )
+
+    def test_bodies_of_revolution(self):
+        for sides, ranks, solver in (
+            ("", 1, "direct"),
+            ("0: 1, 22: 2", 2, "multigrid"),
+            ("23: 1, 3: 1", 3, "algebraic multigrid"),
+        ):
+            self.check(
+                2,
+                ranks,
+                is_round=True,
+                **{
+                    "Geometry/Plane model": "axisymmetric",
+                    "Geometry/Boundary refinements": sides,
+                    "Solver/Linear solver": solver,
+                },
+            )
+
+    def test_three_bodies_on_a_foundation(self):
+        """Two pairs, one with the points on the lower side, the other on the upper."""
+        nu = 0.25
+        third = {
+            "Geometry/Generator": " | ".join(["subdivided_hyper_rectangle"] * 3),
+            "Geometry/Arguments": "7, 6 : 0, 0 : 1, 1 : true | "
+            "5, 4 : 0, 1 : 1, 2 : true | 6, 3 : 0, 2 : 1, 3 : true",
+            "Material 2/Young's modulus": 4,
+            "Material 2/Poisson's ratio": nu,
+            "Boundary 2/Role": "contact",
+            "Boundary 2/Contact law": "unilateral",
+            "Boundary 2/Friction law": "none",
+            "Boundary 23/Role": "free",
+            "Boundary 23/Pressure": "",
+            "Boundary 40/Role": "symmetry",
+            "Boundary 41/Role": "free",
+            "Boundary 42/Role": "contact",
+            "Boundary 42/Against": 23,
+            "Boundary 42/Contact law": "unilateral",
+            "Boundary 42/Friction law": "none",
+            "Boundary 43/Role": "traction",
+            "Boundary 43/Pressure": "0.01*t",
+            "Output/Points": "1, 3",
+        }
+        for ranks in 1, 3:
+            result = run("two_blocks_2d", {**TIGHT, **third}, ranks=ranks)
+            down = 0.0139 + 0.01 * (1 - nu**2) / 4
+            self.assertClose(result["point0_y"][-1], -down, absolute=1e-12)
+            self.assertClose(result["max_pressure"][-1], 0.01, absolute=1e-12)
+
+    def test_mesh_file(self):
+        """Bodies in one file, which share no nodes."""
+        nodes, elements = [], []
+        for body, (n, m, bottom) in enumerate(((7, 6, 0), (5, 4, 1))):
+            first = len(nodes) + 1
+            nodes += [(i / n, bottom + j / m) for j in range(m + 1) for i in range(n + 1)]
+
+            def at(i, j, first=first, n=n):
+                return first + i + j * (n + 1)
+
+            sides = (
+                [(at(0, j), at(0, j + 1)) for j in range(m)],
+                [(at(n, j), at(n, j + 1)) for j in range(m)],
+                [(at(i, 0), at(i + 1, 0)) for i in range(n)],
+                [(at(i, m), at(i + 1, m)) for i in range(n)],
+            )
+            for side, lines in enumerate(sides):
+                elements += [(1, 20 * body + side, line) for line in lines]
+            elements += [
+                (3, body, (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)))
+                for j in range(m)
+                for i in range(n)
+            ]
+        lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", len(nodes)]
+        lines += [f"{k} {x!r} {y!r} 0" for k, (x, y) in enumerate(nodes, 1)]
+        lines += ["$EndNodes", "$Elements", len(elements)]
+        lines += [
+            f"{k} {kind} 2 {tag} {tag} {' '.join(map(str, corners))}"
+            for k, (kind, tag, corners) in enumerate(elements, 1)
+        ]
+        lines.append("$EndElements")
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "bodies.msh"
+            file.write_text("\n".join(map(str, lines)) + "\n")
+            self.check(
+                2,
+                **{
+                    "Geometry/File": file,
+                    "Geometry/Generator": "",
+                    "Geometry/Arguments": "",
+                },
+            )
 
     def test_what_holds_a_node_beside_contact_stays(self):
         """The side x = 0 is held below the interface and comes out above it."""
@@ -169,10 +266,10 @@ class Limits(TestCase):
         one = run(
             "one_block",
             {
+                "Geometry/Material ids": f"if(y < {height}, 0, 1)",
                 **common,
                 "Geometry/Generator": "subdivided_hyper_rectangle",
                 "Geometry/Arguments": f"{n}, {2 * m} : 0, 0 : 1, {2 * height} : true",
-                "Geometry/Material ids": f"if(y < {height}, 0, 1)",
                 "Boundary 3/Role": "traction",
                 "Boundary 3/Contact law": "not given",
                 "Boundary 3/Against": "",
@@ -198,6 +295,66 @@ class Limits(TestCase):
             scale = abs(one[column]).max()
             self.assertClose(two[column], one[column], absolute=1e-10 * scale)
         self.assertGreater(abs(one["point0_x"]).max(), 0.05)
+
+    def test_iterations(self):
+        """Of glued bodies as many as of one."""
+        for solver in SOLVERS[1:]:
+            common = {
+                "Solver/Linear solver": solver,
+                "Geometry/Global refinements": 2,
+                "Time/Phases": "1: 1",
+            }
+            results = self.pair_and_one((8, 8), 1, {"Pressure": "0.01*t*x"}, **common)
+            two, one = (result["linear_iterations"][-1] for result in results)
+            self.assertLessEqual(abs(two - one), 3)
+
+    def test_stages_beside_contact(self):
+        """What comes and goes away from the interface does so as in one body."""
+        for stage in "Removed at", "Added at":
+            two, one = self.pair_and_one(
+                (6, 4),
+                1,
+                {"Pressure": 0, "Traction": "0.002*t; 0"},
+                **{
+                    "Geometry/Material ids": "if(y < 1, 0, if(y < 1.5, 1, 2))",
+                    "Material/Stress history": "quadrature points",
+                    "Material 2/Young's modulus": 3,
+                    "Material 2/Poisson's ratio": 0.25,
+                    "Material 2/Law": "maxwell",
+                    "Material 2/maxwell/Viscosity": 2,
+                    f"Material 2/{stage}": 1,
+                    "Loads/Body force": "0; -0.01",
+                    "Initial state/Equilibrate": "true",
+                    "Time/Phases": "1: 2, 2: 2",
+                    "Output/Points": "0.5, 1.5; 0.5, 0.75",
+                },
+            )
+            columns = "point0_x", "point0_y", "point1_y", "strain_energy"
+            for column in (*columns, "construction_energy", "load_y"):
+                scale = abs(one[column]).max()
+                self.assertClose(two[column], one[column], absolute=1e-9 * scale)
+            self.assertGreater(abs(one["construction_energy"][-1]), 0)
+        for ranks in 1, 2:
+            result = run(
+                "two_blocks_2d",
+                {
+                    **TIGHT,
+                    "Geometry/Material ids": "if(y < 1, 0, if(y < 1.5, 1, 2))",
+                    "Geometry/Boundary refinements": "0: 1",
+                    "Material 2/Young's modulus": 3,
+                    "Material 2/Poisson's ratio": 0.25,
+                    "Material 2/Removed at": 1,
+                    "Loads/Body force": "0; -0.01",
+                    "Boundary 23/Pressure": 0,
+                    "Initial state/Equilibrate": "true",
+                    "Time/Phases": "1: 1, 2: 1",
+                    "Output/Points": "",
+                },
+                ranks=ranks,
+            )
+            self.assertClose(
+                result["contact_force_y"], [0.01, 0.01, 0.005], absolute=1e-8
+            )
 
     def test_glue_in_the_error_bar(self):
         """Layers of one cell, whose tractions meet at the glue alone: it counts like
@@ -555,6 +712,30 @@ class Known(TestCase):
         self.assertClose(result["stick_area"][1:], sticks, absolute=2 * cell)
         self.assertLess(sticks[-1], 0.5 * width[-1])
 
+    def test_hertz_of_balls(self):
+        """Of radii 2 and 4, as bodies of revolution."""
+        result = run(
+            "two_blocks_2d",
+            {
+                "Geometry/Plane model": "axisymmetric",
+                "Geometry/Arguments": "40, 40 : 0, -1 : 1, 0 : true | "
+                "36, 30 : 0, 0.5 : 1, 1.5 : true",
+                "Geometry/Coordinates": PARABOLAS,
+                "Boundary 2/Role": "clamped",
+                "Boundary 3/Foundation normal": "0, 1",
+                "Boundary 23/Role": "displacement",
+                "Boundary 23/Displacement": "0; -0.01*t",
+                "Output/Points": "",
+            },
+        )
+        force = result["contact_force_y"][-1]
+        modulus = 1 / ((1 - 0.3**2) / 1 + (1 - 0.2**2) / 2)
+        width = (3 * force / 4 / modulus / (1 / 2 + 1 / 4)) ** (1 / 3)
+        pressure = 3 * force / 2 / np.pi / width**2
+        # measured: 0.3 % and 6 %, of which the last ring of nodes has 0.01/a
+        self.assertClose(result["max_pressure"][-1], pressure, 0.01)
+        self.assertClose(result["contact_area"][-1], np.pi * width**2, 0.1)
+
     def test_edge_of_an_elastic_punch(self):
         """The pressure of a quarter plane on a half plane of the same material, without
         friction, grows like r^-0.226 towards the edge (Dundurs and Lee, J. Elasticity
@@ -635,6 +816,15 @@ class Known(TestCase):
 class Refused(TestCase):
     refused_scene = ("two_blocks_2d", {}, None)
 
+    def test_overlap(self):
+        """Doubted by --check."""
+        for gap, is_told in ((-0.3, True), (-0.01, False)):
+            overlap = {"Boundary 3/Gap": gap, "Initial state/Equilibrate": "true"}
+            with Job("two_blocks_2d", overlap) as job:
+                words = " ".join(job.run("--check").stdout.split())
+            sentence = "boundary 3 overlaps the other body by 0.3, 13 % of the size"
+            (self.assertIn if is_told else self.assertNotIn)(sentence, words)
+
     def test_sentences(self):
         for changes, sentence in (
             ({"Boundary 3/Against": "seabed"}, "is no boundary of the scene"),
@@ -652,7 +842,7 @@ class Refused(TestCase):
             ({"Boundary 3/Role": "free"}, "are not connected"),
             (
                 {"Material 1/Removed at": 0.5, "Time/Phases": "0.5: 1, 1: 1"},
-                "cannot be combined with materials",
+                "Boundary 22 has contact and a part in 'Material 1', which is added or",
             ),
             ({"Boundary 20/Role": "free"}, "of one of the 2 bodies"),
         ):

@@ -191,7 +191,8 @@ namespace Viscoplastic
       return {condition.id,
               *condition.against,
               condition.normal,
-              condition.normal_varies ? surface_normals.get() : nullptr};
+              condition.normal_varies ? surface_normals.get() : nullptr,
+              scene.plane_model()};
     }
 
     /// Write the prescribed values at time t into a vector in frames.

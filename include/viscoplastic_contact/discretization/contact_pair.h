@@ -2,6 +2,7 @@
 #pragma once
 
 #include <viscoplastic_contact/discretization/surface_normals.h>
+#include <viscoplastic_contact/mesh/plane_model.h>
 
 namespace Viscoplastic
 {
@@ -13,6 +14,7 @@ namespace Viscoplastic
   {
     types::boundary_id         secondary, primary;
     Tensor<1, dim>             normal;
-    const SurfaceNormals<dim> *normals = nullptr;
+    const SurfaceNormals<dim> *normals     = nullptr;
+    PlaneModel                 plane_model = PlaneModel::strain;
   };
 } // namespace Viscoplastic

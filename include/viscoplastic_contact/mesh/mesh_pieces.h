@@ -29,6 +29,13 @@ namespace Viscoplastic
   piece_normal(const parallel::distributed::Triangulation<dim> &triangulation,
                const types::boundary_id                         id);
 
+  /// The largest angle between the normals of faces with this @p id that share
+  /// a vertex, in degrees. Collective.
+  template <int dim>
+  double
+  largest_angle(const parallel::distributed::Triangulation<dim> &triangulation,
+                const types::boundary_id                         id);
+
   /// Whether any face with this @p id looks, by its outward normal, into a @p
   /// direction. Collective.
   template <int dim>

@@ -122,6 +122,10 @@ namespace Viscoplastic
     bool
     has_contact_pairs() const;
 
+    /// Whether a boundary is what another one is in contact with.
+    bool
+    is_other_side(const types::boundary_id id) const;
+
     /// Whether there is a G: laws, or the source of a manufactured solution.
     bool
     has_viscosity() const;
@@ -288,6 +292,11 @@ namespace Viscoplastic
   private:
     void
     inspect_boundary_ids(const std::set<types::boundary_id> &ids) const;
+
+    /// Refuse edges in curved contact between two bodies, by the angle at which
+    /// the faces of a side meet, or doubt that there are none.
+    void
+    inspect_curve(const types::boundary_id id, const double angle);
 
     void
     inspect_flatness(

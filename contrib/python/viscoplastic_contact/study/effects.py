@@ -354,7 +354,7 @@ class EffectsStudy:
             result.with_it, result.without = result.without, result.with_it
         result.changes = changes_between(here.table, table)
         size = largest_of(here.table, "energy_norm")
-        if self.is_compared and size > 0.0:
+        if self.is_compared and size > 0.0 and not variant.changes_stiffness:
             distance = largest_of(table, "error_energy") / size
             result.changes.append(QuantityChange("energy_norm", distance))
         self.add_errors(result.changes, level)

@@ -37,6 +37,12 @@ class EffectVariant:
         """For directories."""
         return identifier(f"{self.effect}__{self.instead}")
 
+    @property
+    def changes_stiffness(self):
+        """Displacements have another energy norm then."""
+        moduli = "/Young's modulus=", "/Poisson's ratio=", "/Voigt matrix="
+        return any(name in entry for entry in self.overrides for name in moduli)
+
     def excludes(self, other):
         """Whether both cannot be left out at once, or one contains the other."""
         if self.effect == other.effect:
@@ -174,6 +180,9 @@ class Variants:
             self.add_material(
                 section, f" of {self.title(section)}" if len(sections) > 1 else ""
             )
+        if len(sections) > 1 and self.pairs():
+            for section in sections:
+                self.add_rigid(section)
         # All of the first one.
         first = sections[0] + "/"
         same = [
@@ -187,6 +196,32 @@ class Variants:
             self.add(
                 "different materials", f"{self.title(sections[0])} everywhere", *same
             )
+
+    def pairs(self):
+        """The boundaries that are in contact with another body."""
+        return [
+            section
+            for section in self.sections("Boundary").values()
+            if self.values[f"{section}/Role"] == "contact"
+            and self.values.get(f"{section}/Against")
+        ]
+
+    def add_rigid(self, section):
+        """One of two bodies as the foundation of the other."""
+        modulus, ratio = (
+            self.values[f"{section}/{name}"]
+            for name in ("Young's modulus", "Poisson's ratio")
+        )
+        if section in self.isotropic:
+            modulus, ratio = map(exact, self.isotropic[section])
+        self.add(
+            f"deformation of {self.title(section)}",
+            "rigid",
+            f"{section}/Law=elastic",
+            f"{section}/Voigt matrix=",
+            f"{section}/Young's modulus=1e4*({modulus})",
+            f"{section}/Poisson's ratio={ratio}",
+        )
 
     def add_material(self, section, of):
         law = self.scene[f"{section}/Law"]
@@ -356,10 +391,10 @@ class Variants:
             if self.values[f"{name}/Role"] == "contact"
             and self.values[f"{name}/Contact law"]
             in ("unilateral", "normal compliance")
-            and not self.values.get(f"{name}/Against")
+            and name not in self.pairs()
         ]
         if (
-            len(unilateral) == 1
+            unilateral == [section]
             and not normal
             and self.contact_force
             and len(self.contact_force) < LONGEST_TEXT

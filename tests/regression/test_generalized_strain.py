@@ -125,7 +125,7 @@ class Cylinder(TestCase):
     """Lame's thick cylinder with open and with closed ends: first order, the strain
     of its axis of second order, and estimates that are the errors."""
 
-    def quarter(self, closed, refinements, **more):
+    def quarter(self, closed, refinements):
         inner, outer, p = 1, 2, 0.1
         C = p * inner**2 / (outer**2 - inner**2)
         D = C * outer**2
@@ -143,8 +143,6 @@ class Cylinder(TestCase):
                 "Geometry/Global refinements": refinements,
                 "Loads/Axial force": f"{p * np.pi / 4 * inner**2 * closed}*t",
                 "Exact solution/Displacement": f"t*x*{u}; t*y*{u}; {strain}*t",
-                "Error control/Quantity": "axial_strain",
-                **more,
             },
         )
         return result, strain
@@ -155,26 +153,52 @@ class Cylinder(TestCase):
             for refinements in 2, 3:
                 result, strain = self.quarter(closed, refinements)
                 errors.append(result["error_energy"][-1])
-                axial.append(abs(result["axial_strain"][-1] - strain))
+                axial.append(abs(result["axial_strain"][-1] / strain - 1))
                 effectivity = result["estimate_total"][-1] / errors[-1]
                 self.assertGreater(effectivity, 0.8)
                 self.assertLess(effectivity, 2)
             self.assertGreater(np.log2(errors[0] / errors[1]), 0.95)
-            self.assertGreater(np.log2(axial[0] / axial[1]), 1.9)
+            if closed:  # by a force that misses the area of chords
+                self.assertGreater(np.log2(axial[0] / axial[1]), 1.9)
+            else:  # a dilatation is a test function
+                self.assertLess(max(axial), 1e-12)
+
+    def test_quantities(self):
+        """The error of the strain, and of the force of a strain, by duality."""
+        for quantity, load in (("strain", "force"), ("force", "strain")):
+            values, corrections = [], []
+            for refinements in 1, 2, 5:
+                result = section(
+                    "clamped",
+                    PRESSED,
+                    "free",
+                    "free",
+                    **{
+                        "Geometry/Global refinements": refinements,
+                        f"Loads/Axial {load}": "0.01*t",
+                        "Error control/Quantity": f"axial_{quantity}",
+                    },
+                )
+                values.append(result[f"axial_{quantity}"][-1])
+                corrections.append(result["quantity_correction"][-1])
+            for value, correction in zip(values[:2], corrections):
+                effectivity = correction / (values[2] + corrections[2] - value)
+                self.assertGreater(effectivity, 0.5)
+                self.assertLess(effectivity, 1.5)
 
 
 class Block(TestCase):
     """Creep on a plane with friction."""
 
     def block(self, ranks=1, **more):
-        return section("symmetry", "free", "free", "free", ranks=ranks, **BLOCK, **more)
+        return section("symmetry", "free", "free", "free", ranks=ranks, **{**BLOCK, **more})
 
     def assertSame(self, result, other, tolerance):
         for name in (
             "axial_strain",
             "axial_force",
             "contact_force_y",
-            "friction_force_2_x",
+            "friction_force_x",
             "stored_energy",
             "viscous_dissipation",
             "friction_dissipation",
@@ -198,7 +222,7 @@ class Block(TestCase):
             for solver in SOLVERS[1:]:
                 with self.subTest(solver, ranks=ranks):
                     other = self.block(ranks, **{"Solver/Linear solver": solver})
-                    self.assertSame(other, direct, 1e-8)
+                    self.assertSame(other, direct, 1e-9)
 
     def test_force_of_a_strain(self):
         """The force that belongs to a given strain gives that strain."""
@@ -214,7 +238,7 @@ class Block(TestCase):
         ours = self.block(**{"Loads/Axial strain": 0})
         plane = self.block(**{"Geometry/Plane model": "strain"})
         for name in plane.statistics:
-            if name not in EFFORT | DEFECTS and "seconds" not in name:
+            if name not in EFFORT | DEFECTS and not name.startswith(("wall", "seconds")):
                 self.assertClose(ours[name], plane[name], 1e-9, 1e-13, what=name)
 
     def test_in_space(self):
@@ -228,8 +252,11 @@ class Block(TestCase):
             "symmetry",
             {"Role": "displacement", "Displacement": f"free; free; 0.5*{strain}"},
             dim=3,
-            **{**BLOCK, "Geometry/Boundary refinements": ""},
-            **{"Geometry/Arguments": "8, 6, 1 : 0, 0, 0 : 1, 1, 0.5 : true"},
+            **{
+                **BLOCK,
+                "Geometry/Boundary refinements": "",
+                "Geometry/Arguments": "8, 6, 1 : 0, 0, 0 : 1, 1, 0.5 : true",
+            },
         )
         ours = self.block(
             **{
